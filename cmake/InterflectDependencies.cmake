@@ -1,0 +1,16 @@
+# What the library links to; found alike when it is built and when it is used from an installed package.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(TBB)
+find_dependency(Imath 3.1)
+find_dependency(OpenEXR 3.1)
+find_dependency(fmt)
+find_dependency(nlohmann_json)
+find_dependency(HDF5 COMPONENTS C)
+# Debian 12 has Embree 3; the one file that calls it (raycast/ray_caster.cpp) compiles against Embree 4 as well.
+find_package(embree 4 CONFIG QUIET)
+if(NOT embree_FOUND)
+  find_dependency(embree 3)
+endif()
+find_path(INTERFLECT_GLU_INCLUDE GL/glu.h REQUIRED)
+find_library(INTERFLECT_GLU_LIBRARY GLU REQUIRED)

@@ -1,0 +1,37 @@
+# interflect_folder(NAME SOURCES ... USES other folders ... LINKS libraries ... [PRIVATE_LINKS libraries ...]):
+# one static library for a folder of src/interflect. USES names only folders above it in docs/design.md's list.
+
+set(interflect_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  list(APPEND interflect_warnings -Wno-restrict)  # false alarms of GCC 12 in std::string (its bug 105651)
+endif()
+if(INTERFLECT_WERROR)
+  list(APPEND interflect_warnings -Werror)
+endif()
+
+add_library(interflect_options INTERFACE)
+target_compile_features(interflect_options INTERFACE cxx_std_20)
+target_compile_options(interflect_options INTERFACE ${interflect_warnings})
+if(INTERFLECT_ARCH)
+  target_compile_options(interflect_options INTERFACE -march=${INTERFLECT_ARCH})
+endif()
+if(INTERFLECT_SANITIZE)
+  target_compile_options(interflect_options INTERFACE -fsanitize=${INTERFLECT_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(interflect_options INTERFACE -fsanitize=${INTERFLECT_SANITIZE})
+endif()
+
+function(interflect_folder name)
+  cmake_parse_arguments(arg "" "" "SOURCES;USES;LINKS;PRIVATE_LINKS" ${ARGN})
+  set(target interflect_${name})
+  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(interflect::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  list(TRANSFORM arg_USES PREPEND interflect_)
+  target_link_libraries(${target} PUBLIC ${arg_USES} ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:interflect_options>
+                                         ${arg_PRIVATE_LINKS})
+  set_property(GLOBAL APPEND PROPERTY interflect_targets ${target})
+endfunction()

@@ -1,0 +1,2 @@
+include(${CMAKE_CURRENT_LIST_DIR}/InterflectDependencies.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/interflect.cmake)

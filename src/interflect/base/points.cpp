@@ -1,0 +1,98 @@
+#include "interflect/base/points.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "interflect/base/random.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr int bits = 32;
+using Directions = std::array<std::uint32_t, bits>;
+
+/// Direction numbers of one dimension, from its primitive polynomial of degree `degree` with inner coefficients
+/// `inner` and the first odd numbers m (Joe and Kuo 2008); bit-reversed: digit 1 of the point is the lowest bit.
+constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::array<std::uint32_t, 3> m) {
+    std::array<std::uint32_t, bits> v{};  // v[i] = m[i] * 2^(31 - i)
+    for (int i = 0; i < bits; ++i) {
+        if (degree == 0) {
+            v[i] = 1u << (bits - 1 - i);
+        } else if (i < degree) {
+            v[i] = m[i] << (bits - 1 - i);
+        } else {
+            v[i] = v[i - degree] ^ (v[i - degree] >> degree);
+            for (int k = 1; k < degree; ++k)
+                if ((inner >> (degree - 1 - k)) & 1u) v[i] ^= v[i - k];
+        }
+    }
+    Directions reversed{};
+    for (int i = 0; i < bits; ++i)
+        for (int b = 0; b < bits; ++b)
+            if ((v[i] >> b) & 1u) reversed[i] |= 1u << (bits - 1 - b);
+    return reversed;
+}
+
+constexpr std::array<Directions, 4> directions = {sobol_directions(0, 0, {}), sobol_directions(1, 0, {1}),
+                                                  sobol_directions(2, 1, {1, 3}), sobol_directions(3, 1, {1, 3, 1})};
+
+/// A random bijection of 32-bit words in which a bit depends only on itself and lower bits: on bit-reversed numbers it
+/// is Owen's nested scrambling. Form after Laine and Karras 2011, constants of N. Vegdahl 2021.
+constexpr std::uint32_t nested_permutation(std::uint32_t x, std::uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    return x >> 16 | x << 16;
+}
+
+/// Sobol' points in Gray-code order: consecutive ones differ by one direction number, and every aligned block of 2^k is
+/// the same set as in natural order. Writes points first ... first + count - 1 from `begin` on; must not wrap around.
+void fill_sobol(std::uint64_t key, std::uint32_t first, std::size_t begin, std::size_t count, PointBlock& block) {
+    std::array<std::uint32_t, PointBlock::capacity> word;
+    for (std::size_t d = 0; d < 4; ++d) {
+        std::uint32_t state = 0;
+        for (std::uint32_t gray = first ^ (first >> 1); gray != 0; gray &= gray - 1)
+            state ^= directions[d][static_cast<std::size_t>(std::countr_zero(gray))];
+        word[0] = state;
+        for (std::size_t i = 1; i < count; ++i)
+            word[i] = word[i - 1] ^
+                      directions[d][static_cast<std::size_t>(std::countr_zero(first + static_cast<std::uint32_t>(i)))];
+        const auto seed = static_cast<std::uint32_t>(mix(key, d) >> 32);
+        for (std::size_t i = 0; i < count; ++i)
+            block.coordinate[d][begin + i] = unit_float(reverse_bits(nested_permutation(word[i], seed)));
+    }
+}
+
+}  // namespace
+
+void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size_t count, PointBlock& block) {
+    assert(count <= PointBlock::capacity);
+    if (set == PointSet::random) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto words = random_words(key, first + i);
+            for (std::size_t d = 0; d < 4; ++d) block.coordinate[d][i] = unit_float(words[d]);
+        }
+        return;
+    }
+    // A sequence has 2^32 points; then the next one, scrambled anew, takes over.
+    for (std::size_t begin = 0; begin < count;) {
+        const std::uint64_t index = first + begin, left = (std::uint64_t{1} << bits) - (index & 0xffffffffu);
+        const auto run = static_cast<std::size_t>(std::min<std::uint64_t>(left, count - begin));
+        fill_sobol(mix(key, index >> bits), static_cast<std::uint32_t>(index), begin, run, block);
+        begin += run;
+    }
+}
+
+}  // namespace interflect

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace interflect {
+
+/// Mixes two 64-bit words into one (the finaliser of SplitMix64, Steele et al. 2014). Not for cryptography.
+constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
+    std::uint64_t x = a + 0x9e3779b97f4a7c15ull * (b + 1);
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+    return x ^ (x >> 31);
+}
+
+/// Four independent uniform 32-bit words that depend on (key, index) alone: Philox4x32-10, Salmon et al. 2011.
+/// Counter-based, so any thread may ask for any index.
+std::array<std::uint32_t, 4> random_words(std::uint64_t key, std::uint64_t index);
+
+/// A 32-bit word as a number in (0, 1): the middle of one of 2^23 equal cells, so neither 0 nor 1 is ever reached.
+constexpr float unit_float(std::uint32_t word) { return (static_cast<float>(word >> 9) + 0.5f) * 0x1p-23f; }
+
+/// A uniform number in [0, 1) with 53 random bits, from (key, index).
+double random_double(std::uint64_t key, std::uint64_t index);
+
+}  // namespace interflect

@@ -1,0 +1,234 @@
+#include "interflect/exports/solution_file.h"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int format_version = 1;
+/// Most entries of one array that a file may claim.
+constexpr hsize_t largest_array = hsize_t{1} << 32;
+
+/// An HDF5 identifier that closes itself.
+class Handle {
+  public:
+    Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+        if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}", what));
+    }
+    ~Handle() { close_(id_); }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    operator hid_t() const { return id_; }
+
+  private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+
+void require(herr_t status, const std::string& what) {
+    if (status < 0) throw std::runtime_error("HDF5: " + what);
+}
+
+/// Memory and file type of what one array entry is made of.
+template <class T>
+hid_t native_type();
+template <>
+hid_t native_type<float>() {
+    return H5T_NATIVE_FLOAT;
+}
+template <>
+hid_t native_type<std::uint32_t>() {
+    return H5T_NATIVE_UINT32;
+}
+template <>
+hid_t native_type<char>() {
+    return H5T_NATIVE_CHAR;
+}
+
+/// Writes `rows` rows of `columns` numbers; no time stamps, so that equal contents are equal bytes.
+template <class T>
+void write_array(hid_t file, const std::string& name, const T* data, std::size_t rows, std::size_t columns) {
+    const std::array<hsize_t, 2> size{rows, columns};
+    const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose, "cannot size an array");
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
+    H5Pset_obj_track_times(properties, false);
+    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "cannot make properties");
+    H5Pset_create_intermediate_group(links, 1);
+    const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space, links, properties, H5P_DEFAULT), H5Dclose,
+                     "cannot write an array");
+    if (rows * columns > 0)
+        require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write '" + name + "'");
+}
+
+template <class T>
+std::vector<T> read_array(hid_t file, const std::string& name, std::size_t columns) {
+    const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "an array is missing");
+    const Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
+    std::array<hsize_t, 2> size{0, 1};
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank != (columns == 1 ? 1 : 2)) throw std::runtime_error("array '" + name + "' has the wrong rank");
+    H5Sget_simple_extent_dims(space, size.data(), nullptr);
+    if (size[1] != columns || size[0] > largest_array / columns ||
+        size[0] * columns * sizeof(T) > H5Dget_storage_size(set))
+        throw std::runtime_error("array '" + name + "' has an unexpected size");
+    std::vector<T> data(size[0] * columns);
+    if (!data.empty())
+        require(H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
+                "cannot read '" + name + "'");
+    return data;
+}
+
+template <class Vector>
+std::vector<float> flattened(const std::vector<Vector>& v) {
+    std::vector<float> numbers;
+    numbers.reserve(3 * v.size());
+    for (const Vector& c : v) numbers.insert(numbers.end(), {c.x, c.y, c.z});
+    return numbers;
+}
+
+template <class Vector>
+std::vector<Vector> grouped(const std::vector<float>& numbers) {
+    std::vector<Vector> v(numbers.size() / 3);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = Vector(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+    return v;
+}
+
+template <class T>
+Json json_of(const Imath::Vec3<T>& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+template <class Vector>
+Vector vector_of(const Json& j) {
+    return {j.at(0).get<decltype(Vector::x)>(), j.at(1).get<decltype(Vector::x)>(), j.at(2).get<decltype(Vector::x)>()};
+}
+
+/// Everything that is not a long array, as JSON text.
+Json describe(const Scene& scene, const Solution& solution) {
+    Json views = Json::array(), materials = Json::array();
+    for (const View& v : scene.views)
+        views.push_back({{"name", v.name},
+                         {"eye", json_of(v.eye)},
+                         {"look_at", json_of(v.look_at)},
+                         {"up", json_of(v.up)},
+                         {"fov", v.fov}});
+    for (const Material& m : scene.materials)
+        materials.push_back(
+            {{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
+    const std::int64_t rays = solution.iterations.empty() ? 0 : solution.iterations.back().rays;
+    return {{"scene", scene.name},
+            {"method", solution.method},
+            {"seed", solution.options.seed},
+            {"rays", rays},
+            {"emitted_power", json_of(solution.emitted_power)},
+            {"interrupted", solution.interrupted},
+            {"views", views},
+            {"materials", materials},
+            {"objects", scene.objects}};
+}
+
+void read_description(const Json& j, SolvedScene& solved) {
+    Scene& scene = solved.scene;
+    scene.name = j.at("scene").get<std::string>();
+    solved.solution.method = j.at("method").get<std::string>();
+    solved.solution.options.seed = j.at("seed").get<std::uint64_t>();
+    solved.solution.options.rays = j.at("rays").get<std::int64_t>();
+    solved.solution.emitted_power = vector_of<RgbD>(j.at("emitted_power"));
+    solved.solution.interrupted = j.at("interrupted").get<bool>();
+    for (const Json& v : j.at("views"))
+        scene.views.push_back({v.at("name").get<std::string>(), vector_of<V3f>(v.at("eye")),
+                               vector_of<V3f>(v.at("look_at")), vector_of<V3f>(v.at("up")), v.at("fov").get<float>()});
+    for (const Json& m : j.at("materials"))
+        scene.materials.push_back(
+            {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
+    scene.objects = j.at("objects").get<std::vector<std::string>>();
+}
+
+/// A patch is seven numbers: four vertices, material, object, other side.
+std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(7 * scene.patches.size());
+    for (const Patch& p : scene.patches) {
+        numbers.insert(numbers.end(), p.vertices.begin(), p.vertices.end());
+        numbers.insert(numbers.end(), {p.material, p.object, p.other_side});
+    }
+    return numbers;
+}
+
+std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers) {
+    std::vector<Patch> patches(numbers.size() / 7);
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        const auto* n = &numbers[7 * i];
+        std::copy_n(n, 4, patches[i].vertices.begin());
+        patches[i].material = n[4];
+        patches[i].object = n[5];
+        patches[i].other_side = n[6];
+    }
+    return patches;
+}
+
+SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
+    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
+    SolvedScene solved;
+    const std::vector<char> text = read_array<char>(file, "/description", 1);
+    const Json description = Json::parse(text.begin(), text.end());
+    if (description.at("format_version").get<int>() != format_version)
+        throw std::runtime_error("it was written by another version of Interflect");
+    read_description(description, solved);
+    solved.scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
+    solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", 7));
+    solved.solution.irradiance = grouped<Rgb>(read_array<float>(file, "/solution/irradiance", 3));
+    return solved;
+}
+
+}  // namespace
+
+void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution) {
+    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+                      "cannot create the file");
+    Json description{{"format", "interflect solution"}, {"format_version", format_version}};
+    description.update(describe(scene, solution));
+    const std::string text = description.dump(1);
+    write_array(file, "/description", text.data(), text.size(), 1);
+    write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3);
+    write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), 7);
+    write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);
+}
+
+SolvedScene read_solution(const std::filesystem::path& path) {
+    if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
+    if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
+    try {
+        SolvedScene solved = read_solution_unchecked(path);
+        if (solved.solution.irradiance.size() != solved.scene.patches.size())
+            throw std::runtime_error("irradiance and patches differ in number");
+        for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
+        return solved;
+    } catch (const std::exception& e) {
+        throw InputError(path, 0, fmt::format("not a solution file that can be read: {}", e.what()));
+    }
+}
+
+bool is_solution_file(const std::filesystem::path& path) {
+    constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+    std::string begin(signature.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == signature;
+}
+
+}  // namespace interflect

@@ -1,0 +1,97 @@
+#pragma once
+
+// What Embree 3 and Embree 4 call differently, for the sources of this folder alone.
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "interflect/raycast/ray_caster.h"
+
+namespace interflect {
+
+/// A ray as Embree takes it, from its origin to infinity.
+inline RTCRayHit embree_query(const Ray& ray) {
+    RTCRayHit query;
+    query.ray = {ray.origin.x,
+                 ray.origin.y,
+                 ray.origin.z,
+                 0.0f,
+                 ray.direction.x,
+                 ray.direction.y,
+                 ray.direction.z,
+                 0.0f,
+                 std::numeric_limits<float>::infinity(),
+                 ~0u,
+                 0,
+                 0};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
+#if RTC_VERSION_MAJOR >= 4
+/// Embree 4 has no context where no arguments are needed, and no streams: one ray after the other takes their place.
+class EmbreeContext {
+  public:
+    void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+    void intersect(RTCScene scene, std::span<RTCRayHit> queries) {
+        for (RTCRayHit& query : queries) rtcIntersect1(scene, &query);
+    }
+    void intersect(RTCScene scene, std::array<int, 8> valid, RTCRayHit8& p) { rtcIntersect8(valid.data(), scene, &p); }
+    void intersect(RTCScene scene, std::array<int, 16> valid, RTCRayHit16& p) {
+        rtcIntersect16(valid.data(), scene, &p);
+    }
+};
+#else
+class EmbreeContext {
+  public:
+    EmbreeContext() { rtcInitIntersectContext(&context_); }
+    void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &context_, &query); }
+    void intersect(RTCScene scene, std::span<RTCRayHit> queries) {
+        rtcIntersect1M(scene, &context_, queries.data(), static_cast<unsigned>(queries.size()), sizeof(RTCRayHit));
+    }
+    void intersect(RTCScene scene, const std::array<int, 8>& valid, RTCRayHit8& packet) {
+        alignas(32) std::array<int, 8> mask = valid;
+        rtcIntersect8(mask.data(), scene, &context_, &packet);
+    }
+    void intersect(RTCScene scene, const std::array<int, 16>& valid, RTCRayHit16& packet) {
+        alignas(64) std::array<int, 16> mask = valid;
+        rtcIntersect16(mask.data(), scene, &context_, &packet);
+    }
+
+  private:
+    RTCIntersectContext context_;
+};
+#endif
+
+/// The front patches of the faces of one Embree geometry, by primitive number.
+using Faces = std::vector<std::uint32_t>;
+
+struct RayCaster::Embree {
+    std::atomic<std::int64_t> bytes{0};
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<Faces> geometries;          // [geometry id][primitive]: front patch
+    std::vector<std::uint32_t> other_side;  // of each patch
+
+    Embree();
+    ~Embree();
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
+
+    void add_faces(const Scene& source, Faces faces, bool triangles, bool two_sided);
+    void commit();
+    Hit first_hit(EmbreeContext& context, const Ray& ray) const;
+};
+
+}  // namespace interflect

@@ -1,0 +1,100 @@
+#include "interflect/scene/patch_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace interflect {
+
+namespace {
+
+/// Relative size below which the twist of a quadrilateral is rounding, and it counts as a parallelogram.
+constexpr float parallelogram_tolerance = 1e-5f;
+
+/// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a and a + b are >= 0.
+float warp_linear(float a, float b, float uniform) {
+    // a x + b x^2 / 2 = uniform (a + b / 2), solved in the form that does not cancel when b is small.
+    const float target = uniform * (a + 0.5f * b);
+    const float root = std::sqrt(std::max(0.0f, a * a + 2 * b * target));
+    return a + root > 0 ? std::clamp(2 * target / (a + root), 0.0f, 1.0f) : uniform;
+}
+
+}  // namespace
+
+PatchGeometry::PatchGeometry(const Scene& scene, const Patch& patch) : triangle_(patch.is_triangle()) {
+    const auto vertex = [&](int i) { return scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]; };
+    origin_ = vertex(0);
+    edge_u_ = vertex(1) - origin_;
+    edge_v_ = vertex(triangle_ ? 2 : 3) - origin_;
+    if (!triangle_) twist_ = vertex(2) - vertex(1) - edge_v_;
+
+    if (triangle_) {
+        const V3f n = edge_u_.cross(edge_v_);
+        normal_ = n.normalized();
+        jacobian_ = {n.length(), 0, 0};
+        area_ = 0.5f * n.length();
+        parallelogram_ = true;  // in the sense that x is affine in (u, v)
+    } else {
+        // Half the cross product of the diagonals: the area vector, also of a slightly warped quadrilateral.
+        const V3f n = 0.5f * (vertex(2) - vertex(0)).cross(vertex(3) - vertex(1));
+        normal_ = n.normalized();
+        area_ = n.length();
+        // normal . (dx/du x dx/dv); the u v term vanishes for a planar quadrilateral.
+        jacobian_ = {normal_.dot(edge_u_.cross(edge_v_)), normal_.dot(edge_u_.cross(twist_)),
+                     normal_.dot(twist_.cross(edge_v_))};
+        parallelogram_ = twist_.length() <= parallelogram_tolerance * (edge_u_.length() + edge_v_.length());
+    }
+    const V3f n = edge_u_.cross(edge_v_);
+    const float n2 = n.length2();
+    if (n2 > 0) {
+        inverse_u_ = edge_v_.cross(n) / n2;
+        inverse_v_ = n.cross(edge_u_) / n2;
+    }
+}
+
+V3f PatchGeometry::centre() const { return triangle_ ? origin_ + (edge_u_ + edge_v_) / 3.0f : point({0.5f, 0.5f}); }
+
+V3f PatchGeometry::point(Parameters p) const { return origin_ + p.u * edge_u_ + p.v * edge_v_ + (p.u * p.v) * twist_; }
+
+float PatchGeometry::jacobian(Parameters p) const { return jacobian_[0] + p.u * jacobian_[1] + p.v * jacobian_[2]; }
+
+Parameters PatchGeometry::uniform_parameters(float a, float b) const {
+    if (triangle_) {
+        // Area-preserving and continuous: fold along the diagonal (Heitz 2019, 'A Low-Distortion Map').
+        if (b > a) {
+            a *= 0.5f;
+            return {a, b - a};
+        }
+        b *= 0.5f;
+        return {a - b, b};
+    }
+    if (parallelogram_) return {a, b};
+    // Marginal density of u: the jacobian at v = 1/2; then that of v given u. Both are linear.
+    const float u = warp_linear(std::max(0.0f, jacobian({0, 0.5f})), jacobian_[1], a);
+    return {u, warp_linear(std::max(0.0f, jacobian({u, 0})), jacobian_[2], b)};
+}
+
+Parameters PatchGeometry::parameters_of(const V3f& x) const {
+    const V3f d = x - origin_;
+    Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
+    if (!parallelogram_) {
+        // Newton's method on the bilinear map, in the plane; it starts close and a handful of steps reach rounding.
+        for (int step = 0; step < 8; ++step) {
+            const V3f residual = d - (p.u * edge_u_ + p.v * edge_v_ + (p.u * p.v) * twist_);
+            const V3f du = edge_u_ + p.v * twist_, dv = edge_v_ + p.u * twist_;
+            const V3f n = du.cross(dv);
+            const float n2 = n.length2();
+            if (!(n2 > 0)) break;
+            const Parameters delta{dv.cross(n).dot(residual) / n2, n.cross(du).dot(residual) / n2};
+            p.u = std::clamp(p.u + delta.u, -0.5f, 1.5f);
+            p.v = std::clamp(p.v + delta.v, -0.5f, 1.5f);
+            if (std::abs(delta.u) + std::abs(delta.v) < 1e-6f) break;
+        }
+    }
+    p.u = std::clamp(p.u, 0.0f, 1.0f);
+    p.v = std::clamp(p.v, 0.0f, triangle_ ? 1.0f - p.u : 1.0f);
+    return p;
+}
+
+float patch_area(const Scene& scene, const Patch& patch) { return PatchGeometry(scene, patch).area(); }
+
+}  // namespace interflect

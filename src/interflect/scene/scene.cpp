@@ -1,0 +1,54 @@
+#include "interflect/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr std::size_t listed_faults = 20;
+
+bool is_reflectance(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0 && largest_channel(c) < 1; }
+
+}  // namespace
+
+std::vector<std::string> scene_faults(const Scene& scene) {
+    std::vector<std::string> faults;
+    const auto check = [&](bool holds, const auto& describe) {
+        if (!holds && faults.size() < listed_faults) faults.push_back(describe());
+    };
+    for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+        check(is_finite(scene.vertices[i]), [&] { return fmt::format("vertex {} is not finite", i); });
+    for (const Material& m : scene.materials) {
+        const Rgb &r = m.reflectance, &e = m.exitance;
+        check(is_reflectance(r), [&] {
+            return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
+        });
+        check(is_finite(e) && std::min({e.x, e.y, e.z}) >= 0, [&] {
+            return fmt::format("material '{}': exitance ({}, {}, {}) is negative or not finite", m.name, e.x, e.y, e.z);
+        });
+    }
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const Patch& p = scene.patches[i];
+        const bool vertices_exist = std::all_of(p.vertices.begin(), p.vertices.begin() + p.vertex_count(),
+                                                [&](std::uint32_t v) { return v < scene.vertices.size(); });
+        check(vertices_exist, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
+        check(!vertices_exist || patch_area(scene, p) > 0, [&] { return fmt::format("patch {} has no area", i); });
+        check(p.material < scene.materials.size(),
+              [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
+        check(p.other_side == none ||
+                  (p.other_side < scene.patches.size() && scene.patches[p.other_side].other_side == i),
+              [&] { return fmt::format("patch {}: its other side {} does not point back", i, p.other_side); });
+    }
+    for (const View& v : scene.views)
+        check(is_finite(v.eye) && is_finite(v.look_at) && is_finite(v.up) && v.fov > 0 && v.fov < 180, [&] {
+            return fmt::format("view '{}' is not finite, or its field of view not between 0 and 180 degrees", v.name);
+        });
+    return faults;
+}
+
+}  // namespace interflect

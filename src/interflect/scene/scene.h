@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interflect/base/colour.h"
+#include "interflect/base/warnings.h"
+
+namespace interflect {
+
+/// Index that points nowhere.
+inline constexpr std::uint32_t none = 0xffffffffu;
+
+/// What a surface does with light; the same on both sides of a two-sided face.
+struct Material {
+    std::string name;
+    Rgb reflectance{0, 0, 0};  ///< Diffuse reflectance rho, each channel in [0, 1).
+    Rgb exitance{0, 0, 0};     ///< Self-emitted exitance M [lm/m^2 or W/m^2], >= 0.
+};
+
+/// One side of an input polygon: a triangle or a convex, (nearly) planar quadrilateral.
+struct Patch {
+    std::array<std::uint32_t, 4> vertices;  ///< Counter-clockwise seen from the lit side; [3] == none for a triangle.
+    std::uint32_t material = 0;
+    std::uint32_t other_side = none;  ///< The patch on the back of the same face; none for a one-sided face.
+    std::uint32_t object = 0;         ///< Index into Scene::objects.
+
+    bool is_triangle() const { return vertices[3] == none; }
+    int vertex_count() const { return is_triangle() ? 3 : 4; }
+};
+
+/// A pinhole camera.
+struct View {
+    std::string name;
+    V3f eye{0, 0, 0};      ///< [m]
+    V3f look_at{0, 1, 0};  ///< [m]
+    V3f up{0, 0, 1};       ///< Need be neither normalised nor perpendicular to the direction of view.
+    float fov = 45;        ///< Vertical, full [degrees], in (0, 180).
+};
+
+/// Everything that was read, in metres and linear Rec. 709; immutable once loaded. Patches of a two-sided face are
+/// neighbours: the side as written first, its other_side right after it.
+struct Scene {
+    std::string name;  ///< The file it came from.
+    std::vector<V3f> vertices;
+    std::vector<Patch> patches;
+    std::vector<Material> materials;
+    std::vector<std::string> objects;  ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
+    std::vector<View> views;
+    std::vector<std::string> files;  ///< Every file that was read, the scene's own first.
+    Warnings warnings;
+};
+
+/// Every fault of `scene` that would break an invariant above (index out of range, non-finite number, reflectance
+/// outside [0, 1), negative exitance, degenerate patch), a sentence each; empty for a valid scene. Lists at most 20.
+std::vector<std::string> scene_faults(const Scene& scene);
+
+}  // namespace interflect

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "interflect/base/points.h"
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+/// Makes the rays that samples first_sample, first_sample + 1, ... of a patch stand for: origins uniform on its area
+/// and `lift` above it, directions with density cos(theta) / pi about its normal.
+/// @param key     Names the patch's point sequence (fill_points).
+/// @param points  Working space.
+/// @param rays    Receives the rays; its size is their number.
+void shoot_rays(const PatchGeometry& patch, float lift, PointSet set, std::uint64_t key, std::uint64_t first_sample,
+                PointBlock& points, std::span<Ray> rays);
+
+}  // namespace interflect

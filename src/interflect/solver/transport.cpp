@@ -1,0 +1,146 @@
+#include "interflect/solver/transport.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/parallel.h"
+#include "interflect/base/random.h"
+#include "interflect/solver/ray_source.h"
+
+namespace interflect {
+
+namespace {
+
+/// Rays of one task: enough to hide the cost of a task, few enough to stay in the second-level cache.
+constexpr std::size_t batch_rays = 4096;
+
+/// Keys of the random numbers, so that no two purposes share one.
+enum class Purpose : std::uint64_t { allocation = 1, sampling = 2 };
+
+std::uint64_t stream_key(const SampleStreams& streams, Purpose purpose, std::uint64_t index) {
+    return mix(mix(streams.seed, static_cast<std::uint64_t>(purpose)), index);
+}
+
+/// One task's rays and hits; one a thread, reused.
+struct Batch {
+    std::vector<Ray> rays = std::vector<Ray>(batch_rays);
+    std::vector<Hit> hits = std::vector<Hit>(batch_rays);
+    PointBlock points;
+};
+
+/// What one ray of each patch brings: P_s / (N q_s), in units of `fixed_point`.
+struct Quanta {
+    std::vector<RgbD> colour;
+    RgbD shot{0, 0, 0};
+    std::int64_t non_finite = 0;
+};
+
+Quanta make_quanta(std::span<const Rgb> power, std::span<const double> q, std::span<const std::int64_t> first_ray) {
+    double q_sum = 0;
+    for (const double w : q) q_sum += w;
+    const double scale = q_sum / static_cast<double>(first_ray.back());
+    Quanta quanta;
+    quanta.colour.resize(power.size(), RgbD(0, 0, 0));
+    for (std::size_t s = 0; s < power.size(); ++s) {
+        const std::int64_t count = first_ray[s + 1] - first_ray[s];
+        if (!is_finite(power[s])) ++quanta.non_finite;
+        if (count == 0 || !is_finite(power[s])) continue;
+        quanta.colour[s] = RgbD(power[s]) * (scale / q[s]);
+        quanta.shot += quanta.colour[s] * static_cast<double>(count);
+    }
+    return quanta;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t ray_count, double offset) {
+    double q_sum = 0;
+    for (const double w : q) q_sum += w;
+    assert(q_sum > 0 && std::isfinite(q_sum));
+    std::vector<std::int64_t> first(q.size() + 1, 0);
+    double cumulative = 0;  // summed in the order of q_sum, so that it ends at q_sum exactly, and the rays at N
+    for (std::size_t s = 0; s < q.size(); ++s) {
+        cumulative += q[s];
+        first[s + 1] = static_cast<std::int64_t>(cumulative / q_sum * static_cast<double>(ray_count) + offset);
+    }
+    return first;
+}
+
+Received receive_power(const Surfaces& surfaces, const RayCaster& ray_caster, std::span<const Rgb> power,
+                       std::span<const double> q, std::int64_t ray_count, SampleStreams& streams) {
+    assert(power.size() == surfaces.size() && q.size() == surfaces.size() && ray_count > 0);
+    Received received;
+    received.power.resize(surfaces.size(), Rgb(0, 0, 0));
+    if (std::all_of(q.begin(), q.end(), [](double w) { return w == 0; })) return received;
+
+    const double offset = random_double(stream_key(streams, Purpose::allocation, 0), streams.allocations++);
+    const std::vector<std::int64_t> first_ray = allocate_rays(q, ray_count, offset);
+    const Quanta quanta = make_quanta(power, q, first_ray);
+    received.shot_power = quanta.shot;
+    received.non_finite = quanta.non_finite;
+    if (!(channel_sum(quanta.shot) > 0)) return received;
+
+    const FixedPoint fixed_point(channel_sum(quanta.shot));
+    ConcurrentSums sums(surfaces.size() + 1);  // the last one is for what escapes
+    std::atomic<std::int64_t> escaped_rays{0};
+    tbb::enumerable_thread_specific<Batch> batches;
+    parallel_for_ranges(static_cast<std::size_t>(ray_count), batch_rays, [&](std::size_t begin, std::size_t end) {
+        Batch& batch = batches.local();
+        const std::span rays(batch.rays.data(), end - begin);
+        const std::span hits(batch.hits.data(), end - begin);
+
+        // Calls body(patch, its first and last ray in this batch) for every patch that has rays in it.
+        const auto for_each_source = [&](const auto& body) {
+            auto ray = static_cast<std::int64_t>(begin);
+            auto s = static_cast<std::size_t>(std::upper_bound(first_ray.begin(), first_ray.end(), ray) -
+                                              first_ray.begin() - 1);
+            for (; ray < static_cast<std::int64_t>(end); ++s) {
+                const std::int64_t last = std::min(first_ray[s + 1], static_cast<std::int64_t>(end));
+                if (last > ray) body(s, ray, last);
+                ray = last;
+            }
+        };
+
+        for_each_source([&](std::size_t s, std::int64_t from, std::int64_t to) {
+            const std::uint64_t sample = streams.used[s] + static_cast<std::uint64_t>(from - first_ray[s]);
+            shoot_rays(surfaces.geometry(s), ray_caster.lift(), streams.points,
+                       stream_key(streams, Purpose::sampling, s), sample, batch.points,
+                       rays.subspan(static_cast<std::size_t>(from) - begin, static_cast<std::size_t>(to - from)));
+        });
+        ray_caster.trace(rays, hits);
+
+        FixedPoint::Value escaped{};
+        std::int64_t escaped_count = 0;
+        for_each_source([&](std::size_t s, std::int64_t from, std::int64_t to) {
+            const FixedPoint::Value quantum = fixed_point.from(quanta.colour[s]);
+            for (std::int64_t r = from; r < to; ++r) {
+                const std::uint32_t receiver = hits[static_cast<std::size_t>(r) - begin].patch;
+                if (receiver != none) {
+                    sums.add(receiver, quantum);
+                } else {
+                    ++escaped_count;
+                    for (std::size_t c = 0; c < 3; ++c) escaped[c] += quantum[c];
+                }
+            }
+        });
+        if (escaped_count > 0) {
+            sums.add(surfaces.size(), escaped);
+            escaped_rays.fetch_add(escaped_count, std::memory_order_relaxed);
+        }
+    });
+
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        received.power[i] = Rgb(fixed_point.to_colour(sums[i]));
+        streams.used[i] += static_cast<std::uint64_t>(first_ray[i + 1] - first_ray[i]);
+    }
+    received.escaped_power = fixed_point.to_colour(sums[surfaces.size()]);
+    received.escaped_rays = escaped_rays;
+    return received;
+}
+
+}  // namespace interflect

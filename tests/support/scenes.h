@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "interflect/scene/scene.h"
+
+namespace interflect::testing_support {
+
+/// The folder of real test scenes: the environment variable INTERFLECT_SCENES, or shared/scenes beside the repository.
+std::filesystem::path real_scenes();
+
+/// A folder that is removed with everything in it at the end of the scope.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path write(const std::string& name, const std::string& text) const;
+
+  private:
+    std::filesystem::path path_;
+};
+
+/// Adds the parallelogram corner, corner + u, corner + u + v, corner + v, lit on the side of u x v, divided into
+/// nu x nv patches; returns the index of the first of them (row by row in v).
+std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_t material, int nu = 1, int nv = 1,
+                            bool two_sided = false);
+
+std::uint32_t add_material(Scene& scene, Rgb reflectance, Rgb exitance);
+
+/// A closed box from (0,0,0) to `size`, lit inside, each wall divided into n x n patches of one-sided faces. Walls in
+/// order: x = 0, x = size.x, y = 0, y = size.y, z = 0, z = size.z; materials[w] for wall w (one for all if size 1).
+Scene closed_box(V3f size, int n, const std::vector<Material>& materials);
+
+}  // namespace interflect::testing_support
