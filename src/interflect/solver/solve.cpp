@@ -37,13 +37,6 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     throw InputError(message);
 }
 
-/// q of Eq. 3: in proportion to power, all channels together. What is not finite is not shot (and counted there).
-std::vector<double> by_power(const std::vector<Rgb>& power) {
-    std::vector<double> q(power.size());
-    for (std::size_t s = 0; s < q.size(); ++s) q[s] = is_finite(power[s]) ? double(channel_sum(power[s])) : 0.0;
-    return q;
-}
-
 /// The state of a run: everything that one iteration hands to the next.
 struct Run {
     const Surfaces surfaces;
@@ -56,8 +49,10 @@ struct Run {
     Clock::time_point start = Clock::now();
 
     Run(const Scene& scene, const RayCaster& caster, const SolveOptions& options)
-        : surfaces(scene), ray_caster(caster), schedule(options, scene.patches.size()) {
-        streams = {options.points, options.seed, std::vector<std::uint64_t>(surfaces.size(), 0), 0};
+        : surfaces(scene),
+          ray_caster(caster),
+          streams(options.points, options.seed, scene.patches.size()),
+          schedule(options, scene.patches.size()) {
         solution.options = options;
         solution.irradiance.assign(surfaces.size(), Rgb(0, 0, 0));
         solution.emitted_power = total(radiated_power(surfaces, solution.irradiance));
@@ -66,7 +61,7 @@ struct Run {
 
 /// Shoots `power` with N rays; returns the irradiance R_i / A_i that it makes.
 std::vector<Rgb> irradiance_from(Run& run, const std::vector<Rgb>& power, std::int64_t rays, RgbD& escaped_power) {
-    Received received = receive_power(run.surfaces, run.ray_caster, power, by_power(power), rays, run.streams);
+    Received received = receive_power(run.surfaces, run.ray_caster, power, power_weights(power), rays, run.streams);
     run.solution.non_finite += received.non_finite;
     run.escaped_rays += received.escaped_rays;
     escaped_power += received.escaped_power;

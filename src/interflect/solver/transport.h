@@ -13,8 +13,11 @@ namespace interflect {
 
 /// The random numbers of a run: each patch draws from a sequence of its own, which goes on from iteration to iteration.
 struct SampleStreams {
-    PointSet points = PointSet::sobol;
-    std::uint64_t seed = 1;
+    SampleStreams(PointSet set, std::uint64_t run_seed, std::size_t patches)
+        : points(set), seed(run_seed), used(patches, 0) {}
+
+    PointSet points;
+    std::uint64_t seed;
     std::vector<std::uint64_t> used;  ///< Points that each patch has consumed.
     std::uint64_t allocations = 0;    ///< Calls that have drawn from these streams.
 };
@@ -25,6 +28,9 @@ struct SampleStreams {
 /// @param offset  Uniform in [0, 1).
 /// @return        `first`, size q.size() + 1, first[0] = 0, last = N; patches of weight 0 get no ray.
 std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t ray_count, double offset);
+
+/// q of Eq. 3, Prikryl et al. 2000: in proportion to power, all channels together; 0 where it is not finite.
+std::vector<double> power_weights(std::span<const Rgb> power);
 
 /// What one transport step brought.
 struct Received {
@@ -46,5 +52,9 @@ struct Received {
 /// Cost: O(N log(patches)) time on all threads, 24 bytes a patch.
 Received receive_power(const Surfaces& surfaces, const RayCaster& ray_caster, std::span<const Rgb> power,
                        std::span<const double> q, std::int64_t ray_count, SampleStreams& streams);
+
+/// The rays that receive_power would trace with these arguments, in its order; q not all 0.
+std::vector<Ray> transport_rays(const Surfaces& surfaces, const RayCaster& ray_caster, std::span<const double> q,
+                                std::int64_t ray_count, const SampleStreams& streams);
 
 }  // namespace interflect

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/interflect/commands.h"
+#include "apps/interflect/parse.h"
+#include "apps/interflect/shared_options.h"
+#include "apps/interflect/threads.h"
+#include "interflect/base/error.h"
+#include "interflect/base/parallel.h"
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/solver/solve.h"
+#include "interflect/solver/transport.h"
+
+namespace interflect::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+    SceneOptions scene;
+    std::int64_t rays = 4'000'000;
+    int rounds = 5, threads = 0;
+    bool json = false;
+};
+
+constexpr std::array<std::pair<RayInterface, const char*>, 4> interfaces = {{{RayInterface::single, "single"},
+                                                                             {RayInterface::packet8, "packet8"},
+                                                                             {RayInterface::packet16, "packet16"},
+                                                                             {RayInterface::stream, "stream"}}};
+
+template <class Work>
+double seconds_for(const Work& work) {
+    const auto start = Clock::now();
+    work();
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Rays as the solver would trace them when the light has already spread through the scene.
+std::vector<Ray> solver_rays(const Scene& scene, const RayCaster& ray_caster, std::int64_t count) {
+    SolveOptions options;
+    options.rays = std::min<std::int64_t>(count, 1'000'000);
+    const Solution solution = solve(scene, ray_caster, options);
+    if (!(channel_sum(solution.emitted_power) > 0))
+        throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
+    const Surfaces surfaces(scene);
+    const std::vector<double> q = power_weights(radiated_power(surfaces, solution.irradiance));
+    return transport_rays(surfaces, ray_caster, q, count, {options.points, options.seed, surfaces.size()});
+}
+
+struct Measurement {
+    double ceiling = 0, solver = 0;                  // [rays/s], of one round
+    std::array<double, interfaces.size()> embree{};  // [rays/s], each interface
+};
+
+/// Everything in one run, one after the other, since the speed of a machine changes with its load.
+Measurement measure(const Scene& scene, const RayCaster& ray_caster, const std::vector<Ray>& rays,
+                    const Options& options) {
+    Measurement m;
+    const auto count = static_cast<double>(rays.size());
+    for (std::size_t i = 0; i < interfaces.size(); ++i) {
+        PreparedRays prepared(rays, interfaces[i].first);
+        m.embree[i] = count / seconds_for([&] {
+                          parallel_for_ranges(prepared.group_count(), 1, [&](std::size_t group, std::size_t) {
+                              prepared.trace_group(ray_caster, group);
+                          });
+                      });
+    }
+    m.ceiling = *std::max_element(m.embree.begin(), m.embree.end());
+    SolveOptions solve_options;
+    solve_options.rays = options.rays;
+    Solution solution;
+    const double seconds = seconds_for([&] { solution = solve(scene, ray_caster, solve_options); });
+    if (!solution.iterations.empty()) m.solver = static_cast<double>(solution.iterations.back().rays) / seconds;
+    return m;
+}
+
+void run(const Options& options) {
+    const ThreadLimit limit(options.threads);
+    const Scene scene = options.scene.load();
+    const RayCaster ray_caster(scene);
+    const std::vector<Ray> rays = solver_rays(scene, ray_caster, options.rays);
+
+    std::vector<double> ratios, ceilings, solvers;
+    std::array<std::vector<double>, interfaces.size()> embree;
+    for (int round = 0; round < options.rounds; ++round) {
+        const Measurement m = measure(scene, ray_caster, rays, options);
+        ratios.push_back(m.solver / m.ceiling);
+        ceilings.push_back(m.ceiling);
+        solvers.push_back(m.solver);
+        for (std::size_t i = 0; i < interfaces.size(); ++i) embree[i].push_back(m.embree[i]);
+    }
+
+    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    if (options.json) {
+        Json by_interface;
+        for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = median(embree[i]);
+        const Json result{{"scene", scene.name},      {"patches", scene.patches.size()},
+                          {"threads", threads},       {"rays", options.rays},
+                          {"rounds", options.rounds}, {"ceiling_rays_per_second", median(ceilings)},
+                          {"embree", by_interface},   {"solver_rays_per_second", median(solvers)},
+                          {"ratio", median(ratios)},  {"ray_tracer_bytes", ray_caster.memory()}};
+        std::cout << result.dump(2) << '\n';
+        return;
+    }
+    fmt::print("{}: {} patches, {} threads, medians of {} rounds\n", scene.name, scene.patches.size(), threads,
+               options.rounds);
+    for (std::size_t i = 0; i < interfaces.size(); ++i)
+        fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, median(embree[i]) / 1e6);
+    fmt::print("  whole solver          {:8.2f} M rays/s\n", median(solvers) / 1e6);
+    fmt::print("  solver over Embree    {:8.3f}\n", median(ratios));
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *app.add_subcommand("bench", "Measure the solver's rays a second beside the ray tracer's own");
+    options->scene.add_to(command);
+    add_parsed(command, "--rays", options->rays, parse_count, "Rays of each measurement (default 4M)");
+    command.add_option("--rounds", options->rounds, "How often to measure; medians are reported")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    add_threads(command, options->threads);
+    command.add_flag("--json", options->json, "As JSON on stdout");
+    command.callback([options] { run(*options); });
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <iostream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/interflect/commands.h"
+#include "apps/interflect/shared_options.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+struct Emitter {
+    std::size_t patches = 0;
+    double area = 0;         // [m^2]
+    RgbD power = {0, 0, 0};  // [lm]
+};
+
+struct Summary {
+    std::size_t triangles = 0, two_sided = 0;
+    double area = 0;
+    RgbD emitted_power{0, 0, 0};
+    std::map<std::uint32_t, Emitter> emitters;  // by material
+};
+
+Summary summarise(const Scene& scene) {
+    Summary s;
+    for (const Patch& patch : scene.patches) {
+        const double area = patch_area(scene, patch);
+        s.area += area;
+        s.triangles += patch.is_triangle();
+        s.two_sided += patch.other_side != none;
+        const Rgb& exitance = scene.materials[patch.material].exitance;
+        if (!(channel_sum(exitance) > 0)) continue;
+        Emitter& emitter = s.emitters[patch.material];
+        ++emitter.patches;
+        emitter.area += area;
+        emitter.power += RgbD(exitance) * area;
+        s.emitted_power += RgbD(exitance) * area;
+    }
+    return s;
+}
+
+/// Files that were included from outside the scene's own folder.
+std::vector<std::string> outside_files(const Scene& scene, const fs::path& scene_path) {
+    const fs::path folder = fs::weakly_canonical(scene_path).parent_path();
+    std::vector<std::string> outside;
+    for (const std::string& file : scene.files)
+        if (fs::weakly_canonical(file).lexically_relative(folder).string().starts_with("..")) outside.push_back(file);
+    return outside;
+}
+
+template <class Vector>
+Json json_of(const Vector& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string>& outside) {
+    Json views = Json::array(), warnings = Json::array(), emitters = Json::array();
+    for (const View& v : scene.views)
+        views.push_back({{"name", v.name},
+                         {"eye", json_of(v.eye)},
+                         {"look_at", json_of(v.look_at)},
+                         {"up", json_of(v.up)},
+                         {"fov", v.fov}});
+    for (const Warnings::Entry& w : scene.warnings.entries())
+        warnings.push_back({{"kind", w.kind}, {"message", w.message}, {"where", w.where}, {"count", w.count}});
+    for (const auto& [material, e] : s.emitters)
+        emitters.push_back({{"material", scene.materials[material].name},
+                            {"patches", e.patches},
+                            {"area", e.area},
+                            {"power", json_of(e.power)}});
+    return {{"scene", scene.name},      {"patches", scene.patches.size()},
+            {"triangles", s.triangles}, {"two_sided_patches", s.two_sided},
+            {"area", s.area},           {"emitted_power", json_of(s.emitted_power)},
+            {"emitters", emitters},     {"views", views},
+            {"files", scene.files},     {"files_outside", outside},
+            {"warnings", warnings}};
+}
+
+template <class Vector>
+std::string text_of(const Vector& v) {
+    return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);
+}
+
+void print_text(const Scene& scene, const Summary& s, const std::vector<std::string>& outside) {
+    fmt::print("{}\n", scene.name);
+    fmt::print("  patches   {} ({} triangles; {} on two-sided faces)\n", scene.patches.size(), s.triangles,
+               s.two_sided);
+    fmt::print("  area      {:.6g} m2\n", s.area);
+    fmt::print("  emitted   {:.6g} lm (RGB {})\n", luminance(s.emitted_power), text_of(s.emitted_power));
+    for (const auto& [material, e] : s.emitters)
+        fmt::print("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm\n", scene.materials[material].name, e.patches,
+                   e.area, luminance(e.power));
+    for (const View& v : scene.views)
+        fmt::print("  view      {}: eye {}, look at {}, up {}, fov {:.4g}\n", v.name, text_of(v.eye),
+                   text_of(v.look_at), text_of(v.up), v.fov);
+    for (const std::string& file : scene.files) fmt::print("  file      {}\n", file);
+    for (const std::string& file : outside) fmt::print("  outside   {}: not in the scene's own folder\n", file);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+    struct Options {
+        SceneOptions scene;
+        bool json = false;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *app.add_subcommand("info", "Tell what is in a scene");
+    options->scene.add_to(command);
+    command.add_flag("--json", options->json, "As JSON on stdout");
+    command.callback([options] {
+        const Scene scene = options->scene.load();
+        const Summary summary = summarise(scene);
+        const std::vector<std::string> outside = outside_files(scene, options->scene.path);
+        if (options->json)
+            std::cout << to_json(scene, summary, outside).dump(2) << '\n';
+        else
+            print_text(scene, summary, outside);
+    });
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,73 @@
+#include "apps/interflect/parse.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace interflect::command {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& text, const std::string& expected) {
+    throw CLI::ValidationError("'" + text + "'", "expected " + expected);
+}
+
+/// Reads a finite number from the front of `text` and removes it; false where there is none.
+bool take_number(std::string_view& text, double& number) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || !std::isfinite(number)) return false;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return true;
+}
+
+bool take(std::string_view& text, char c) {
+    if (!text.starts_with(c)) return false;
+    text.remove_prefix(1);
+    return true;
+}
+
+}  // namespace
+
+std::int64_t parse_count(const std::string& text) {
+    const char* expected = "a number above 0, such as 500000, 20M or 1.5G";
+    std::string_view rest = text;
+    double number = 0;
+    if (!take_number(rest, number)) refuse(text, expected);
+    // npos + 1 is 0: an unknown suffix.
+    const std::size_t power = rest.empty() ? 0 : std::string_view("kMGT").find(rest.front()) + 1;
+    if (rest.size() > 1 || (power == 0 && !rest.empty())) refuse(text, expected);
+    number *= std::pow(1000.0, static_cast<double>(power));
+    if (!(number >= 1) || number > 1e18) refuse(text, expected);
+    return std::llround(number);
+}
+
+double parse_share(const std::string& text) {
+    std::string_view rest = text;
+    double number = 0;
+    bool parsed = take_number(rest, number);
+    if (parsed && take(rest, '%')) number /= 100;
+    if (!parsed || !rest.empty() || !(number > 0 && number < 1))
+        refuse(text, "a share between 0 and 1, such as 2% or 0.02");
+    return number;
+}
+
+V3f parse_vector(const std::string& text) {
+    std::string_view rest = text;
+    double x = 0, y = 0, z = 0;
+    const bool parsed = take_number(rest, x) && take(rest, ',') && take_number(rest, y) && take(rest, ',') &&
+                        take_number(rest, z) && rest.empty();
+    const V3f v(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+    if (!parsed || !is_finite(v)) refuse(text, "three numbers with commas between, such as 1,2.5,-3");
+    return v;
+}
+
+Size parse_size(const std::string& text) {
+    std::string_view rest = text;
+    double width = 0, height = 0;
+    const bool parsed = take_number(rest, width) && take(rest, 'x') && take_number(rest, height) && rest.empty();
+    const auto fits = [](double n) { return n >= 1 && n <= 32768 && n == std::floor(n); };
+    if (!parsed || !fits(width) || !fits(height)) refuse(text, "WIDTHxHEIGHT, such as 640x360, each from 1 to 32768");
+    return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,88 @@
+#include "apps/interflect/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+namespace interflect::command {
+
+namespace {
+
+constexpr int bar_width = 24;
+constexpr double seconds_between_lines = 2;  // where stderr is no terminal
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
+
+extern "C" void request_stop(int signal) {
+    stop_requested = true;
+    std::signal(signal, SIG_DFL);  // a second one ends the process
+}
+
+}  // namespace
+
+StopOnInterrupt::StopOnInterrupt() {
+    stop_requested = false;
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+}
+
+StopOnInterrupt::~StopOnInterrupt() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+}
+
+const std::atomic<bool>& StopOnInterrupt::flag() { return stop_requested; }
+
+std::string duration(double seconds) {
+    if (seconds < 60) return fmt::format("{:.1f} s", seconds);
+    const auto whole = static_cast<std::int64_t>(std::min(seconds, 1e15));
+    if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+    return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string magnitude(double number) {
+    for (const char* suffix : {"", " k", " M", " G"}) {
+        if (number < 999.5) return fmt::format(*suffix ? "{:.1f}{}" : "{:.0f}{}", number, suffix);
+        number /= 1000;
+    }
+    return fmt::format("{:.1f} T", number);
+}
+
+double fraction_done(const SolveOptions& options, const IterationReport& report) {
+    double fraction = static_cast<double>(report.rays) / static_cast<double>(options.rays);
+    if (std::isfinite(options.seconds)) fraction = std::max(fraction, report.seconds / options.seconds);
+    if (options.until > 0) fraction = std::max(fraction, std::pow(options.until / report.error_estimate, 2));
+    return std::clamp(fraction, 0.0, 1.0);
+}
+
+ProgressBar::ProgressBar(const SolveOptions& options) : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+    if (terminal_) fmt::print(stderr, "\n");
+}
+
+void ProgressBar::show(const IterationReport& r) {
+    const double fraction = fraction_done(options_, r);
+    if (!terminal_ && fraction < 1 && r.seconds < last_shown_ + seconds_between_lines) return;
+    last_shown_ = r.seconds;
+    const std::string error =
+        std::isfinite(r.error_estimate) ? fmt::format("{:.2g}%", 100 * r.error_estimate) : std::string("-");
+    const std::string left = fraction > 0 ? duration(r.seconds / fraction * (1 - fraction)) : std::string("-");
+    const std::string text = fmt::format(
+        "{:3.0f}%  {} rays, {}/s, error {}, {} left", 100 * fraction, magnitude(static_cast<double>(r.rays)),
+        magnitude(static_cast<double>(r.rays) / std::max(r.seconds, 1e-9)), error, left);
+    if (!terminal_) {
+        fmt::print(stderr, "{}\n", text);
+        return;
+    }
+    const auto filled = static_cast<std::size_t>(std::lround(bar_width * fraction));
+    fmt::print(stderr, "\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text);
+    std::fflush(stderr);
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "interflect/solver/solve.h"
+
+namespace interflect::command {
+
+/// Until the end of its scope, the first Ctrl-C (or SIGTERM) sets a flag instead of ending the process; the second ends
+/// it.
+class StopOnInterrupt {
+  public:
+    StopOnInterrupt();
+    ~StopOnInterrupt();
+    StopOnInterrupt(const StopOnInterrupt&) = delete;
+    StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+    static const std::atomic<bool>& flag();
+};
+
+/// Shows how far a solve is, on stderr: one line that is written over on a terminal, else a line now and then.
+class ProgressBar {
+  public:
+    explicit ProgressBar(const SolveOptions& options);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+    void show(const IterationReport& report);
+
+  private:
+    SolveOptions options_;
+    bool terminal_;
+    double last_shown_ = -1e9;  // [s]
+};
+
+/// Share of the work that is done, by whichever limit comes first, in [0, 1].
+double fraction_done(const SolveOptions& options, const IterationReport& report);
+
+/// "3.5 s", "2 min 10 s", "1 h 5 min".
+std::string duration(double seconds);
+/// "950", "1.5 k", "20.0 M".
+std::string magnitude(double number);
+
+}  // namespace interflect::command

@@ -1,0 +1,103 @@
+#include "apps/interflect/run_solve.h"
+
+#include <spdlog/spdlog.h>
+#include <tbb/info.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apps/interflect/progress.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const RgbD& c) { return Json::array({c.x, c.y, c.z}); }
+
+Json header_of(const Scene& scene, const SolverOptions& command, const SolveOptions& o, const RgbD& emitted_power) {
+    double area = 0;
+    for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
+    const auto limit = [](bool given, auto value) { return given ? Json(value) : Json(nullptr); };
+    const Json options{{"rays", limit(o.rays < std::numeric_limits<std::int64_t>::max(), o.rays)},
+                       {"seconds", limit(std::isfinite(o.seconds), o.seconds)},
+                       {"until", limit(o.until > 0, o.until)},
+                       {"points", o.points == PointSet::sobol ? "sobol" : "random"},
+                       {"incremental_start", o.incremental_start},
+                       {"warm_up", o.warm_up},
+                       {"iterations", o.iterations},
+                       {"rays_per_iteration", o.rays_per_iteration}};
+    return {{"scene", scene.name},
+            {"method", command.method},
+            {"options", options},
+            {"seed", o.seed},
+            {"threads", command.threads > 0 ? command.threads : tbb::info::default_concurrency()},
+            {"version", INTERFLECT_VERSION},
+            {"patches", scene.patches.size()},
+            {"area", area},
+            {"emitted_power", json_of(emitted_power)}};
+}
+
+Json line_of(const IterationReport& r, std::size_t patches) {
+    return {{"iteration", r.iteration},
+            {"seconds", r.seconds},
+            {"rays", r.rays},
+            {"power_rays", r.rays},
+            {"importance_rays", 0},
+            {"elements", patches},
+            {"leaves", patches},
+            {"total_power", json_of(r.total_power)},
+            {"escaped_power", json_of(r.escaped_power)},
+            {"error_estimate", std::isfinite(r.error_estimate) ? Json(r.error_estimate) : Json(nullptr)}};
+}
+
+void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& command, const Solution& solution) {
+    std::ofstream out(file.temporary_path());
+    out << header_of(scene, command, solution.options, solution.emitted_power).dump() << '\n';
+    for (const IterationReport& r : solution.iterations) out << line_of(r, scene.patches.size()).dump() << '\n';
+    if (!out.flush()) throw std::runtime_error("cannot write " + file.final_path().string());
+    file.commit();
+}
+
+void log_outcome(const Solution& solution) {
+    if (!(channel_sum(solution.emitted_power) > 0))
+        spdlog::warn("nothing in the scene emits light: everything is black");
+    if (solution.non_finite > 0)
+        spdlog::warn("{} powers were not finite and were left out: the result is not to be trusted",
+                     solution.non_finite);
+    if (solution.iterations.empty()) return;
+    const IterationReport& last = solution.iterations.back();
+    spdlog::info("{} rays in {}{}{}", magnitude(static_cast<double>(last.rays)), duration(last.seconds),
+                 std::isfinite(last.error_estimate)
+                     ? fmt::format(", estimated relative error {:.2g}%", 100 * last.error_estimate)
+                     : "",
+                 last.escaped_rays > 0
+                     ? fmt::format(", {:.2g}% of the rays left the scene",
+                                   100.0 * static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays))
+                     : "");
+}
+
+}  // namespace
+
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolverOptions& command) {
+    std::optional<PendingFile> stats;
+    if (!command.stats.empty()) stats.emplace(command.stats);
+    const SolveOptions options = command.resolved();
+    Solution solution;
+    {
+        const StopOnInterrupt stop_on_interrupt;
+        ProgressBar bar(options);
+        const Monitor monitor{[&](const IterationReport& report) { bar.show(report); }, &StopOnInterrupt::flag()};
+        solution = solve(scene, ray_caster, options, monitor);
+    }
+    log_outcome(solution);
+    if (stats) write_stats(*stats, scene, command, solution);
+    return solution;
+}
+
+}  // namespace interflect::command

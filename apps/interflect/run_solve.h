@@ -1,0 +1,12 @@
+#pragma once
+
+#include "apps/interflect/shared_options.h"
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect::command {
+
+/// Solves with progress on stderr, Ctrl-C heeded and statistics written: what `solve` and `render` share.
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolverOptions& options);
+
+}  // namespace interflect::command

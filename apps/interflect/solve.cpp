@@ -1,0 +1,39 @@
+#include <memory>
+
+#include "apps/interflect/commands.h"
+#include "apps/interflect/run_solve.h"
+#include "apps/interflect/threads.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/exports/solution_file.h"
+
+namespace interflect::command {
+
+void add_solve(CLI::App& app, int& exit_code) {
+    struct Options {
+        SceneOptions scene;
+        ViewOptions view;
+        SolverOptions solver;
+        std::filesystem::path output;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *app.add_subcommand("solve", "Find the light on the surfaces of a scene");
+    options->scene.add_to(command);
+    command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required();
+    options->solver.add_to(command);
+    options->view.add_to(command);
+    command.callback([options, &exit_code] {
+        const ThreadLimit threads(options->solver.threads);
+        PendingFile output(options->output);
+        Scene scene = options->scene.load();
+        // What was asked for comes first: `render` takes the first view of a solution.
+        const std::vector<View> views = options->view.views(scene);
+        const RayCaster ray_caster(scene);
+        const Solution solution = run_solve(scene, ray_caster, options->solver);
+        scene.views.insert(scene.views.begin(), views.begin(), views.end());
+        write_solution(output.temporary_path(), scene, solution);
+        output.commit();
+        if (solution.interrupted) exit_code = interrupted;
+    });
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <tbb/global_control.h>
+
+#include <optional>
+
+namespace interflect::command {
+
+/// Limits the threads that work at the same time, while it lives; 0 sets no limit.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int threads) {
+        if (threads > 0)
+            control_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    }
+
+  private:
+    std::optional<tbb::global_control> control_;
+};
+
+}  // namespace interflect::command

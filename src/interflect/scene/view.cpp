@@ -1,0 +1,36 @@
+#include "interflect/scene/view.h"
+
+#include <ImathBox.h>
+
+#include <algorithm>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+
+const View& find_view(const Scene& scene, const std::string& name) {
+    const auto view =
+        std::find_if(scene.views.begin(), scene.views.end(), [&](const View& v) { return v.name == name; });
+    if (view != scene.views.end()) return *view;
+    std::string known;
+    for (const View& v : scene.views) known += (known.empty() ? "" : ", ") + v.name;
+    throw InputError(scene.name, 0,
+                     "there is no view '" + name + "'; " +
+                         (known.empty() ? "the file names none, give --eye and --look-at" : "it names: " + known));
+}
+
+View overview(const Scene& scene) {
+    constexpr float margin = 0.06f;  // of the box, so that the eye is not inside a wall
+    constexpr float wide = 60;       // [degrees]
+    Imath::Box3f box;
+    for (const Patch& patch : scene.patches)
+        for (int k = 0; k < patch.vertex_count(); ++k) box.extendBy(scene.vertices[patch.vertices[k]]);
+    View view;
+    view.name = "overview";
+    view.eye = box.min + box.size() * V3f(margin, margin, 0.7f);
+    view.look_at = box.center();
+    view.fov = wide;
+    return view;
+}
+
+}  // namespace interflect
