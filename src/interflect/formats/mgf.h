@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "interflect/formats/read_options.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// Reads a scene in the Materials and Geometry Format, version 2.0 (Ward 1996, http://radsite.lbl.gov/mgf/).
+///
+/// All entities are understood:
+/// * `f fh sph torus cyl cone ring prism` become patches (add_polygon), curved ones with options.curve_divisions pieces
+///   per quarter circle, at the transform in force; a mirror image keeps its front outside. One patch a face where the
+///   material has `sides 1`, else two. Faces that meet at exactly the same position share a vertex. Vertex normals
+///   (`n`) orient rings and tori and are not kept otherwise.
+/// * `c cxy cspec cct cmix` give colours in linear Rec. 709 as to_rec709() has it; MGF's neutral is R = G = B.
+/// * `rd` and `ed` [lm/m^2] become reflectance, each channel at most 0.99, and exitance. `rs td ts` are left out:
+///   warnings "specular-reflection", "diffuse-transmission", "specular-transmission" tell the share. `ir` is checked
+///   only.
+/// * `o` names objects, nested names with dots; the copies of an array are objects "a0", "a1" ..., or "a0.0" ...
+/// * `xf` and `i`: transforms, arrays, files, the latter relative to the including file. Contexts are not local to a
+/// file.
+/// * `ies` and unknown entities are skipped with a warning.
+///
+/// Scene::files lists the files read. Warnings are counted under these kinds: "unsupported-entity", "ies",
+/// "reflectance-clamped", "out-of-gamut", "degenerate-face", "unbalanced-object", "unclosed-object",
+/// "unclosed-transform" and those above. Time and memory are linear in the text, with arrays written out.
+///
+/// @throws InputError  with file, line and what was expected, where a file cannot be read, an entity lacks arguments,
+/// has a
+///         number that is not finite in single precision or out of its range, names what is not defined, or goes beyond
+///         a limit of `options`; where a face names fewer than three different vertices; where a file includes itself;
+///         where no face with an area is left.
+Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The same from memory. @param path  Name for messages; its folder is where includes are looked for.
+Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace interflect

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+
+#include "interflect/base/colour.h"
+
+namespace interflect {
+
+/// CIE 1931 chromaticity; the default is MGF's neutral, that of a spectrum of equal energy (illuminant E).
+struct Chromaticity {
+    double x = 1.0 / 3, y = 1.0 / 3;
+};
+
+/// The chromaticity of a spectrum: values at equal steps of wavelength from `first` to `last` [nm], interpolated
+/// linearly, zero elsewhere; only 380 to 780 nm counts. A flat spectrum over that range gives exactly neutral.
+/// @param values  Two or more, in any unit.
+/// @throws std::invalid_argument  where first >= last, or the spectrum does not sum to positive tristimulus values.
+Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const double> values);
+
+/// The chromaticity of a black body. @param kelvin  At least 1000, as MGF has it. @throws std::invalid_argument below.
+Chromaticity chromaticity_of_black_body(double kelvin);
+
+/// One part of a mixture.
+struct MixedColour {
+    double weight = 0;  ///< Share of the luminance, >= 0; need not sum to 1.
+    Chromaticity colour;
+};
+
+/// MGF's mixture: weights are of luminance, whether the parts were given as spectra or chromaticities, so that only the
+/// parts' chromaticities matter. @throws std::invalid_argument where a weight is negative or all are zero.
+Chromaticity mix(std::span<const MixedColour> parts);
+
+/// A colour brought into linear Rec. 709, and what had to be given up for it.
+struct Rec709Colour {
+    Rgb rgb{0, 0, 0};
+    bool out_of_gamut = false;  ///< The chromaticity lies outside Rec. 709's triangle: desaturated.
+    bool too_bright = false;  ///< A channel would exceed `largest`: desaturated, or darkened where that is not enough.
+};
+
+/// Linear Rec. 709 of luminance `luminance` and the given chromaticity.
+///
+/// MGF's neutral must become R = G = B, but Rec. 709's white is D65 (0.3127, 0.3290). So XYZ, scaled to Y = 1, is
+/// adapted from illuminant E to D65 with the linear Bradford transform (Lam 1985): XYZ' = B^-1 diag(B W_D65 / B W_E) B
+/// XYZ, where W_E = (1, 1, 1); then the matrix of Rec. 709's primaries is applied. Both are linear, and E goes to (1,
+/// 1, 1).
+///
+/// What lies outside [0, `largest`] is mixed with neutral just as far as needed, at constant luminance: MGF gives
+/// reflectance and exitance as luminous quantities (rd, ed), and interflection must keep those. So always
+/// luminance(rgb) == min(luminance, largest), up to rounding.
+/// @param luminance  rd, or ed [lm/m^2]; >= 0.
+/// @param largest    Upper bound of every channel: 0.99 for a reflectance, infinite for an exitance.
+Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double largest);
+
+}  // namespace interflect

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <unordered_map>
+
+#include "interflect/formats/mgf_colour.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// The named contexts of one kind (colours, materials or vertices), and which of them is current. A default-constructed
+/// Context is MGF's default. Names are views of the text that was read, which must outlive the table.
+template <class Context>
+class ContextTable {
+  public:
+    /// @param kind  For error messages: "vertex".
+    ContextTable(std::string_view kind, std::size_t max_name_length) : kind_(kind), max_name_length_(max_name_length) {}
+
+    Context& current() { return *current_; }
+    std::string_view current_name() const { return current_name_; }  ///< Empty for the unnamed context.
+
+    /// @throws std::invalid_argument  where the name is not defined.
+    Context& find(std::string_view name) {
+        const auto entry = named_.find(name);
+        if (entry == named_.end()) throw std::invalid_argument(fmt::format("{} '{}' is not defined", kind_, name));
+        return entry->second;
+    }
+
+    /// What follows the entity's keyword: nothing (a fresh unnamed context), `name` (back to that context), `name =` (a
+    /// fresh one of that name) or `name = template` (a copy). @throws std::invalid_argument
+    void enter(std::span<const std::string_view> words) {
+        if (words.empty()) {
+            unnamed_ = Context{};
+            current_ = &unnamed_;
+            current_name_ = {};
+            return;
+        }
+        const std::string_view name = words[0];
+        if (words.size() > 1) {
+            if (words[1] != "=")
+                throw std::invalid_argument(fmt::format("expected '=' after '{}', not '{}'", name, words[1]));
+            require_name(name);
+            Context content = words.size() > 2 ? find(words[2]) : Context{};
+            named_.insert_or_assign(name, std::move(content));
+        }
+        current_ = &find(name);
+        current_name_ = name;
+    }
+
+  private:
+    void require_name(std::string_view name) const {
+        if (name.size() > max_name_length_)
+            throw std::invalid_argument(
+                fmt::format("a name of {} characters; at most {} are read", name.size(), max_name_length_));
+        // '-' separates the loops of a face with holes, and a lone '=' is a name forgotten.
+        if (name[0] == '-' || name == "=") throw std::invalid_argument(fmt::format("'{}' cannot be a name", name));
+    }
+
+    std::string_view kind_;
+    std::size_t max_name_length_;
+    std::unordered_map<std::string_view, Context> named_;
+    Context unnamed_;
+    Context* current_ = &unnamed_;  // elements of an unordered_map stay where they are
+    std::string_view current_name_;
+};
+
+/// A place in a file, for messages.
+struct Location {
+    const std::filesystem::path* file = nullptr;
+    std::int64_t line = 0;
+    std::string text() const { return file ? fmt::format("{}:{}", file->string(), line) : std::string(); }
+};
+
+/// MGF's material; black and two-sided by default. Reflectances, transmittances: luminous, 0 to 1.
+struct MgfMaterial {
+    bool two_sided = true;
+    double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular reflectance and transmittance.
+    double ed = 0;                          ///< Exitance [lm/m^2].
+    Chromaticity rd_colour, ed_colour;
+    Location defined;                  ///< The last line that changed it.
+    std::uint32_t scene_index = none;  ///< In Scene::materials, once a face has used it as it is.
+};
+
+/// MGF's vertex.
+struct MgfVertex {
+    Imath::V3d point{0, 0, 0};
+    Imath::V3d normal{0, 0, 0};  ///< Unit length, or zero where none is given.
+};
+
+}  // namespace interflect

@@ -1,0 +1,120 @@
+#include "interflect/formats/mgf_scene_builder.h"
+
+#include <limits>
+
+#include "interflect/base/error.h"
+#include "interflect/scene/polygon.h"
+
+namespace interflect {
+
+namespace {
+
+/// Interflection between surfaces that lose nothing would never end; real files do have reflectances of 1.
+constexpr double largest_reflectance = 0.99;
+
+/// Equal for materials that look the same and are called the same, however often a file defines them.
+std::string identity(const Material& m) {
+    std::string key = m.name;
+    for (const Rgb& c : {m.reflectance, m.exitance}) key.append(reinterpret_cast<const char*>(&c), sizeof c);
+    return key;
+}
+
+}  // namespace
+
+MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options)
+    : options_(options), weld_(scene_) {
+    scene_.name = file.string();
+    scene_.objects.emplace_back();
+    object_index_.emplace("", 0);
+}
+
+void MgfSceneBuilder::warn(const std::string& kind, const std::string& message, const Location& where) {
+    scene_.warnings.add(kind, message, where.text());
+}
+
+void MgfSceneBuilder::require_room(double patches) const {
+    if (static_cast<double>(scene_.patches.size()) + patches > static_cast<double>(options_.max_patches))
+        throw std::invalid_argument(
+            fmt::format("this would give more than {} patches; --max-patches raises the limit", options_.max_patches));
+}
+
+std::uint32_t MgfSceneBuilder::vertex(const Imath::V3d& position) {
+    const V3f single(position);
+    if (!is_finite(single))
+        throw std::invalid_argument(fmt::format("the transformed point ({}, {}, {}) is not finite in single precision",
+                                                position.x, position.y, position.z));
+    return weld_.vertex(single);
+}
+
+Rgb MgfSceneBuilder::reflectance(const MgfMaterial& material) {
+    const Rec709Colour colour = to_rec709(material.rd_colour, material.rd, largest_reflectance);
+    if (colour.too_bright)
+        warn("reflectance-clamped",
+             "diffuse reflectance above 0.99, at least in one colour channel, is reduced to 0.99", material.defined);
+    if (colour.out_of_gamut && material.rd > 0)
+        warn("out-of-gamut", "colour outside Rec. 709 is desaturated, its luminance is kept", material.defined);
+    return colour.rgb;
+}
+
+Rgb MgfSceneBuilder::exitance(const MgfMaterial& material) {
+    const Rec709Colour colour = to_rec709(material.ed_colour, material.ed, std::numeric_limits<float>::max());
+    if (colour.too_bright)
+        throw std::invalid_argument(
+            fmt::format("the exitance of {} lm/m2 is not finite in single precision", material.ed));
+    if (colour.out_of_gamut && material.ed > 0)
+        warn("out-of-gamut", "colour outside Rec. 709 is desaturated, its luminance is kept", material.defined);
+    return colour.rgb;
+}
+
+std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view name) {
+    if (material.scene_index != none) return material.scene_index;
+    const Material converted{std::string(name), reflectance(material), exitance(material)};
+    const auto [entry, is_new] =
+        material_index_.try_emplace(identity(converted), static_cast<std::uint32_t>(scene_.materials.size()));
+    if (is_new) {
+        scene_.materials.push_back(converted);
+        used_materials_.push_back(material);
+    }
+    return material.scene_index = entry->second;
+}
+
+std::uint32_t MgfSceneBuilder::object(const std::string& name) {
+    const auto [entry, is_new] = object_index_.try_emplace(name, static_cast<std::uint32_t>(scene_.objects.size()));
+    if (is_new) scene_.objects.push_back(name);
+    return entry->second;
+}
+
+void MgfSceneBuilder::add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
+                               std::uint32_t object, bool two_sided, const Location& where) {
+    require_room(two_sided ? 2 : 1);
+    if (add_polygon(scene_, loops, material, object, two_sided) == PolygonResult::degenerate)
+        warn("degenerate-face", "face without area is left out", where);
+    require_room(0);  // one face may have become many patches
+}
+
+void MgfSceneBuilder::warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share) {
+    double lost = 0, all = 0;
+    for (const MgfMaterial& m : used_materials_) {
+        lost += m.*share;
+        all += m.rd + m.td + m.rs + m.ts;
+    }
+    if (!(lost > 0)) return;
+    const std::string message = fmt::format(
+        "{} is left out: {:.1f}% of all that the materials in use reflect and transmit (mean over materials, not "
+        "areas)",
+        what, 100 * lost / all);
+    for (const MgfMaterial& m : used_materials_)
+        if (m.*share > 0) warn(kind, message, m.defined);
+}
+
+Scene MgfSceneBuilder::finish() {
+    if (scene_.patches.empty())
+        throw InputError(scene_.name, 0,
+                         "no usable face is left: the scene is empty, or none of its faces has an area");
+    warn_of_lost("specular-reflection", "specular reflectance (rs)", &MgfMaterial::rs);
+    warn_of_lost("diffuse-transmission", "diffuse transmittance (td)", &MgfMaterial::td);
+    warn_of_lost("specular-transmission", "specular transmittance (ts)", &MgfMaterial::ts);
+    return std::move(scene_);
+}
+
+}  // namespace interflect

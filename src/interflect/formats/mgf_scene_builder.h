@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "interflect/formats/mgf_contexts.h"
+#include "interflect/formats/read_options.h"
+#include "interflect/formats/vertex_weld.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// Turns what an MGF file says, already in world coordinates, into a Scene: welds vertices, converts materials when a
+/// face first uses them, names objects, and counts what diffuse light transport leaves out. Functions throw
+/// std::invalid_argument, with a sentence, where the file asks for what cannot be.
+class MgfSceneBuilder {
+  public:
+    MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options);
+
+    void warn(const std::string& kind, const std::string& message, const Location& where);
+    void add_file(const std::filesystem::path& file) { scene_.files.push_back(file.string()); }
+
+    std::uint64_t patch_count() const { return scene_.patches.size(); }
+    /// @throws std::invalid_argument  where `patches` more would pass the limit.
+    void require_room(double patches) const;
+
+    /// Index of the vertex at `position` [m].
+    std::uint32_t vertex(const Imath::V3d& position);
+    /// Index of the material; remembers it in `material`.
+    std::uint32_t material(MgfMaterial& material, std::string_view name);
+    /// Index of the object with this dotted name.
+    std::uint32_t object(const std::string& name);
+    /// Adds a face; one without area is a counted warning.
+    void add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
+                  bool two_sided, const Location& where);
+
+    /// Adds the warnings that need the whole, and hands over the scene. @throws InputError where it has no patch.
+    Scene finish();
+
+  private:
+    Rgb reflectance(const MgfMaterial& material);
+    Rgb exitance(const MgfMaterial& material);
+    void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
+
+    Scene scene_;
+    ReadOptions options_;
+    VertexWeld weld_;
+    std::unordered_map<std::string, std::uint32_t> material_index_, object_index_;
+    std::vector<MgfMaterial> used_materials_;  // one for each of scene_.materials
+};
+
+}  // namespace interflect

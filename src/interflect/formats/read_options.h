@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace interflect {
+
+/// How a scene is read, and how much a file may ask for: whatever goes beyond a limit is an InputError that names the
+/// option, found before the memory is taken.
+struct ReadOptions {
+    int curve_divisions = 4;                 ///< Flat pieces per quarter circle of a curved surface, 1 to 1000.
+    std::uint64_t max_patches = 50'000'000;  ///< Patches in all, at most 4 * 10^9; also bounds the work of arrays.
+    int max_include_depth = 32;              ///< Files that include files; 0 refuses every include.
+    int max_nesting = 1000;                  ///< Open transforms, and open objects.
+    std::size_t max_line_length = 1 << 16;   ///< Characters, continued lines together.
+    std::size_t max_face_vertices = 1024;    ///< Twice what MGF's own parser takes; loops that cross cost its square.
+    std::size_t max_name_length = 256;       ///< Characters of one name; four times that for a dotted object name.
+};
+
+}  // namespace interflect

@@ -1,0 +1,54 @@
+#include "interflect/formats/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_binary(char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool white_space = byte == ' ' || (byte >= '\t' && byte <= '\r');
+    return (byte < 0x20 && !white_space) || byte == 0x7f;
+}
+
+}  // namespace
+
+void require_text(std::string_view text, const fs::path& path) {
+    const auto junk = std::find_if(text.begin(), text.end(), is_binary);
+    if (junk == text.end()) return;
+    throw InputError(path, 1 + std::count(text.begin(), junk, '\n'),
+                     fmt::format("this is not a text file: it has a byte 0x{:02x} at offset {}",
+                                 static_cast<unsigned char>(*junk), junk - text.begin()));
+}
+
+void require_regular_file(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) throw InputError(path, 0, "there is no such file");
+    if (fs::is_directory(status)) throw InputError(path, 0, "this is a folder, not a file");
+    if (!fs::is_regular_file(status)) throw InputError(path, 0, "this is not a regular file");
+}
+
+std::string read_text_file(const fs::path& path) {
+    require_regular_file(path);
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    std::ifstream file(path, std::ios::binary);
+    if (error || !file) throw InputError(path, 0, "the file cannot be opened for reading");
+    std::string text(static_cast<std::size_t>(size), '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (file.gcount() != static_cast<std::streamsize>(text.size()))
+        throw InputError(path, 0, fmt::format("only {} of {} bytes could be read", file.gcount(), text.size()));
+    require_text(text, path);
+    return text;
+}
+
+}  // namespace interflect

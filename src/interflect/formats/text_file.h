@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace interflect {
+
+/// Reads a whole file of text.
+/// @throws InputError where the path is missing, a folder or otherwise no regular file, cannot be read, or holds
+/// control
+///         characters other than white space (then it is not text; the error names the line).
+std::string read_text_file(const std::filesystem::path& path);
+
+/// The checks of the path alone.
+void require_regular_file(const std::filesystem::path& path);
+
+/// The check for control characters alone. @param path  Named in the error.
+void require_text(std::string_view text, const std::filesystem::path& path);
+
+}  // namespace interflect

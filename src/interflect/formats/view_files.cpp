@@ -1,0 +1,200 @@
+#include "interflect/formats/view_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "interflect/base/error.h"
+#include "interflect/formats/line_reader.h"
+#include "interflect/formats/number.h"
+#include "interflect/formats/text_file.h"
+
+namespace interflect {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using nlohmann::json;
+
+/// What is wrong with a view, or nullptr: it needs a direction, an up that is not along it, and an opening.
+const char* fault_of(const View& view) {
+    const Imath::V3d direction = Imath::V3d(view.look_at) - Imath::V3d(view.eye), up(view.up);
+    constexpr double parallel = 1e-6;  // sine of the angle
+    if (!(direction.length() > 0)) return "the eye is where it looks at";
+    if (!(up.length() > 0)) return "up has no length";
+    if (!(up.normalized().cross(direction.normalized()).length() > parallel))
+        return "up is along the direction of view";
+    if (!(view.fov > 0 && view.fov < 180)) return "the field of view is not between 0 and 180 degrees";
+    return nullptr;
+}
+
+// ---- JSON
+
+/// Reads the members of one JSON object, each at most once, and complains about those nobody asked for.
+class Members {
+  public:
+    Members(const json& object, std::string where, const fs::path& file)
+        : object_(object), where_(std::move(where)), file_(file) {
+        if (!object.is_object()) fail("expected an object");
+    }
+
+    [[noreturn]] void fail(const std::string& message) const { throw InputError(file_, 0, where_ + ": " + message); }
+
+    /// nullptr where there is no such member.
+    const json* find(const std::string& key) {
+        asked_for_.insert(key);
+        const auto member = object_.find(key);
+        return member == object_.end() ? nullptr : &*member;
+    }
+    const json& require(const std::string& key) {
+        const json* const member = find(key);
+        if (!member) fail(fmt::format("'{}' is missing", key));
+        return *member;
+    }
+    float number(const json& value, const std::string& key) const {
+        const double number = value.is_number() ? value.get<double>() : NAN;
+        if (!std::isfinite(static_cast<float>(number))) fail(fmt::format("'{}' must be made of finite numbers", key));
+        return static_cast<float>(number);
+    }
+    V3f vector(const json& value, const std::string& key) const {
+        if (!value.is_array() || value.size() != 3) fail(fmt::format("'{}' must be [x, y, z]", key));
+        return {number(value[0], key), number(value[1], key), number(value[2], key)};
+    }
+    void reject_others() const {
+        for (const auto& [key, value] : object_.items())
+            if (!asked_for_.contains(key))
+                fail(fmt::format("unknown key '{}'; there are {}", key, fmt::join(asked_for_, ", ")));
+    }
+
+  private:
+    const json& object_;
+    std::string where_;
+    const fs::path& file_;
+    std::set<std::string> asked_for_;
+};
+
+json parse_json(const fs::path& path) {
+    const std::string text = read_text_file(path);
+    try {
+        return json::parse(text);
+    } catch (const json::parse_error& error) {
+        const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+        throw InputError(path, 1 + std::count(text.begin(), end, '\n'), fmt::format("no valid JSON: {}", error.what()));
+    }
+}
+
+View parse_view(const json& value, std::size_t index, const fs::path& path) {
+    Members members(value, fmt::format("view {}", index + 1), path);
+    View view;
+    const json& name = members.require("name");
+    if (!name.is_string() || name.get<std::string>().empty()) members.fail("'name' must be a text");
+    view.name = name.get<std::string>();
+    view.eye = members.vector(members.require("eye"), "eye");
+    view.look_at = members.vector(members.require("look_at"), "look_at");
+    if (const json* up = members.find("up")) view.up = members.vector(*up, "up");
+    if (const json* fov = members.find("fov")) view.fov = members.number(*fov, "fov");
+    members.reject_others();
+    if (const char* fault = fault_of(view)) members.fail(fault);
+    return view;
+}
+
+// ---- Radiance
+
+/// The options of a view file that are understood, and what is wrong with the others.
+class RadianceView {
+  public:
+    /// Takes the option at the front of `words`, and returns the rest.
+    std::span<const std::string_view> take(std::span<const std::string_view> words);
+    View view() const {
+        View view;
+        view.eye = V3f(eye_);
+        view.look_at = V3f(eye_ + direction_);
+        view.up = V3f(up_);
+        view.fov = static_cast<float>(vertical_);
+        return view;
+    }
+
+  private:
+    using Fault = std::invalid_argument;
+    Imath::V3d eye_{0, 0, 0}, direction_{0, 1, 0}, up_{0, 0, 1};
+    double vertical_ = 45;
+};
+
+std::span<const std::string_view> RadianceView::take(std::span<const std::string_view> words) {
+    const std::string_view option = words[0];
+    const auto number = [&](std::size_t i) {
+        const auto value = i < words.size() ? parse_number(words[i]) : std::nullopt;
+        if (!value) throw Fault(fmt::format("{} lacks a finite number", option));
+        return *value;
+    };
+    const auto vector = [&] { return Imath::V3d(number(1), number(2), number(3)); };
+    if (option.starts_with("-vt")) {
+        if (option != "-vtv") throw Fault(fmt::format("'{}': only perspective views (-vtv) are understood", option));
+        return words.subspan(1);
+    }
+    if (option == "-vp" || option == "-vd" || option == "-vu") {
+        (option == "-vp" ? eye_ : option == "-vd" ? direction_ : up_) = vector();
+        return words.subspan(4);
+    }
+    if (option == "-vv" || option == "-vh") {
+        const double degrees = number(1);
+        if (option == "-vv") vertical_ = degrees;
+        return words.subspan(2);
+    }
+    if (option == "-vs" || option == "-vl" || option == "-vo" || option == "-va") {
+        if (number(1) != 0)
+            throw Fault(fmt::format("{} must be 0: views have no shift, lift or clipping plane", option));
+        return words.subspan(2);
+    }
+    throw Fault(fmt::format("'{}' is no option of a view", option));
+}
+
+bool starts_a_view(std::string_view word) { return !word.starts_with('-') && !parse_number(word); }
+
+}  // namespace
+
+fs::path view_list_path(const fs::path& scene_path) { return fs::path(scene_path).replace_extension(".views.json"); }
+
+std::vector<View> read_view_list(const fs::path& path) {
+    const json document = parse_json(path);
+    Members members(document, "the file", path);
+    const json& list = members.require("views");
+    if (!list.is_array()) members.fail("'views' must be a list");
+    members.reject_others();
+    std::vector<View> views;
+    std::set<std::string> names;
+    for (const json& value : list) {
+        views.push_back(parse_view(value, views.size(), path));
+        if (!names.insert(views.back().name).second)
+            throw InputError(path, 0,
+                             fmt::format("view {}: there is another view '{}'", views.size(), views.back().name));
+    }
+    return views;
+}
+
+View read_radiance_view(const fs::path& path) {
+    const std::string text = read_text_file(path);
+    LineReader lines(text);
+    RadianceView radiance_view;
+    bool found = false;
+    while (lines.next()) try {
+            std::span<const std::string_view> words = lines.words();
+            // The name of the program that wrote the view, such as rvu, or VIEW=.
+            if (starts_a_view(words[0])) words = words.subspan(1);
+            for (found |= !words.empty(); !words.empty();) words = radiance_view.take(words);
+        } catch (const std::invalid_argument& fault) {
+            throw InputError(path, lines.line(), fault.what());
+        }
+    if (!found)
+        throw InputError(path, 0, "this is no view: expected 'rvu -vtv -vp x y z -vd x y z -vu x y z -vh h -vv v'");
+    View view = radiance_view.view();
+    view.name = path.stem().string();
+    if (const char* fault = fault_of(view)) throw InputError(path, 0, fault);
+    return view;
+}
+
+}  // namespace interflect
