@@ -1,0 +1,57 @@
+#include "interflect/image/camera.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+
+namespace {
+
+/// Sine of the angle between `up` and the direction of view below which the picture's upright is rounding error.
+constexpr double smallest_up_sine = 1e-5;
+
+using V3d = Imath::V3d;
+
+std::string text(const V3f& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+
+[[noreturn]] void refuse(const View& view, const std::string& fault) {
+    throw InputError(fmt::format("view '{}': {}", view.name, fault));
+}
+
+void require_usable(const View& view) {
+    if (!is_finite(view.eye) || !is_finite(view.look_at) || !is_finite(view.up))
+        refuse(view, fmt::format("eye {}, look-at {} and up {} must be finite", text(view.eye), text(view.look_at),
+                                 text(view.up)));
+    if (!(view.fov > 0 && view.fov < 180))
+        refuse(view, fmt::format("the vertical field of view is {} degrees, expected more than 0 and less than 180",
+                                 view.fov));
+    if (view.eye == view.look_at)
+        refuse(view, fmt::format("eye and look-at are the same point {}, so there is no direction to look in",
+                                 text(view.eye)));
+}
+
+}  // namespace
+
+Camera::Camera(const View& view, int width, int height) : eye_(view.eye) {
+    require_usable(view);
+    if (width < 1 || height < 1)
+        throw InputError(fmt::format("a picture of {} x {} pixels: expected at least 1 x 1", width, height));
+
+    const V3d forward = (V3d(view.look_at) - V3d(view.eye)).normalized();
+    const V3d right = forward.cross(V3d(view.up).normalized());
+    if (!(right.length() > smallest_up_sine))
+        refuse(view, fmt::format("up {} is zero or parallel to the direction from eye to look-at", text(view.up)));
+    const V3d right_unit = right.normalized(), up = right_unit.cross(forward);
+
+    const double half_height = std::tan(0.5 * view.fov * std::numbers::pi / 180);
+    const double pixel = 2 * half_height / height;
+    corner_ = V3f(forward - right_unit * (0.5 * pixel * width) + up * half_height);
+    pixel_right_ = V3f(right_unit * pixel);
+    pixel_down_ = V3f(up * -pixel);
+}
+
+}  // namespace interflect

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// The rays from the eye of a View through the pixels of an image: a pinhole, square pixels, `fov` from the top edge of
+/// the image to its bottom edge.
+class Camera {
+  public:
+    /// @throws InputError, naming the view, where it defines no picture: a number that is not finite, eye == look_at,
+    /// `up`
+    ///         zero or along the direction of view, fov outside (0, 180); or where width or height is < 1.
+    Camera(const View& view, int width, int height);
+
+    /// The ray through a point of the image plane.
+    /// @param x, y  In pixels from the image's top left corner; the centre of the first pixel is (0.5, 0.5).
+    Ray ray(float x, float y) const { return {eye_, (corner_ + x * pixel_right_ + y * pixel_down_).normalized()}; }
+
+  private:
+    V3f eye_;                       // [m]
+    V3f corner_;                    // from the eye to the top left corner of the image plane at distance 1
+    V3f pixel_right_, pixel_down_;  // one pixel's steps on that plane
+};
+
+}  // namespace interflect

@@ -1,0 +1,85 @@
+#include <OpenEXR/ImfArray.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "interflect/image/image_codecs.h"
+
+namespace interflect::codecs {
+
+namespace {
+
+constexpr std::array<const char*, 3> channel_names = {"R", "G", "B"};
+
+void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
+    const auto text = [&](const char* name, const std::string& value) {
+        header.insert(name, Imf::StringAttribute(value));
+    };
+    const auto number = [&](const char* name, float value) { header.insert(name, Imf::FloatAttribute(value)); };
+    const auto vector = [&](const char* name, const V3f& value) { header.insert(name, Imf::V3fAttribute(value)); };
+    text("interflect.view", metadata.view.name);
+    vector("interflect.eye", metadata.view.eye);
+    vector("interflect.look_at", metadata.view.look_at);
+    vector("interflect.up", metadata.view.up);
+    number("interflect.fov", metadata.view.fov);
+    text("interflect.quantity", metadata.quantity);
+    text("interflect.scene", metadata.scene);
+    number("interflect.exposure", metadata.exposure);
+    text("interflect.seed", std::to_string(metadata.seed));
+    text("interflect.version", metadata.version);
+}
+
+/// The pixels as OpenEXR's three channels.
+Imf::FrameBuffer frame_buffer(const Image& image, const Imath::Box2i& window) {
+    Imf::FrameBuffer buffer;
+    const auto* first = reinterpret_cast<const float*>(image.pixels.data());
+    for (std::size_t c = 0; c < channel_names.size(); ++c)
+        buffer.insert(channel_names[c], Imf::Slice::Make(Imf::FLOAT, first + c, window, sizeof(Rgb),
+                                                         sizeof(Rgb) * static_cast<std::size_t>(image.width)));
+    return buffer;
+}
+
+void require_channels(const Imf::ChannelList& channels) {
+    std::string present;
+    for (auto i = channels.begin(); i != channels.end(); ++i) present += std::string(" ") + i.name();
+    for (const char* name : channel_names)
+        if (!channels.findChannel(name))
+            throw std::runtime_error(fmt::format("it has no channel {}, only{}", name, present));
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata) {
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::addChromaticities(header, Imf::Chromaticities());  // the default: Rec. 709 primaries, D65
+    insert_metadata(metadata, header);
+    for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(frame_buffer(image, header.dataWindow()));
+    file.writePixels(image.height);
+}
+
+Image read_exr(const std::filesystem::path& path) {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    require_allowed_size(std::int64_t{window.max.x} - window.min.x + 1, std::int64_t{window.max.y} - window.min.y + 1);
+    require_channels(file.header().channels());
+    if (!file.isComplete()) throw std::runtime_error("it ends too early");
+    Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+    file.setFrameBuffer(frame_buffer(image, window));
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+}
+
+}  // namespace interflect::codecs

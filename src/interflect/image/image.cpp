@@ -1,0 +1,33 @@
+#include "interflect/image/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+
+Image box_downsample(const Image& image, int factor) {
+    if (factor < 1 || image.width % factor != 0 || image.height % factor != 0)
+        throw InputError(
+            fmt::format("cannot down-sample an image of {} x {} pixels by {}: expected a whole factor of both",
+                        image.width, image.height, factor));
+    if (factor == 1) return image;
+    Image smaller(image.width / factor, image.height / factor);
+    const double block_size = static_cast<double>(factor) * factor;
+    for (int y = 0; y < smaller.height; ++y)
+        for (int x = 0; x < smaller.width; ++x) {
+            RgbD sum(0, 0, 0);
+            for (int j = 0; j < factor; ++j)
+                for (int i = 0; i < factor; ++i) sum += RgbD(image.at(x * factor + i, y * factor + j));
+            smaller.at(x, y) = Rgb(sum / block_size);
+        }
+    return smaller;
+}
+
+std::int64_t count_non_finite(const Image& image) {
+    return std::count_if(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return !is_finite(pixel); });
+}
+
+}  // namespace interflect

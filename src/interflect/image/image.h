@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "interflect/base/colour.h"
+
+namespace interflect {
+
+/// A picture: linear Rec. 709 colours in any unit, row by row, row 0 at the top.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<Rgb> pixels;  ///< [y * width + x]
+
+    Image() = default;
+    /// @param fill  Every pixel's first colour.
+    Image(int image_width, int image_height, const Rgb& fill = Rgb(0, 0, 0))
+        : width(image_width),
+          height(image_height),
+          pixels(static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height), fill) {}
+
+    Rgb& at(int x, int y) { return pixels[index(x, y)]; }
+    const Rgb& at(int x, int y) const { return pixels[index(x, y)]; }
+
+  private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+};
+
+/// The image with every factor x factor block of pixels replaced by its mean.
+/// @throws InputError where width or height is no multiple of `factor`, or factor < 1.
+Image box_downsample(const Image& image, int factor);
+
+/// Pixels of which a channel is infinite or not a number.
+std::int64_t count_non_finite(const Image& image);
+
+}  // namespace interflect

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "interflect/image/image.h"
+#include "interflect/image/image_files.h"
+
+/// One pair of functions a file format, for image_files.cpp alone. Decoders throw std::runtime_error with the reason
+/// only; whoever knows the file's name adds it.
+namespace interflect::codecs {
+
+/// @throws std::runtime_error unless 1 <= width * height <= most_image_pixels.
+void require_allowed_size(std::int64_t width, std::int64_t height);
+
+std::string encode_png(const Image& image);
+std::string encode_jpeg(const Image& image);
+/// PNG and JPEG, whichever `bytes` are.
+Image decode_srgb(std::string_view bytes);
+
+std::string encode_radiance(const Image& image);
+Image decode_radiance(std::string_view bytes);
+
+void write_exr(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata);
+Image read_exr(const std::filesystem::path& path);
+
+}  // namespace interflect::codecs

@@ -1,0 +1,103 @@
+#include "interflect/image/image_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "interflect/base/error.h"
+#include "interflect/image/image_codecs.h"
+
+namespace interflect {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct KnownExtension {
+    const char* extension;
+    ImageFormat format;
+};
+constexpr std::array<KnownExtension, 5> known_extensions = {{{".png", ImageFormat::png},
+                                                             {".jpg", ImageFormat::jpeg},
+                                                             {".jpeg", ImageFormat::jpeg},
+                                                             {".exr", ImageFormat::exr},
+                                                             {".hdr", ImageFormat::hdr}}};
+
+std::string read_bytes(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    if (!file.is_open() || file.bad()) throw std::runtime_error("cannot be read");
+    return bytes;
+}
+
+void write_bytes(const fs::path& path, const std::string& bytes) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", path.string()));
+}
+
+Image read_as(ImageFormat format, const fs::path& path) {
+    switch (format) {
+        case ImageFormat::png:
+        case ImageFormat::jpeg:
+            return codecs::decode_srgb(read_bytes(path));
+        case ImageFormat::hdr:
+            return codecs::decode_radiance(read_bytes(path));
+        case ImageFormat::exr:
+            break;
+    }
+    return codecs::read_exr(path);
+}
+
+}  // namespace
+
+void codecs::require_allowed_size(std::int64_t width, std::int64_t height) {
+    if (width < 1 || height < 1 || width > most_image_pixels / height)
+        throw std::runtime_error(
+            fmt::format("claims to have {} x {} pixels, expected 1 to {} in all", width, height, most_image_pixels));
+}
+
+ImageFormat require_image_format(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::string expected;
+    for (const auto& known : known_extensions) {
+        if (extension == known.extension) return known.format;
+        expected += std::string(" ") + known.extension;
+    }
+    throw InputError(path, 0,
+                     fmt::format("no image format has the extension '{}', expected one of{}", extension, expected));
+}
+
+void write_image(const fs::path& path, const Image& image, const ImageMetadata& metadata) {
+    switch (require_image_format(path)) {
+        case ImageFormat::png:
+            return write_bytes(path, codecs::encode_png(image));
+        case ImageFormat::jpeg:
+            return write_bytes(path, codecs::encode_jpeg(image));
+        case ImageFormat::hdr:
+            return write_bytes(path, codecs::encode_radiance(image));
+        case ImageFormat::exr:
+            return codecs::write_exr(path, image, metadata);
+    }
+}
+
+Image read_image(const fs::path& path) {
+    const ImageFormat format = require_image_format(path);
+    if (!fs::exists(path)) throw InputError(path, 0, "there is no such file");
+    if (!fs::is_regular_file(path)) throw InputError(path, 0, "is not a file, expected an image");
+    try {
+        return read_as(format, path);
+    } catch (const std::exception& fault) {
+        throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
+    }
+}
+
+}  // namespace interflect

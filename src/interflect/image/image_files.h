@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "interflect/image/image.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+enum class ImageFormat {
+    png,   ///< 8 bit sRGB: for people. Needs a tone-mapped image.
+    jpeg,  ///< As png, lossy.
+    exr,   ///< OpenEXR, linear 32 bit float: for measuring. Carries ImageMetadata.
+    hdr,   ///< Radiance RGBE, linear, 8 bit mantissas with a common exponent.
+};
+
+/// Images of more pixels than this are refused when they are read, whatever the file claims.
+inline constexpr std::int64_t most_image_pixels = std::int64_t{1} << 28;
+
+/// The format that a file name's extension asks for (.png .jpg .jpeg .exr .hdr, in any case).
+/// @throws InputError, listing the extensions, for any other.
+ImageFormat require_image_format(const std::filesystem::path& path);
+
+/// Whether the format holds 8 bit sRGB values, so that an image has to be tone-mapped first.
+constexpr bool needs_tone_mapping(ImageFormat format) {
+    return format == ImageFormat::png || format == ImageFormat::jpeg;
+}
+
+/// What an image shows and how it came to be. An OpenEXR file keeps it as the attributes interflect.view, .eye,
+/// .look_at, .up, .fov, .quantity, .scene, .exposure, .seed (text, since it has 64 bits) and .version.
+struct ImageMetadata {
+    View view;
+    std::string quantity = "luminance [cd/m^2]";  ///< With its unit.
+    std::string scene;                            ///< The file it came from.
+    std::string version;                          ///< Of this program.
+    std::uint64_t seed = 0;
+    float exposure = 0;  ///< Suggested for display, [stops]: see exposure in tone_map.h.
+};
+
+/// Writes an image in the format of the extension of `path`. Same arguments, same bytes.
+/// @param image     Linear Rec. 709. For .png and .jpg tone-mapped: values are clamped to [0, 1]. For .hdr clamped to
+/// [0, 2^126].
+///                  In these three a pixel that is not finite becomes pure magenta, so that it is seen; .exr keeps it.
+/// @param metadata  Kept by .exr only.
+/// @throws InputError for an unknown extension; std::runtime_error where the file cannot be written.
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata = {});
+
+/// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png and .jpg are decoded from sRGB).
+/// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.
+/// @throws InputError with the path and the reason for a file that is missing, is no such image, is cut short or
+/// otherwise
+///         damaged, or claims more than most_image_pixels.
+Image read_image(const std::filesystem::path& path);
+
+}  // namespace interflect

@@ -1,0 +1,195 @@
+// The Radiance picture format (Ward 1991, 'Real pixels', Graphics Gems II): a text header, then scanlines of 8 bit
+// mantissas of R, G, B with one exponent. Own code, since stb's reader never ends on a file that is cut short.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "interflect/image/image_codecs.h"
+
+namespace interflect::codecs {
+
+namespace {
+
+using Rgbe = std::array<std::uint8_t, 4>;
+
+constexpr int exponent_bias = 128, mantissa_bits = 8;
+/// Widths that scanlines may be run-length encoded for; others are written flat.
+constexpr int least_encoded_width = 8, most_encoded_width = 0x7fff;
+/// A length byte above this says: repeat the next byte that many times less this.
+constexpr int longest_literal = 128, longest_run = 127;
+constexpr int least_run = 4;  // a shorter run costs as much as it saves
+
+constexpr float largest_value = 0x1p126f;
+
+/// What of a colour the format can hold.
+Rgb representable(const Rgb& colour) {
+    if (!is_finite(colour)) return Rgb(largest_value, 0, largest_value);
+    Rgb c;
+    for (int i = 0; i < 3; ++i) c[i] = std::clamp(colour[i], 0.0f, largest_value);
+    return c;
+}
+
+/// Rounds to the nearest representable colour.
+Rgbe to_rgbe(const Rgb& colour) {
+    const Rgb c = representable(colour);
+    int exponent = 0;
+    const float mantissa = std::frexp(largest_channel(c), &exponent);  // in [1/2, 1), or 0
+    if (mantissa >= 255.5f / 256) ++exponent;                          // would round up to 256
+    if (mantissa == 0 || exponent <= -exponent_bias) return {0, 0, 0, 0};
+    const auto byte = [&](float v) {
+        return static_cast<std::uint8_t>(std::lround(std::ldexp(v, mantissa_bits - exponent)));
+    };
+    return {byte(c.x), byte(c.y), byte(c.z), static_cast<std::uint8_t>(exponent + exponent_bias)};
+}
+
+Rgb from_rgbe(const Rgbe& v) {
+    if (v[3] == 0) return Rgb(0, 0, 0);
+    const float unit = std::ldexp(1.0f, v[3] - exponent_bias - mantissa_bits);
+    return Rgb(v[0], v[1], v[2]) * unit;
+}
+
+int run_length(const std::vector<Rgbe>& line, int component, int x) {
+    int length = 1;
+    while (x + length < static_cast<int>(line.size()) && length < longest_run &&
+           line[x + length][component] == line[x][component])
+        ++length;
+    return length;
+}
+
+/// One component of a scanline: runs, and literal stretches between them.
+void append_encoded(const std::vector<Rgbe>& line, int component, std::string& file) {
+    const int width = static_cast<int>(line.size());
+    for (int x = 0; x < width;) {
+        const int run = run_length(line, component, x);
+        if (run >= least_run) {
+            file.push_back(static_cast<char>(longest_literal + run));
+            file.push_back(static_cast<char>(line[x][component]));
+            x += run;
+            continue;
+        }
+        const int start = x;
+        while (x < width && x - start < longest_literal && run_length(line, component, x) < least_run) ++x;
+        file.push_back(static_cast<char>(x - start));
+        for (int i = start; i < x; ++i) file.push_back(static_cast<char>(line[i][component]));
+    }
+}
+
+class Reader {
+  public:
+    explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+
+    std::string_view line() {
+        const std::size_t end = bytes_.find('\n', position_);
+        if (end == std::string_view::npos) throw std::runtime_error("it ends within its header");
+        const std::string_view text = bytes_.substr(position_, end - position_);
+        position_ = end + 1;
+        return text;
+    }
+    std::uint8_t byte() {
+        if (position_ >= bytes_.size()) throw std::runtime_error("it ends too early");
+        return static_cast<std::uint8_t>(bytes_[position_++]);
+    }
+    Rgbe pixel() {
+        Rgbe v;
+        for (auto& component : v) component = byte();
+        return v;
+    }
+    bool at_encoded_line(std::size_t width) const {
+        const auto at = [&](std::size_t i) {
+            return position_ + i < bytes_.size() ? static_cast<std::uint8_t>(bytes_[position_ + i]) : 0xff;
+        };
+        return at(0) == 2 && at(1) == 2 && (static_cast<std::size_t>(at(2)) << 8 | at(3)) == width;
+    }
+    std::size_t bytes_left() const { return bytes_.size() - position_; }
+
+  private:
+    std::string_view bytes_;
+    std::size_t position_ = 0;
+};
+
+struct Size {
+    int width, height;
+};
+
+/// "-Y height +X width": rows from the top, each from the left; the only order this reads.
+Size parse_resolution(std::string_view line) {
+    Size size{0, 0};
+    const char* end = line.data() + line.size();
+    const auto number = [&](std::string_view label, const char* from, int& value) {
+        if (!std::string_view(from, static_cast<std::size_t>(end - from)).starts_with(label)) return end + 1;
+        const auto [after, error] = std::from_chars(from + label.size(), end, value);
+        return error == std::errc() ? after : end + 1;
+    };
+    const char* middle = number("-Y ", line.data(), size.height);
+    if (middle > end || number(" +X ", middle, size.width) != end)
+        throw std::runtime_error(fmt::format("its resolution is '{}', expected '-Y height +X width'", line));
+    require_allowed_size(size.width, size.height);
+    return size;
+}
+
+/// The header up to the empty line; what it says about exposure has been applied to the pixels and is not undone.
+void read_header(Reader& reader) {
+    if (!reader.line().starts_with("#?")) throw std::runtime_error("it does not begin with '#?RADIANCE'");
+    for (std::string_view line = reader.line(); !line.empty(); line = reader.line())
+        if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
+            throw std::runtime_error(fmt::format("its format is '{}', expected '32-bit_rle_rgbe'", line.substr(7)));
+}
+
+void read_encoded_line(Reader& reader, std::vector<Rgbe>& line) {
+    reader.pixel();  // the marker
+    for (int component = 0; component < 4; ++component)
+        for (std::size_t x = 0; x < line.size();) {
+            const int code = reader.byte();
+            const bool run = code > longest_literal;
+            const auto length = static_cast<std::size_t>(run ? code - longest_literal : code);
+            if (length == 0 || length > line.size() - x) throw std::runtime_error("a run of pixels leaves its row");
+            const std::uint8_t repeated = run ? reader.byte() : std::uint8_t{0};
+            for (std::size_t i = 0; i < length; ++i) line[x++][component] = run ? repeated : reader.byte();
+        }
+}
+
+}  // namespace
+
+std::string encode_radiance(const Image& image) {
+    std::string file = fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+    const bool encoded = image.width >= least_encoded_width && image.width <= most_encoded_width;
+    std::vector<Rgbe> line(image.width);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) line[x] = to_rgbe(image.at(x, y));
+        if (encoded) {
+            for (const int marker : {2, 2, image.width >> 8, image.width & 0xff})
+                file.push_back(static_cast<char>(marker));
+            for (int component = 0; component < 4; ++component) append_encoded(line, component, file);
+        } else {
+            for (const Rgbe& pixel : line) file.append(reinterpret_cast<const char*>(pixel.data()), pixel.size());
+        }
+    }
+    return file;
+}
+
+Image decode_radiance(std::string_view bytes) {
+    Reader reader(bytes);
+    read_header(reader);
+    const Size size = parse_resolution(reader.line());
+    // The densest encoding takes four times two bytes for 127 pixels: make no room for pixels that cannot be there.
+    const std::int64_t least_bytes = std::int64_t{size.width} * size.height / 16;
+    if (static_cast<std::int64_t>(reader.bytes_left()) < least_bytes) throw std::runtime_error("it ends too early");
+
+    Image image(size.width, size.height);
+    std::vector<Rgbe> line(size.width);
+    for (int y = 0; y < size.height; ++y) {
+        if (reader.at_encoded_line(line.size()))
+            read_encoded_line(reader, line);
+        else
+            for (Rgbe& pixel : line) pixel = reader.pixel();
+        for (int x = 0; x < size.width; ++x) image.at(x, y) = from_rgbe(line[x]);
+    }
+    return image;
+}
+
+}  // namespace interflect::codecs

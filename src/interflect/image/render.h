@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "interflect/image/image.h"
+#include "interflect/image/smooth.h"
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// How the irradiance of patches becomes that of points.
+enum class Shading {
+    flat,    ///< Every patch has one irradiance.
+    smooth,  ///< Interpolated between the patches of a smooth surface: see SmoothIrradiance.
+};
+
+struct RenderOptions {
+    int width = 1280;                   ///< [pixels], >= 1.
+    int height = 720;                   ///< [pixels], >= 1.
+    int samples = 16;                   ///< Eye rays a pixel, >= 1; powers of two are stratified best.
+    Shading shading = Shading::smooth;  ///< See Shading.
+    SmoothingOptions smoothing;         ///< For Shading::smooth.
+    std::uint64_t seed = 1;             ///< Of the rays' places within their pixels.
+};
+
+/// A picture and what happened while it was made.
+struct Rendering {
+    /// Luminance L = (M + rho H) / pi of what each pixel sees, the mean over its square; black where rays escape.
+    /// [cd/m^2] where exitance M and irradiance H are photometric [lm/m^2], else [W/(m^2 sr)].
+    Image image;
+    std::int64_t rays = 0;
+    std::int64_t escaped_rays = 0;
+    std::int64_t non_finite_pixels = 0;  ///< They keep their value (infinite or not a number) in `image`.
+};
+
+/// Renders what `view` sees of a solved scene.
+/// @param ray_caster  Of the same scene.
+/// @param irradiance  H of every patch, in the unit of the materials' exitance.
+/// @return            The same bits for the same seed and any number of threads.
+/// @throws InputError for a view that defines no picture, an option out of range, or sizes that disagree.
+Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, std::span<const Rgb> irradiance,
+                 const RenderOptions& options = {});
+
+}  // namespace interflect
