@@ -9,6 +9,7 @@ bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 }  // namespace
 
 bool LineReader::at_continuation(std::size_t offset) const {
+    if (text_[offset] != '\\') return false;
     const std::string_view rest = text_.substr(offset, 3);
     return rest.starts_with("\\\n") || rest == "\\\r\n";
 }

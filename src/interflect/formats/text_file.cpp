@@ -15,15 +15,15 @@ namespace {
 
 bool is_binary(char c) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool white_space = byte == ' ' || (byte >= '\t' && byte <= '\r');
-    return (byte < 0x20 && !white_space) || byte == 0x7f;
+    // Bitwise, so that the compiler can look at many bytes at once.
+    return (byte < '\t') | ((byte > '\r') & (byte < ' ')) | (byte == 0x7f);
 }
 
 }  // namespace
 
 void require_text(std::string_view text, const fs::path& path) {
+    if (std::count_if(text.begin(), text.end(), is_binary) == 0) return;
     const auto junk = std::find_if(text.begin(), text.end(), is_binary);
-    if (junk == text.end()) return;
     throw InputError(path, 1 + std::count(text.begin(), junk, '\n'),
                      fmt::format("this is not a text file: it has a byte 0x{:02x} at offset {}",
                                  static_cast<unsigned char>(*junk), junk - text.begin()));

@@ -1,37 +1,29 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
-#include <unordered_map>
+#include <vector>
 
-#include "interflect/base/random.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
 /// Gives one vertex of a scene to each distinct position: what meets in a point shares a vertex there, whatever names
-/// or copies the file used. Positions are compared bit for bit; -0 counts as 0.
+/// or copies the file used. Positions are compared as they are, in single precision; -0 counts as 0. Holds at most 16
+/// bytes a vertex: a hash table with linear probing, of indices into the scene's own vertices.
 class VertexWeld {
   public:
-    explicit VertexWeld(Scene& scene) : scene_(scene) {}
+    explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    std::uint32_t vertex(const V3f& position) {
-        const V3f key = position + V3f(0);  // -0 + 0 = 0
-        const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(scene_.vertices.size()));
-        if (is_new) scene_.vertices.push_back(key);
-        return entry->second;
-    }
+    /// The index of the vertex at `position`, which is added where it is new. @param position  Finite.
+    std::uint32_t vertex(const V3f& position);
 
   private:
-    struct Hash {
-        std::size_t operator()(const V3f& p) const {
-            std::uint32_t bits[3];
-            std::memcpy(bits, &p, sizeof bits);
-            return mix(bits[0] | std::uint64_t{bits[1]} << 32, bits[2]);
-        }
-    };
+    std::uint32_t& slot_of(const V3f& position);
+    void grow();
+
     Scene& scene_;
-    std::unordered_map<V3f, std::uint32_t, Hash> index_;
+    std::vector<std::uint32_t> slots_;  // a power of two, never more than half full
+    std::size_t used_ = 0;
 };
 
 }  // namespace interflect
