@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace interflect::testing_support {
+
+/// Chance that correct code fails one test; the seeds are fixed, so that a test either always passes or never.
+inline constexpr double false_alarm = 1e-3;
+
+/// Two-sided p-value of Student's t test of the hypothesis that the samples' population has the mean `expected`.
+/// @param samples         At least two independent values. If all are the same, p is 1 when that is `expected`, else 0.
+/// @param expected_error  Standard error of `expected` where that is itself an independent estimate.
+double t_test(std::span<const double> samples, double expected, double expected_error = 0);
+
+/// Two-sided p-value of the hypothesis that `value` is normal with this mean and standard deviation.
+double z_test(double value, double mean, double standard_deviation);
+
+/// Two-sided p-value of the hypothesis that each of `trials` independent trials succeeds with `probability`.
+double binomial_test(std::int64_t successes, std::int64_t trials, double probability);
+
+/// p-value of Pearson's chi-square test; every expected count should be 5 or more, and both sum to the same.
+double chi_square_test(std::span<const double> observed, std::span<const double> expected);
+
+/// The p-value of all hypotheses together, by Bonferroni's bound, which holds for dependent tests too.
+double bonferroni(std::span<const double> p_values);
+
+}  // namespace interflect::testing_support
