@@ -1,0 +1,54 @@
+"""The rules of docs/design.md that a compiler does not check: who may include whom, and what a header may hold."""
+
+import re
+from pathlib import Path
+
+# A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
+LAYERS = ["base", "scene", "formats", "raycast", "elements", "solver", "image", "exports", "cluster"]
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
+USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)
+PRAGMA_ONCE = re.compile(r"^#pragma once$", re.MULTILINE)
+USES = re.compile(r"\bUSES\s+([a-z_ \n]+)")
+
+
+def faults(root: Path) -> list[str]:
+    """Every broken rule below `root`, the repository's folder, as 'file: what is wrong'; empty if all is well."""
+    library = root / "src" / "interflect"
+    folders = sorted(path for path in library.iterdir() if path.is_dir())
+    found = [f"{folder}: not one of the layers {' '.join(LAYERS)}" for folder in folders if folder.name not in LAYERS]
+    for folder in folders:
+        if folder.name in LAYERS:
+            found += layer_faults(folder)
+    for header in sorted([*library.rglob("*.h"), *(root / "apps").rglob("*.h")]):
+        found += header_faults(header)
+    return found
+
+
+def layer_faults(folder: Path) -> list[str]:
+    """A layer includes only itself and what its CMakeLists.txt says it USES, and that lies before it in LAYERS."""
+    found = []
+    earlier = LAYERS[: LAYERS.index(folder.name)]
+    build_file = folder / "CMakeLists.txt"
+    uses = declared_uses(build_file)
+    found += [f"{build_file}: {folder.name} USES {used}, which is not before it" for used in uses if used not in earlier]
+    for source in sorted([*folder.rglob("*.h"), *folder.rglob("*.cpp")]):
+        for included in INCLUDE.findall(source.read_text()):
+            if included not in [folder.name, *uses]:
+                found.append(f"{source}: includes interflect/{included}/, which {build_file} does not name under USES")
+    return found
+
+
+def declared_uses(build_file: Path) -> list[str]:
+    match = USES.search(build_file.read_text())
+    return match.group(1).split() if match else []
+
+
+def header_faults(header: Path) -> list[str]:
+    text = header.read_text()
+    found = []
+    if not PRAGMA_ONCE.search(text):
+        found.append(f"{header}: no '#pragma once'")
+    if USING_NAMESPACE.search(text):
+        found.append(f"{header}: 'using namespace' in a header")
+    return found

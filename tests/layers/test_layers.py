@@ -1,0 +1,70 @@
+"""The repository keeps its own rules, and the checker sees each of them broken."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+from layers import faults
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Repository(unittest.TestCase):
+    def test_keeps_the_rules(self):
+        self.assertEqual(faults(ROOT), [])
+
+
+class Checker(unittest.TestCase):
+    """Small trees of sources, each with one fault (or none)."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp)")
+        self.write("base/colour.h", "#pragma once\n")
+        self.write("scene/CMakeLists.txt", "interflect_folder(scene\n  SOURCES scene.cpp\n  USES base\n  LINKS fmt)")
+        self.write("scene/scene.h", '#pragma once\n#include "interflect/base/colour.h"\n')
+
+    def write(self, name, text):
+        path = self.root / "src" / "interflect" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def assert_only_fault(self, file, words):
+        found = faults(self.root)
+        self.assertEqual(len(found), 1, found)
+        self.assertIn(file, found[0])
+        self.assertIn(words, found[0])
+
+    def test_a_sound_tree_has_no_fault(self):
+        self.assertEqual(faults(self.root), [])
+
+    def test_include_of_a_later_layer(self):
+        self.write("base/colour.cpp", '#include "interflect/scene/scene.h"\n')
+        self.assert_only_fault("base/colour.cpp", "interflect/scene/")
+
+    def test_include_of_an_undeclared_layer(self):
+        self.write("solver/CMakeLists.txt", "interflect_folder(solver SOURCES solve.cpp USES base)")
+        self.write("solver/solve.cpp", '#include "interflect/scene/scene.h"\n')
+        self.assert_only_fault("solver/solve.cpp", "interflect/scene/")
+
+    def test_use_of_a_later_layer(self):
+        self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp USES scene)")
+        self.assert_only_fault("base/CMakeLists.txt", "USES scene")
+
+    def test_unknown_layer(self):
+        self.write("gadgets/CMakeLists.txt", "interflect_folder(gadgets SOURCES gadget.cpp)")
+        self.assert_only_fault("gadgets", "not one of the layers")
+
+    def test_header_without_guard(self):
+        self.write("scene/view.h", "struct View;\n")
+        self.assert_only_fault("scene/view.h", "#pragma once")
+
+    def test_using_namespace_in_a_header(self):
+        self.write("scene/view.h", "#pragma once\nusing namespace interflect;\n")
+        self.assert_only_fault("scene/view.h", "using namespace")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,61 @@
+// The whole way through the library, as someone outside uses it: a scene, a ray, a solution, a file, a picture.
+
+#include <interflect/exports/solution_file.h>
+#include <interflect/image/image_files.h>
+#include <interflect/image/render.h>
+#include <interflect/raycast/ray_caster.h>
+#include <interflect/scene/scene.h>
+#include <interflect/solver/solve.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+void expect(bool holds, const char* what) {
+    if (holds) return;
+    std::fprintf(stderr, "consumer: expected %s\n", what);
+    std::exit(1);
+}
+
+// A closed cube of 1 m, seen from inside, that shines and reflects alike everywhere.
+interflect::Scene glowing_cube(float exitance, float reflectance) {
+    interflect::Scene scene;
+    scene.materials = {{"glow", interflect::Rgb(reflectance), interflect::Rgb(exitance)}};
+    scene.objects = {""};
+    for (int corner = 0; corner < 8; ++corner)
+        scene.vertices.emplace_back(float(corner & 1), float(corner >> 1 & 1), float(corner >> 2));
+    const std::array<std::array<std::uint32_t, 4>, 6> walls{
+        {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}}};
+    for (const auto& wall : walls) scene.patches.push_back({.vertices = wall});
+    return scene;
+}
+
+}  // namespace
+
+int main() {
+    constexpr float exitance = 2, reflectance = 0.5f;  // [lm/m^2], 1
+    const interflect::Scene scene = glowing_cube(exitance, reflectance);
+    expect(interflect::scene_faults(scene).empty(), "a cube without faults");
+    const interflect::RayCaster ray_caster(scene);
+
+    const interflect::Ray down{{0.5f, 0.5f, 0.5f}, {0, 0, -1}};
+    interflect::Hit hit;
+    ray_caster.trace({&down, 1}, {&hit, 1});
+    expect(hit.patch == 4 && std::abs(hit.distance - 0.5f) < 1e-6f, "a ray downwards to hit the floor, 0.5 m away");
+
+    const interflect::Solution solution = interflect::solve(scene, ray_caster, {.rays = 100'000});
+    const float expected = exitance / (1 - reflectance);  // of a closed box: B = M + rho B = H
+    for (const auto& irradiance : solution.irradiance)
+        expect(std::abs(irradiance.x / expected - 1) < 0.05f, "the irradiance of a furnace within 5%");
+
+    interflect::write_solution("cube.h5", scene, solution);
+    expect(interflect::read_solution("cube.h5").solution.irradiance == solution.irradiance, "to read what was written");
+
+    const interflect::View view{.name = "inside", .eye = {0.5f, 0.5f, 0.5f}};
+    const auto picture = interflect::render(scene, ray_caster, view, solution.irradiance, {.width = 4, .height = 4});
+    expect(picture.escaped_rays == 0, "no ray to leave a closed cube");
+    std::puts("consumer: all is well");
+}
