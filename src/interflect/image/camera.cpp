@@ -38,8 +38,10 @@ void require_usable(const View& view) {
 
 Camera::Camera(const View& view, int width, int height) : eye_(view.eye) {
     require_usable(view);
-    if (width < 1 || height < 1)
-        throw InputError(fmt::format("a picture of {} x {} pixels: expected at least 1 x 1", width, height));
+    if (width < 1 || height < 1 || width > most_image_pixels / height)
+        throw InputError(
+            fmt::format("a picture of {} x {} pixels: expected 1 x 1 or more, and at most {} pixels in all", width,
+                        height, most_image_pixels));
 
     const V3d forward = (V3d(view.look_at) - V3d(view.eye)).normalized();
     const V3d right = forward.cross(V3d(view.up).normalized());

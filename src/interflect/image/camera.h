@@ -1,5 +1,6 @@
 #pragma once
 
+#include "interflect/image/image.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
 
@@ -9,9 +10,10 @@ namespace interflect {
 /// the image to its bottom edge.
 class Camera {
   public:
+    /// Made before a solve, it finds all that render() could object to in a view and a size.
     /// @throws InputError, naming the view, where it defines no picture: a number that is not finite, eye == look_at,
-    /// `up`
-    ///         zero or along the direction of view, fov outside (0, 180); or where width or height is < 1.
+    ///         `up` zero or along the direction of view, fov outside (0, 180). InputError where width or height is < 1
+    ///         or there are more than most_image_pixels.
     Camera(const View& view, int width, int height);
 
     /// The ray through a point of the image plane.

@@ -16,9 +16,6 @@ enum class ImageFormat {
     hdr,   ///< Radiance RGBE, linear, 8 bit mantissas with a common exponent.
 };
 
-/// Images of more pixels than this are refused when they are read, whatever the file claims.
-inline constexpr std::int64_t most_image_pixels = std::int64_t{1} << 28;
-
 /// The format that a file name's extension asks for (.png .jpg .jpeg .exr .hdr, in any case).
 /// @throws InputError, listing the extensions, for any other.
 ImageFormat require_image_format(const std::filesystem::path& path);
@@ -40,18 +37,19 @@ struct ImageMetadata {
 };
 
 /// Writes an image in the format of the extension of `path`. Same arguments, same bytes.
-/// @param image     Linear Rec. 709. For .png and .jpg tone-mapped: values are clamped to [0, 1]. For .hdr clamped to
-/// [0, 2^126].
-///                  In these three a pixel that is not finite becomes pure magenta, so that it is seen; .exr keeps it.
+/// @param image     Linear Rec. 709. For .png and .jpg tone-mapped: values are clamped to [0, 1]; for .hdr they are
+/// clamped
+///                  to [0, 2^126]. In these three a pixel that is not finite becomes pure magenta, to be seen.
 /// @param metadata  Kept by .exr only.
 /// @throws InputError for an unknown extension; std::runtime_error where the file cannot be written.
-void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata = {});
+void write_image(const std::filesystem::path& path, const Image& image,
+                 const ImageMetadata& metadata = ImageMetadata());
 
 /// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png and .jpg are decoded from sRGB).
 /// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.
 /// @throws InputError with the path and the reason for a file that is missing, is no such image, is cut short or
-/// otherwise
-///         damaged, or claims more than most_image_pixels.
+/// damaged,
+///         or claims more than most_image_pixels.
 Image read_image(const std::filesystem::path& path);
 
 }  // namespace interflect

@@ -28,8 +28,8 @@ struct ImageDifference {
 };
 
 struct CompareOptions {
-    bool scale =
-        false;  ///< Divide the image by ratio_of_means first (which is still reported), so that only shape counts.
+    /// Divide the image by ratio_of_means first (which is still reported), so that only the shape counts.
+    bool scale = false;
 };
 
 /// Compares an image with a reference of the same size, or smaller by a whole factor: then each block of the image's

@@ -21,7 +21,7 @@ struct RenderOptions {
     int height = 720;                   ///< [pixels], >= 1.
     int samples = 16;                   ///< Eye rays a pixel, >= 1; powers of two are stratified best.
     Shading shading = Shading::smooth;  ///< See Shading.
-    SmoothingOptions smoothing;         ///< For Shading::smooth.
+    SmoothingOptions smoothing{};       ///< For Shading::smooth.
     std::uint64_t seed = 1;             ///< Of the rays' places within their pixels.
 };
 

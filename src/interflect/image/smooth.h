@@ -12,8 +12,8 @@ namespace interflect {
 
 /// What counts as one smooth surface.
 struct SmoothingOptions {
-    float crease_angle =
-        20;  ///< Patches whose normals differ by more than this do not shade into each other [degrees].
+    /// Patches whose normals differ by more than this do not shade into each other [degrees].
+    float crease_angle = 20;
 };
 
 /// Which corners of patches meet in one point of one smooth surface, and so share one value.

@@ -95,7 +95,7 @@ Image decode_srgb(std::string_view bytes) {
     int width = 0, height = 0, file_channels = 0;
     ByteSource header{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &header, &width, &height, &file_channels))
-        throw std::runtime_error(std::string("it is no PNG or JPEG (") + stbi_failure_reason() + ")");
+        throw std::runtime_error(std::string("it is no PNG or JPEG of a usable size (") + stbi_failure_reason() + ")");
     require_allowed_size(width, height);
 
     // 8 bit files come as exact multiples of 65535 / 255.

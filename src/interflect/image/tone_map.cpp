@@ -19,9 +19,9 @@ constexpr float filmic_scale = 1.76f;
 /// Input that becomes white [Hable 2010].
 constexpr float filmic_white = 11.2f;
 
-/// Hable, 'Filmic tonemapping for real-time rendering' (SIGGRAPH 2010 course), with the constants given there: a rational
-/// fit of a film's response with a linear part, a short toe and a long shoulder. His
-/// (x (a x + c b) + d e) / (x (a x + b) + d f) - e / f stands here as one fraction, so that 0 gives 0 exactly.
+/// Hable, 'Filmic tonemapping for real-time rendering' (SIGGRAPH 2010 course), with the constants given there: a
+/// rational fit of a film's response with a linear part, a short toe and a long shoulder. His (x (a x + c b) + d e) /
+/// (x (a x + b) + d f) - e / f stands here as one fraction, so that 0 gives 0 exactly.
 float hable(float x) {
     constexpr float a = 0.22f, b = 0.30f, c = 0.10f, d = 0.20f, e = 0.01f, f = 0.30f;
     return x * (a * (f - e) * x + b * (c * f - e)) / (f * (x * (a * x + b) + d * f));

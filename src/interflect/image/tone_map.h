@@ -4,8 +4,7 @@
 
 namespace interflect {
 
-/// How exposed values become what a display shows, in [0, 1]. Every curve rises, and is close to the identity in
-/// shadows.
+/// How exposed values become what a display shows, in [0, 1]. Every curve rises, and leaves shadows as they are.
 enum class Tonemap {
     linear,    ///< Clipped at 1: true ratios below it.
     reinhard,  ///< On luminance, so that hues stay; 4 becomes white (Eq. 4 of Reinhard et al. 2002).

@@ -1,0 +1,91 @@
+#include "interflect/image/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+namespace {
+
+/// From the origin along +y with z up, so that +x is to the right; 90 degrees: the image plane at distance 1 is 2 high.
+View straight_view() { return {"straight", V3f(0, 0, 0), V3f(0, 5, 0), V3f(0, 0, 1), 90}; }
+
+void expect_direction(const Ray& ray, V3f expected) {
+    expected.normalize();
+    EXPECT_NEAR((ray.direction - expected).length(), 0, 1e-6) << ray.direction << " instead of " << expected;
+}
+
+TEST(Camera, LooksFromTheEyeThroughTheMiddle) {
+    View view = straight_view();
+    view.eye = V3f(1, 2, 3);
+    const Ray ray = Camera(view, 40, 20).ray(20, 10);
+    EXPECT_EQ(ray.origin, view.eye);
+    expect_direction(ray, V3f(-1, 3, -3));
+}
+
+TEST(Camera, FieldOfViewSpansTheHeightAndPixelsAreSquare) {
+    const Camera camera(straight_view(), 40, 20);
+    expect_direction(camera.ray(20, 0), V3f(0, 1, 1));    // top edge: 45 degrees up
+    expect_direction(camera.ray(20, 20), V3f(0, 1, -1));  // bottom edge
+    expect_direction(camera.ray(0, 0), V3f(-2, 1, 1));    // twice as wide as high
+    expect_direction(camera.ray(40, 20), V3f(2, 1, -1));
+    expect_direction(camera.ray(21, 9), V3f(0.1f, 1, 0.1f));  // a pixel is 2 / 20
+}
+
+TEST(Camera, UpNeedBeNeitherUnitNorPerpendicular) {
+    View tilted = straight_view();
+    tilted.up = V3f(0, 7, 0.5f);
+    const Ray expected = Camera(straight_view(), 40, 20).ray(3, 4), found = Camera(tilted, 40, 20).ray(3, 4);
+    expect_direction(found, expected.direction);
+}
+
+TEST(Camera, NarrowFieldOfView) {
+    View view = straight_view();
+    view.fov = 10;
+    const Ray top = Camera(view, 10, 10).ray(5, 0);
+    EXPECT_NEAR(std::atan2(top.direction.z, top.direction.y), 5 * std::numbers::pi / 180, 1e-6);
+}
+
+/// The message with which a view is refused.
+std::string refusal(const View& view, int width = 16, int height = 9) {
+    try {
+        Camera(view, width, height);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "not refused";
+}
+
+TEST(Camera, RefusesViewsThatShowNothing) {
+    using testing::HasSubstr;
+    View view = straight_view();
+    view.look_at = view.eye;
+    EXPECT_THAT(refusal(view), HasSubstr("view 'straight': eye and look-at are the same point"));
+    view = straight_view();
+    view.up = V3f(0, -2, 0);
+    EXPECT_THAT(refusal(view), HasSubstr("parallel to the direction"));
+    view.up = V3f(0, 0, 0);
+    EXPECT_THAT(refusal(view), HasSubstr("up (0, 0, 0) is zero"));
+    view = straight_view();
+    for (const float fov : {0.0f, 180.0f, -45.0f, std::numeric_limits<float>::quiet_NaN()}) {
+        view.fov = fov;
+        EXPECT_THAT(refusal(view), HasSubstr("field of view"));
+    }
+    view = straight_view();
+    view.eye.x = std::numeric_limits<float>::infinity();
+    EXPECT_THAT(refusal(view), HasSubstr("must be finite"));
+}
+
+TEST(Camera, RefusesImpossibleSizes) {
+    EXPECT_THAT(refusal(straight_view(), 0, 9), testing::HasSubstr("0 x 9 pixels"));
+    EXPECT_THAT(refusal(straight_view(), 16, -1), testing::HasSubstr("16 x -1 pixels"));
+    EXPECT_THAT(refusal(straight_view(), 1 << 20, 1 << 20), testing::HasSubstr("at most 268435456 pixels"));
+}
+
+}  // namespace
+}  // namespace interflect

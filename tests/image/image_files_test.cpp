@@ -1,0 +1,287 @@
+#include "interflect/image/image_files.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "interflect/base/error.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing_support::TemporaryFolder;
+
+/// Colours in [0, 1] that are smooth over the picture, with stretches of one colour and of many.
+Image gradient(int width, int height) {
+    Image image(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float right = static_cast<float>(x) / static_cast<float>(width);
+            const float down = static_cast<float>(y) / static_cast<float>(height);
+            image.at(x, y) = x < width / 3 ? Rgb(0.25f, 0, 1) : Rgb(right, down, (right + down) / 2);
+        }
+    return image;
+}
+
+std::string bytes_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+Image after_round_trip(const Image& image, const std::string& name) {
+    const TemporaryFolder folder;
+    write_image(folder.path() / name, image);
+    return read_image(folder.path() / name);
+}
+
+std::string refusal(const fs::path& path) {
+    try {
+        read_image(path);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "not refused";
+}
+
+class EveryFormat : public testing::TestWithParam<const char*> {
+  protected:
+    std::string name() const { return std::string("picture") + GetParam(); }
+    TemporaryFolder folder;
+};
+INSTANTIATE_TEST_SUITE_P(Extensions, EveryFormat, testing::Values(".png", ".jpg", ".exr", ".hdr"),
+                         [](const auto& extension) { return std::string(extension.param + 1); });
+
+TEST(ImageFiles, OpenExrKeepsEveryBit) {
+    Image image = gradient(37, 23);
+    image.at(3, 4) = Rgb(1e30f, -2, 1e-30f);
+    EXPECT_EQ(after_round_trip(image, "a.exr").pixels, image.pixels);
+}
+
+/// The largest component has 8 bits, the first of which is 1: half a unit is 1 / 256 of it at most.
+TEST(ImageFiles, RadianceKeepsEightBitsOfTheLargestComponent) {
+    for (const int width : {37, 5}) {  // run-length encoded, and too narrow for that
+        Image image = gradient(width, 23);
+        image.at(3, 4) = Rgb(1e30f, 5e29f, 0);
+        image.at(4, 4) = Rgb(1e-20f, 0, 2e-20f);
+        const Image found = after_round_trip(image, "a.hdr");
+        ASSERT_EQ(found.width, width);
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(found.pixels[i][c], image.pixels[i][c], largest_channel(image.pixels[i]) / 256);
+    }
+}
+
+TEST(ImageFiles, RadianceRoundsToNearestSoThatMeansStay) {
+    Image image(1000, 1);
+    double expected = 0, found = 0;
+    for (int x = 0; x < 1000; ++x) image.at(x, 0) = Rgb(1, 1, 1) * (1 + static_cast<float>(x) / 1000);
+    for (const Rgb& pixel : image.pixels) expected += pixel.x;
+    for (const Rgb& pixel : after_round_trip(image, "a.hdr").pixels) found += pixel.x;
+    EXPECT_NEAR(found / expected, 1, 1e-4) << "truncation would lose 0.0026";
+}
+
+TEST(ImageFiles, RadianceOfPowersOfTwoAndTheirNeighboursIsRight) {
+    Image image(2, 1);
+    for (const float v : {1.0f, 0.5f, 0.999f, 0.9999f, 65536.0f}) {
+        image.at(0, 0) = Rgb(v, v, v);
+        EXPECT_NEAR(after_round_trip(image, "a.hdr").at(0, 0).x, v, v / 256) << v;
+    }
+}
+
+TEST(ImageFiles, PngKeepsEightSrgbBits) {
+    const Image image = gradient(37, 23), found = after_round_trip(image, "a.png");
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.pixels[i][c], image.pixels[i][c], 0.0045);  // steepest at white
+    EXPECT_EQ(after_round_trip(found, "b.png").pixels, found.pixels);
+}
+
+TEST(ImageFiles, JpegIsClose) {
+    Image image(64, 48);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x)
+            image.at(x, y) = Rgb(0.2f + static_cast<float>(x) / 128, 0.5f, 0.3f + static_cast<float>(y) / 96);
+    const Image found = after_round_trip(image, "a.jpeg");
+    ASSERT_EQ(found.width, 64);
+    ASSERT_EQ(found.height, 48);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.pixels[i][c], image.pixels[i][c], 0.03);
+}
+
+TEST(ImageFiles, WhatIsNotFiniteShowsAsMagenta) {
+    Image image(8, 8, Rgb(0, 0.5f, 0));
+    image.at(2, 3).x = std::numeric_limits<float>::quiet_NaN();
+    image.at(4, 3).x = std::numeric_limits<float>::infinity();
+    for (const char* name : {"a.png", "a.hdr"}) {
+        const Image found = after_round_trip(image, name);
+        for (const Rgb& pixel : {found.at(2, 3), found.at(4, 3)}) {
+            EXPECT_GE(pixel.x, 1);
+            EXPECT_EQ(pixel.y, 0);
+            EXPECT_EQ(pixel.x, pixel.z);
+        }
+    }
+    EXPECT_TRUE(std::isnan(after_round_trip(image, "a.exr").at(2, 3).x));
+}
+
+TEST(ImageFiles, OpenExrSaysWhatItShows) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.exr";
+    ImageMetadata metadata;
+    metadata.view = {"desk", V3f(1, 2, 3), V3f(4, 5, 6), V3f(0, 0, 1), 45};
+    metadata.scene = "office.mgf";
+    metadata.version = "1.2.3";
+    metadata.seed = 0xfedcba9876543210u;
+    metadata.exposure = -6.5f;
+    write_image(path, gradient(4, 3), metadata);
+
+    const Imf::InputFile file(path.c_str());
+    const auto text = [&](const char* name) {
+        return file.header().typedAttribute<Imf::StringAttribute>(name).value();
+    };
+    const auto vector = [&](const char* name) { return file.header().typedAttribute<Imf::V3fAttribute>(name).value(); };
+    const auto number = [&](const char* name) {
+        return file.header().typedAttribute<Imf::FloatAttribute>(name).value();
+    };
+    EXPECT_EQ(text("interflect.view"), "desk");
+    EXPECT_EQ(vector("interflect.eye"), V3f(1, 2, 3));
+    EXPECT_EQ(vector("interflect.look_at"), V3f(4, 5, 6));
+    EXPECT_EQ(vector("interflect.up"), V3f(0, 0, 1));
+    EXPECT_EQ(number("interflect.fov"), 45);
+    EXPECT_EQ(text("interflect.quantity"), "luminance [cd/m^2]");
+    EXPECT_EQ(text("interflect.scene"), "office.mgf");
+    EXPECT_EQ(text("interflect.version"), "1.2.3");
+    EXPECT_EQ(text("interflect.seed"), "18364758544493064720");
+    EXPECT_EQ(number("interflect.exposure"), -6.5f);
+}
+
+TEST(ImageFiles, OpenExrWithoutColourIsRefusedByItsChannels) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "depth.exr";
+    Imf::Header header(2, 1);
+    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    const float depth[2] = {1, 2};
+    Imf::FrameBuffer buffer;
+    buffer.insert("Z", Imf::Slice::Make(Imf::FLOAT, depth, header.dataWindow(), sizeof(float), 2 * sizeof(float)));
+    {
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(1);
+    }
+    EXPECT_THAT(refusal(path), HasSubstr("it has no channel R, only Z"));
+}
+
+TEST_P(EveryFormat, SameImageSameBytes) {
+    const Image image = gradient(40, 30);
+    write_image(folder.path() / name(), image);
+    const std::string first = bytes_of(folder.path() / name());
+    write_image(folder.path() / ("again" + name()), image);
+    EXPECT_EQ(bytes_of(folder.path() / ("again" + name())), first);
+    EXPECT_GT(first.size(), 100u);
+}
+
+TEST_P(EveryFormat, CutShortIsRefusedWhereverTheCutIs) {
+    write_image(folder.path() / name(), gradient(40, 30));
+    const std::string whole = bytes_of(folder.path() / name());
+    for (int part = 0; part < 40; ++part) {
+        const std::size_t length = whole.size() * part / 40;
+        const fs::path cut = folder.write("cut" + name(), whole.substr(0, length));
+        EXPECT_THAT(refusal(cut), HasSubstr(cut.string() + ": cannot read this image")) << length << " bytes";
+    }
+    const fs::path cut = folder.write("cut" + name(), whole.substr(0, whole.size() - 1));
+    EXPECT_THAT(refusal(cut), HasSubstr("cannot read this image")) << "the last byte is missing";
+}
+
+TEST_P(EveryFormat, JunkIsRefused) {
+    std::string junk;
+    for (int i = 0; i < 5000; ++i) junk.push_back(static_cast<char>(i * i * 31 >> 3));
+    EXPECT_THAT(refusal(folder.write(name(), junk)), HasSubstr("cannot read this image"));
+    EXPECT_THAT(refusal(folder.write(name(), "")), HasSubstr("cannot read this image"));
+}
+
+/// Whatever a damaged file says, reading it ends, in an image or in an InputError.
+TEST_P(EveryFormat, DamageNeverCrashes) {
+    write_image(folder.path() / name(), gradient(40, 30));
+    const std::string whole = bytes_of(folder.path() / name());
+    for (std::size_t i = 0; i < whole.size(); i += 1 + whole.size() / 300) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(~damaged[i]);
+        try {
+            read_image(folder.write(name(), damaged));
+        } catch (const InputError&) {
+        }
+    }
+}
+
+TEST_P(EveryFormat, MissingFilesAndFoldersAreRefused) {
+    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr(name() + ": there is no such file"));
+    fs::create_directory(folder.path() / name());
+    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("is not a file"));
+}
+
+TEST_P(EveryFormat, WritingWhereNothingCanBeWrittenFails) {
+    EXPECT_THROW(write_image(folder.path() / "no such folder" / name(), gradient(4, 4)), std::exception);
+}
+
+TEST(ImageFiles, ClaimsOfEnormousSizesAreRefused) {
+    const TemporaryFolder folder;
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    EXPECT_THAT(refusal(folder.write("a.hdr", header + "-Y 100000 +X 100000\n")), HasSubstr("100000 x 100000 pixels"));
+    EXPECT_THAT(refusal(folder.write("b.hdr", header + "-Y 16384 +X 16384\n")), HasSubstr("ends too early"));
+    EXPECT_THAT(refusal(folder.write("c.hdr", header + "-Y 0 +X 5\n")), HasSubstr("5 x 0 pixels"));
+
+    write_image(folder.path() / "d.png", gradient(4, 4));
+    std::string png = bytes_of(folder.path() / "d.png");
+    png.replace(16, 8, std::string("\0\0\x50\0\0\0\x40\0", 8));  // width 20480, height 16384
+    EXPECT_THAT(refusal(folder.write("d.png", png)), HasSubstr("20480 x 16384 pixels"));
+}
+
+TEST(ImageFiles, RadianceOfAnotherLayoutIsRefused) {
+    const TemporaryFolder folder;
+    EXPECT_THAT(refusal(folder.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234")),
+                HasSubstr("32-bit_rle_xyze"));
+    EXPECT_THAT(refusal(folder.write("b.hdr", "#?RADIANCE\n\n+Y 1 +X 1\n1234")), HasSubstr("'+Y 1 +X 1'"));
+}
+
+TEST(ImageFiles, FormatIsThatOfTheExtension) {
+    EXPECT_EQ(require_image_format("a/b.png"), ImageFormat::png);
+    EXPECT_EQ(require_image_format("b.JPG"), ImageFormat::jpeg);
+    EXPECT_EQ(require_image_format("b.jpeg"), ImageFormat::jpeg);
+    EXPECT_EQ(require_image_format("b.exr"), ImageFormat::exr);
+    EXPECT_EQ(require_image_format("b.png.hdr"), ImageFormat::hdr);
+    for (const char* unknown : {"b.tiff", "b", "png", ".png", "b.png "}) {
+        try {
+            require_image_format(unknown);
+            ADD_FAILURE() << unknown;
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), HasSubstr("expected one of .png .jpg .jpeg .exr .hdr"));
+        }
+    }
+}
+
+/// The format as Ward 1991 has it: 0x80 / 256 x 2^(0x81 - 128) = 1.
+TEST(ImageFiles, ReadsRadianceFilesWithoutRuns) {
+    const TemporaryFolder folder;
+    const std::string pixels("\x80\x40\x00\x81\x00\x00\x00\x00", 8);
+    const Image image = read_image(folder.write("a.hdr", "#?RADIANCE\nEXPOSURE=1\n\n-Y 1 +X 2\n" + pixels));
+    EXPECT_EQ(image.at(0, 0), Rgb(1, 0.5f, 0));
+    EXPECT_EQ(image.at(1, 0), Rgb(0, 0, 0));
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,153 @@
+#include "interflect/image/render.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "interflect/base/error.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using testing_support::add_material;
+using testing_support::add_rectangle;
+
+constexpr float pi = std::numbers::pi_v<float>;
+const Rgb reflectance(0.5f, 0.25f, 0.125f), exitance(3, 2, 1), irradiance(10, 20, 40);
+const Rgb luminance_of_quad = (exitance + reflectance * irradiance) / pi;
+
+/// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
+View view_of_plane() { return {"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90}; }
+
+/// A rectangle in the plane y = 0 that faces the eye.
+void add_facing(Scene& scene, float left, float right, float bottom, float top, std::uint32_t material) {
+    add_rectangle(scene, V3f(left, 0, bottom), V3f(right - left, 0, 0), V3f(0, 0, top - bottom), material);
+}
+
+Image picture(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
+              const View& view = view_of_plane()) {
+    return render(scene, RayCaster(scene), view, h, options).image;
+}
+
+class FlatAndSmooth : public testing::TestWithParam<Shading> {};
+INSTANTIATE_TEST_SUITE_P(Shading, FlatAndSmooth, testing::Values(Shading::flat, Shading::smooth));
+
+TEST_P(FlatAndSmooth, LuminanceIsRadiosityOverPi) {
+    Scene scene;
+    add_facing(scene, -9, 9, -9, 9, add_material(scene, reflectance, exitance));
+    for (const Rgb& pixel : picture(scene, {irradiance}, {.width = 4, .height = 2, .shading = GetParam()}).pixels)
+        for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(pixel[c], luminance_of_quad[c]);
+}
+
+TEST(Render, FlatLuminanceIsExact) {
+    Scene scene;
+    add_facing(scene, -9, 9, -9, 9, add_material(scene, reflectance, exitance));
+    for (const Rgb& pixel : picture(scene, {irradiance}, {.width = 4, .height = 2, .shading = Shading::flat}).pixels)
+        EXPECT_EQ(pixel, luminance_of_quad);
+}
+
+/// Red is up and to the left, green down and to the right: upside down or mirrored pictures differ.
+TEST(Render, UpIsUpAndLeftIsLeft) {
+    Scene scene;
+    add_facing(scene, -9, 0, 0, 9, add_material(scene, Rgb(0, 0, 0), Rgb(pi, 0, 0)));
+    add_facing(scene, 0, 9, -9, 0, add_material(scene, Rgb(0, 0, 0), Rgb(0, pi, 0)));
+    const Image image = picture(scene, {Rgb(0, 0, 0), Rgb(0, 0, 0)}, {.width = 2, .height = 2});
+    EXPECT_EQ(image.at(0, 0), Rgb(1, 0, 0));
+    EXPECT_EQ(image.at(1, 1), Rgb(0, 1, 0));
+    EXPECT_EQ(image.at(1, 0), Rgb(0, 0, 0));
+    EXPECT_EQ(image.at(0, 1), Rgb(0, 0, 0));
+}
+
+/// A white edge at x = 0.3 of a picture from -1 to 1 and 4 pixels wide covers pixel 2 (0 to 0.5) to 60%.
+TEST(Render, EdgesAreSmoothedByCoverage) {
+    Scene scene;
+    add_facing(scene, -9, 0.3f, -9, 9, add_material(scene, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
+    const Image image = picture(scene, {Rgb(0, 0, 0)}, {.width = 4, .height = 4, .samples = 64});
+    for (int y = 0; y < 4; ++y) {
+        EXPECT_EQ(image.at(1, y), Rgb(1, 1, 1));
+        EXPECT_NEAR(image.at(2, y).x, 0.6, 1.5 / 64) << "64 points are stratified in 64 columns";
+        EXPECT_EQ(image.at(3, y), Rgb(0, 0, 0));
+    }
+}
+
+TEST(Render, CountsRaysThatEscape) {
+    Scene scene;
+    add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
+    const Rendering half =
+        render(scene, RayCaster(scene), view_of_plane(), std::vector{irradiance}, {.width = 8, .height = 4});
+    EXPECT_EQ(half.rays, 8 * 4 * 16);
+    EXPECT_EQ(half.escaped_rays, half.rays / 2);
+    EXPECT_EQ(half.non_finite_pixels, 0);
+}
+
+TEST(Render, CountsWhatIsNotANumberAndDoesNotHideIt) {
+    Scene scene;
+    const std::uint32_t material = add_material(scene, reflectance, exitance);
+    add_facing(scene, -9, 0, -9, 9, material);
+    add_facing(scene, 0, 9, -9, 9, material);
+    const Rgb broken(1, std::numeric_limits<float>::quiet_NaN(), 1);
+    const Rendering rendering = render(scene, RayCaster(scene), view_of_plane(), std::vector{irradiance, broken},
+                                       {.width = 8, .height = 4, .shading = Shading::flat});
+    EXPECT_EQ(rendering.non_finite_pixels, 4 * 4);
+    EXPECT_FALSE(is_finite(rendering.image.at(7, 0)));
+    EXPECT_TRUE(is_finite(rendering.image.at(0, 0)));
+}
+
+/// A box lit unevenly, seen from inside, so that every kind of edge is in the picture.
+struct UnevenBox {
+    Scene scene = testing_support::closed_box(V3f(1, 2, 3), 3, {{"grey", Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0)}});
+    std::vector<Rgb> irradiance;
+    View view{"inside", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2), V3f(0, 0, 1), 80};
+    UnevenBox() {
+        for (std::size_t i = 0; i < scene.patches.size(); ++i)
+            irradiance.push_back(Rgb(1, 2, 3) * static_cast<float>(1 + i % 7));
+    }
+};
+
+TEST_P(FlatAndSmooth, SameBitsForAnyNumberOfThreads) {
+    const UnevenBox box;
+    std::vector<std::vector<Rgb>> pictures;
+    for (const std::size_t threads : {1, 2, 5}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        pictures.push_back(
+            picture(box.scene, box.irradiance, {.width = 160, .height = 90, .shading = GetParam()}, box.view).pixels);
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+    EXPECT_EQ(pictures[0], pictures[2]);
+}
+
+TEST(Render, SeedMovesTheRaysAndNothingElse) {
+    const UnevenBox box;
+    const auto mean = [&](std::uint64_t seed) {
+        RgbD sum(0, 0, 0);
+        const Image image = picture(box.scene, box.irradiance,
+                                    {.width = 80, .height = 45, .shading = Shading::flat, .seed = seed}, box.view);
+        for (const Rgb& pixel : image.pixels) sum += RgbD(pixel);
+        return luminance(sum) / static_cast<double>(image.pixels.size());
+    };
+    EXPECT_NE(mean(1), mean(2));
+    EXPECT_NEAR(mean(1) / mean(2), 1, 1e-3);
+}
+
+TEST(Render, ManySamplesAPixelAreStillOneMean) {
+    Scene scene;
+    add_facing(scene, -9, 9, -9, 9, add_material(scene, reflectance, exitance));
+    const Image image =
+        picture(scene, {irradiance}, {.width = 1, .height = 1, .samples = 3000, .shading = Shading::flat});
+    EXPECT_EQ(image.at(0, 0), luminance_of_quad);
+}
+
+TEST(Render, RefusesWhatDoesNotFitTogether) {
+    Scene scene;
+    add_facing(scene, -1, 1, -1, 1, add_material(scene, reflectance, exitance));
+    EXPECT_THROW(picture(scene, {}, {}), InputError);
+    EXPECT_THROW(picture(scene, {irradiance}, {.samples = 0}), InputError);
+    EXPECT_THROW(picture(scene, {irradiance}, {.width = 0}), InputError);
+}
+
+}  // namespace
+}  // namespace interflect
