@@ -106,15 +106,15 @@ std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t 
     double cumulative = 0;  // summed in the order of q_sum, so that it ends at q_sum exactly, and the rays at N
     for (std::size_t s = 0; s < q.size(); ++s) {
         cumulative += q[s];
-        first[s + 1] = static_cast<std::int64_t>(cumulative / q_sum * static_cast<double>(ray_count) + offset);
+        const double rays = cumulative / q_sum * static_cast<double>(ray_count) + offset;
+        first[s + 1] = std::min(ray_count, static_cast<std::int64_t>(rays));  // N + offset may round up to N + 1
     }
     return first;
 }
 
 std::vector<double> power_weights(std::span<const Rgb> power) {
     std::vector<double> q(power.size());
-    for (std::size_t s = 0; s < q.size(); ++s)
-        q[s] = is_finite(power[s]) ? static_cast<double>(channel_sum(power[s])) : 0.0;
+    for (std::size_t s = 0; s < q.size(); ++s) q[s] = is_finite(power[s]) ? channel_sum(RgbD(power[s])) : 0.0;
     return q;
 }
 
