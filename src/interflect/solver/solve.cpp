@@ -88,20 +88,24 @@ void start_incrementally(Run& run, const Monitor& monitor) {
     std::vector<Rgb> unshot = radiated_power(run.surfaces, run.solution.irradiance);
     const double emitted = channel_sum(run.solution.emitted_power);
     RgbD escaped_power(0, 0, 0);
-    std::int64_t used = 0;
-    for (double left = emitted; left > negligible_unshot * emitted; left = channel_sum(total(unshot))) {
+    std::int64_t budget = run.solution.options.rays;
+    double left = emitted, decay = 0;  // unshot power, and by what it fell in the last bounce
+    while (left > negligible_unshot * emitted && budget > 0) {
+        // Rays in proportion to power; but if all bounces to come decay alike, they must do with half of the budget.
         const double share = static_cast<double>(run.schedule.start_rays()) * left / emitted;
-        const std::int64_t rays =
-            std::min(std::max<std::int64_t>(1, std::llround(share)), run.solution.options.rays - used);
-        if (rays == 0) break;
+        const double affordable = 0.5 * (1 - decay) * static_cast<double>(budget);
+        const std::int64_t rays = std::max<std::int64_t>(1, std::llround(std::min(share, affordable)));
         const std::vector<Rgb> received = irradiance_from(run, unshot, rays, escaped_power);
-        used += rays;
+        budget -= rays;
         for (std::size_t i = 0; i < unshot.size(); ++i) {
             run.solution.irradiance[i] += received[i];
             unshot[i] = run.surfaces.area(i) * run.surfaces.reflectance(i) * received[i];
         }
+        const double reflected = channel_sum(total(unshot));
+        decay = reflected / left;
+        left = reflected;
     }
-    run.schedule.began_with(used);
+    run.schedule.began_with(run.solution.options.rays - budget);
     report(run, 0, escaped_power, monitor);
 }
 
