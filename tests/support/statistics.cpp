@@ -33,13 +33,13 @@ double binomial_test(std::int64_t successes, std::int64_t trials, double probabi
     return std::min(1.0, 2 * std::min(at_most, at_least));
 }
 
-double chi_square_test(std::span<const double> observed, std::span<const double> expected) {
+double chi_square_test(std::span<const double> observed, std::span<const double> expected, int constraints) {
     double statistic = 0;
     for (std::size_t i = 0; i < observed.size(); ++i) {
         const double difference = observed[i] - expected[i];
         statistic += difference * difference / expected[i];
     }
-    return cdf(complement(math::chi_squared(static_cast<double>(observed.size() - 1)), statistic));
+    return cdf(complement(math::chi_squared(static_cast<double>(observed.size()) - constraints), statistic));
 }
 
 double bonferroni(std::span<const double> p_values) {

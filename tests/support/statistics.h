@@ -19,8 +19,9 @@ double z_test(double value, double mean, double standard_deviation);
 /// Two-sided p-value of the hypothesis that each of `trials` independent trials succeeds with `probability`.
 double binomial_test(std::int64_t successes, std::int64_t trials, double probability);
 
-/// p-value of Pearson's chi-square test; every expected count should be 5 or more, and both sum to the same.
-double chi_square_test(std::span<const double> observed, std::span<const double> expected);
+/// p-value of Pearson's chi-square test; every expected count should be 5 or more.
+/// @param constraints  How many independent sums of the observed counts the expected ones were made to agree with.
+double chi_square_test(std::span<const double> observed, std::span<const double> expected, int constraints = 1);
 
 /// The p-value of all hypotheses together, by Bonferroni's bound, which holds for dependent tests too.
 double bonferroni(std::span<const double> p_values);

@@ -1,0 +1,156 @@
+// The furnace: a closed box with exitance M and reflectance rho everywhere. Every patch's form factors sum to 1, so
+// H = B = M + rho H and B = M / (1 - rho). Before the limit the expected value follows Eq. 6, so each iteration has its
+// exact answer. The box is 1 x 2 x 3 m, 3 x 3 patches a wall: in a cube of 2 x 2 all 24 patches are congruent, and
+// wrong directions or starting points pass unseen.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "interflect/solver/solve.h"
+#include "interflect/solver/surfaces.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr double exitance = 2.0;  // M [W/m^2]
+constexpr int warm_up = 4, averaged = 4, runs = 64;
+constexpr double float_rounding = 1e-5;  // relative, of sums of floats
+
+Scene furnace(double rho) {
+    return closed_box({1, 2, 3}, 3, {{"wall", Rgb(static_cast<float>(rho)), Rgb(static_cast<float>(exitance))}});
+}
+
+/// H after all iterations, by Eq. 6 with the sum of the form factors, 1; tends to M / (1 - rho).
+double expected_irradiance(double rho) {
+    double irradiance = 0.0;
+    for (int k = 1; k <= warm_up + averaged; ++k) {
+        const double tau = k <= warm_up ? 1.0 : 1.0 / (k - warm_up);
+        irradiance += tau * (exitance + rho * irradiance - irradiance);
+    }
+    return irradiance;
+}
+
+SolveOptions paper_options(std::uint64_t seed) {
+    SolveOptions options;
+    options.incremental_start = false;
+    options.warm_up = warm_up;
+    options.iterations = averaged;
+    options.rays_per_iteration = 10'000;
+    options.seed = seed;
+    return options;
+}
+
+double area_weighted_mean(const Surfaces& surfaces, const std::vector<Rgb>& irradiance) {
+    double sum = 0, area = 0;
+    for (std::size_t i = 0; i < irradiance.size(); ++i) {
+        sum += static_cast<double>(surfaces.area(i)) * irradiance[i].x;
+        area += surfaces.area(i);
+    }
+    return sum / area;
+}
+
+/// Solutions of one furnace with many seeds.
+struct Runs {
+    std::vector<std::vector<double>> irradiance;  // [patch][run]
+    std::vector<double> area_mean, plain_mean;    // [run], over the patches
+
+    template <class Options>
+    Runs(const Scene& scene, const Options& options_of_seed) : irradiance(scene.patches.size()) {
+        const RayCaster ray_caster(scene);
+        const Surfaces surfaces(scene);
+        for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+            const Solution solution = solve(scene, ray_caster, options_of_seed(seed));
+            EXPECT_EQ(solution.iterations.back().escaped_rays + solution.non_finite, 0);
+            area_mean.push_back(area_weighted_mean(surfaces, solution.irradiance));
+            plain_mean.push_back(0);
+            for (std::size_t i = 0; i < irradiance.size(); ++i) {
+                const double h = solution.irradiance[i].x;
+                irradiance[i].push_back(h);
+                plain_mean.back() += h / static_cast<double>(irradiance.size());
+            }
+        }
+    }
+
+    /// p-value of the hypothesis that every patch's expected value is `expected`; patches of one run are correlated.
+    double p_value(double expected) const {
+        std::vector<double> p_values;
+        for (const std::vector<double>& patch : irradiance) p_values.push_back(t_test(patch, expected));
+        return bonferroni(p_values);
+    }
+};
+
+class Furnace : public testing::TestWithParam<double> {};  // rho
+INSTANTIATE_TEST_SUITE_P(Rho, Furnace, testing::Values(0.0, 0.1, 0.5, 0.9, 0.95));
+
+TEST_P(Furnace, IsUnbiasedAndWouldNoticeOnePercent) {
+    const double rho = GetParam(), expected = expected_irradiance(rho);
+    const Runs sample(furnace(rho), paper_options);
+
+    EXPECT_GT(sample.p_value(expected), false_alarm);
+    EXPECT_LT(sample.p_value(1.01 * expected), false_alarm);
+
+    // Every ray carries the same and none escapes: the area-weighted mean has no noise at all.
+    for (const double mean : sample.area_mean) EXPECT_NEAR(mean / expected, 1, float_rounding);
+    // The plain mean over the patches has: it must lie within three standard errors.
+    constexpr double three_standard_errors = 0.0027;  // p-value of a normal variable three standard deviations off
+    EXPECT_GT(t_test(sample.plain_mean, expected), three_standard_errors);
+}
+
+TEST_P(Furnace, HasTheSameAnswerWithTheDefaultStart) {
+    const double rho = GetParam(), limit = exitance / (1 - rho);
+    const Runs sample(furnace(rho), [](std::uint64_t seed) {
+        SolveOptions options;
+        options.rays = 100'000;
+        options.seed = seed;
+        return options;
+    });
+    // The start leaves up to 0.1% of the power unshot; that is the same in every run, since none of it is noise.
+    for (const double mean : sample.area_mean) {
+        EXPECT_GT(mean / limit, 0.999 - float_rounding);
+        EXPECT_LT(mean / limit, 1 + float_rounding);
+    }
+    EXPECT_GT(sample.p_value(sample.area_mean[0]), false_alarm);
+    EXPECT_LT(sample.p_value(1.01 * limit), false_alarm);
+}
+
+TEST(Furnace, RadiosityOfBlackWallsIsTheirExitanceExactly) {
+    const Scene scene = furnace(0);
+    const Surfaces surfaces(scene);
+    const Solution solution = solve(scene, RayCaster(scene), paper_options(1));
+    const std::vector<Rgb> power = radiated_power(surfaces, solution.irradiance);
+    for (std::size_t i = 0; i < power.size(); ++i)
+        EXPECT_EQ(power[i], surfaces.area(i) * Rgb(static_cast<float>(exitance)));
+}
+
+// A closed room of surface S with one luminaire of power Phi and reflectance rho everywhere: all that is emitted and
+// reflected arrives, S E = Phi + rho S E, whatever stands in the room.
+class ClosedRoom : public testing::TestWithParam<double> {};  // rho
+INSTANTIATE_TEST_SUITE_P(Rho, ClosedRoom, testing::Values(0.0, 0.5, 0.9, 0.95));
+
+TEST_P(ClosedRoom, HasTheMeanIrradianceOfItsPowerBalance) {
+    const double rho = GetParam();
+    const Rgb reflectance(static_cast<float>(rho));
+    Scene scene = closed_box({5, 4, 2.5f}, 3, {{"wall", reflectance, Rgb(0)}});
+    const std::uint32_t lamp = add_material(scene, reflectance, {300, 200, 100});
+    scene.patches[5 * 9 + 4].material = lamp;                                         // the middle of the ceiling
+    add_rectangle(scene, {2, 1, 0.5f}, {1, 0, 0}, {0, 2, 0.5f}, 0, 1, 1, true);       // a slanting table
+    add_rectangle(scene, {1, 1, 0}, {0, 1, 0}, {0.25f, 0.25f, 1.5f}, 0, 2, 2, true);  // a leaning board
+
+    const Surfaces surfaces(scene);
+    SolveOptions options;
+    options.rays = 200'000;
+    const Solution solution = solve(scene, RayCaster(scene), options);
+    double surface = 0;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) surface += surfaces.area(i);
+    const double expected = solution.emitted_power.x / (surface * (1 - rho));
+    EXPECT_EQ(solution.iterations.back().escaped_rays, 0);
+    EXPECT_NEAR(area_weighted_mean(surfaces, solution.irradiance) / expected, 1, 1e-3 + float_rounding);
+}
+
+}  // namespace
+}  // namespace interflect
