@@ -27,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     SceneOptions scene;
+    MeshOptions mesh;
     std::int64_t rays = 4'000'000;
     int rounds = 5, threads = 0;
     bool json = false;
@@ -91,7 +92,7 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const std::
 
 void run(const Options& options) {
     const ThreadLimit limit(options.threads);
-    const Scene scene = options.scene.load();
+    const Scene scene = options.mesh.divide(options.scene.load(), options.scene.read);
     const RayCaster ray_caster(scene);
     const std::vector<Ray> rays = solver_rays(scene, ray_caster, options.rays);
 
@@ -131,6 +132,7 @@ void add_bench(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *app.add_subcommand("bench", "Measure the solver's rays a second beside the ray tracer's own");
     options->scene.add_to(command);
+    options->mesh.add_to(command);
     add_parsed(command, "--rays", options->rays, parse_count, "Rays of each measurement (default 4M)");
     command.add_option("--rounds", options->rounds, "How often to measure; medians are reported")
         ->capture_default_str()

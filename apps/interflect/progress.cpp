@@ -47,7 +47,7 @@ std::string duration(double seconds) {
 
 std::string magnitude(double number) {
     for (const char* suffix : {"", " k", " M", " G"}) {
-        if (number < 999.5) return fmt::format(*suffix ? "{:.1f}{}" : "{:.0f}{}", number, suffix);
+        if (number < 999.5) return *suffix ? fmt::format("{:.1f}{}", number, suffix) : fmt::format("{:.0f}", number);
         number /= 1000;
     }
     return fmt::format("{:.1f} T", number);

@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <map>
 
 #include "apps/interflect/parse.h"
+#include "interflect/scene/split.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {
@@ -32,6 +34,27 @@ void log_warnings(const Warnings& warnings) {
         const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
         spdlog::warn("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times);
     }
+}
+
+void MeshOptions::add_to(CLI::App& app) {
+    const auto check = [](const std::string& text) {
+        if (text == "auto" || text == "none") return std::string();
+        float number = 0;
+        return CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number)
+                   ? std::string()
+                   : std::string("expected a length in metres, auto or none");
+    };
+    app.add_option("--mesh-size", size,
+                   "Longest edge of the mesh [m]; auto: from the scene's size; none: as in the file")
+        ->capture_default_str()
+        ->check(CLI::Validator(check, "METRES|auto|none"))
+        ->group("Solver");
+}
+
+Scene MeshOptions::divide(Scene scene, const ReadOptions& read) const {
+    if (size == "none") return scene;
+    const float edge = size == "auto" ? default_mesh_size(scene) : std::stof(size);
+    return split_patches(scene, edge, read.max_patches);
 }
 
 void ViewOptions::add_to(CLI::App& app) {

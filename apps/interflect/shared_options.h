@@ -22,6 +22,14 @@ struct SceneOptions {
     Scene load() const;
 };
 
+/// How finely a scene is divided before a method that does not refine by itself.
+struct MeshOptions {
+    std::string size = "auto";
+
+    void add_to(CLI::App& app);
+    Scene divide(Scene scene, const ReadOptions& read) const;
+};
+
 /// From where to look.
 struct ViewOptions {
     std::vector<std::string> names;

@@ -11,6 +11,7 @@ namespace interflect::command {
 void add_solve(CLI::App& app, int& exit_code) {
     struct Options {
         SceneOptions scene;
+        MeshOptions mesh;
         ViewOptions view;
         SolverOptions solver;
         std::filesystem::path output;
@@ -20,11 +21,12 @@ void add_solve(CLI::App& app, int& exit_code) {
     options->scene.add_to(command);
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required();
     options->solver.add_to(command);
+    options->mesh.add_to(command);
     options->view.add_to(command);
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
         PendingFile output(options->output);
-        Scene scene = options->scene.load();
+        Scene scene = options->mesh.divide(options->scene.load(), options->scene.read);
         // What was asked for comes first: `render` takes the first view of a solution.
         const std::vector<View> views = options->view.views(scene);
         const RayCaster ray_caster(scene);

@@ -1,0 +1,138 @@
+#include "interflect/scene/split.h"
+
+#include <ImathBox.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <unordered_map>
+
+#include "interflect/base/error.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+namespace {
+
+/// Pieces of each direction of a patch: along its first edge and along its last; a triangle has one number for both.
+struct Pieces {
+    std::uint64_t u = 1, v = 1;
+};
+
+std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
+    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((b - a).length() / largest_edge)));
+}
+
+Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
+    const auto edge = [&](std::size_t i, std::size_t j) {
+        return pieces_of_edge(scene.vertices[patch.vertices[i]], scene.vertices[patch.vertices[j]], largest_edge);
+    };
+    if (patch.is_triangle()) {
+        const std::uint64_t n = std::max({edge(0, 1), edge(1, 2), edge(2, 0)});
+        return {n, n};
+    }
+    return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
+}
+
+/// Vertices of the new scene, found again by where they lie, so that neighbours share them.
+class VertexPool {
+  public:
+    explicit VertexPool(std::vector<V3f>& vertices) : vertices_(vertices) {}
+
+    std::uint32_t add(const V3f& v) {
+        const auto [entry, is_new] = index_.try_emplace(v, static_cast<std::uint32_t>(vertices_.size()));
+        if (is_new) vertices_.push_back(v);
+        return entry->second;
+    }
+
+  private:
+    struct Hash {
+        std::size_t operator()(const V3f& v) const {
+            const std::hash<float> h;
+            return (h(v.x) * 31 + h(v.y)) * 31 + h(v.z);
+        }
+    };
+    std::vector<V3f>& vertices_;
+    std::unordered_map<V3f, std::uint32_t, Hash> index_;
+};
+
+/// Adds one piece of `patch`, and that of its other side where it has one.
+void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> vertices) {
+    const auto index = static_cast<std::uint32_t>(split.patches.size());
+    Patch front = patch;
+    front.vertices = vertices;
+    front.other_side = patch.other_side == none ? none : index + 1;
+    split.patches.push_back(front);
+    if (patch.other_side == none) return;
+    Patch back = front;
+    back.other_side = index;
+    std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
+    split.patches.push_back(back);
+}
+
+void split_quadrilateral(Scene& split, VertexPool& pool, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
+    const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
+        return pool.add(geometry.point(
+            {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.v)}));
+    };
+    for (std::uint64_t j = 0; j < n.v; ++j)
+        for (std::uint64_t i = 0; i < n.u; ++i)
+            add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+}
+
+void split_triangle(Scene& split, VertexPool& pool, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
+    const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
+        return pool.add(geometry.point(
+            {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.u)}));
+    };
+    for (std::uint64_t j = 0; j < n.u; ++j)
+        for (std::uint64_t i = 0; i + j < n.u; ++i) {
+            add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), none});
+            if (i + j + 1 < n.u)
+                add_piece(split, patch, {vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1), none});
+        }
+}
+
+}  // namespace
+
+Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches) {
+    double count = 0;
+    for (const Patch& patch : scene.patches) {
+        const Pieces n = pieces_of(scene, patch, largest_edge);
+        count += static_cast<double>(n.u) * static_cast<double>(n.v);
+    }
+    if (count > static_cast<double>(most_patches))
+        throw InputError(
+            fmt::format("{}: a mesh size of {} m asks for {:.3g} patches, more than the limit of {}; use "
+                        "a larger --mesh-size or raise --max-patches",
+                        scene.name, largest_edge, count, most_patches));
+    Scene split = scene;
+    split.vertices.clear();
+    split.patches.clear();
+    split.patches.reserve(static_cast<std::size_t>(count));
+    VertexPool pool(split.vertices);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const Patch& patch = scene.patches[i];
+        if (patch.other_side != none && patch.other_side < i) continue;  // went in with its front
+        const PatchGeometry geometry(scene, patch);
+        const Pieces n = pieces_of(scene, patch, largest_edge);
+        if (patch.is_triangle())
+            split_triangle(split, pool, patch, geometry, n);
+        else
+            split_quadrilateral(split, pool, patch, geometry, n);
+    }
+    return split;
+}
+
+float default_mesh_size(const Scene& scene) {
+    constexpr float pieces_of_diagonal = 48;
+    constexpr double moderate_patches = 200'000;
+    Imath::Box3f box;
+    for (const V3f& v : scene.vertices) box.extendBy(v);
+    double area = 0;
+    for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
+    return std::max(box.size().length() / pieces_of_diagonal, static_cast<float>(std::sqrt(area / moderate_patches)));
+}
+
+}  // namespace interflect

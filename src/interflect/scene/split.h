@@ -1,0 +1,18 @@
+#pragma once
+
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// The scene with every patch divided into a grid of patches whose edges are at most `largest_edge` long: the fixed
+/// mesh of a method that does not refine by itself. Quadrilaterals become grids, triangles become n^2 triangles;
+/// patches that share an edge divide it alike. Sides stay neighbours, other_side included.
+/// @param largest_edge  [m], > 0.
+/// @throws InputError where more than `most_patches` would result.
+Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches);
+
+/// An edge length that shows light and shadow over the scene at a moderate cost: the diagonal of its bounding box over
+/// 48, larger where the scene's area would ask for more than about 200,000 patches [m].
+float default_mesh_size(const Scene& scene);
+
+}  // namespace interflect
