@@ -56,6 +56,7 @@ bool has_three_distinct(Words words) {
 }
 
 struct SourceFile {
+    SourceFile(fs::path p, std::string t) : path(std::move(p)), text(std::move(t)) {}
     fs::path path;
     std::string text;
 };
@@ -89,7 +90,7 @@ struct OpenObject {
 class Reader {
   public:
     Reader(const fs::path& path, const ReadOptions& options);
-    Scene read(const SourceFile& source);
+    Scene read(const fs::path& path, std::string text);
 
   private:
     using Handler = void (Reader::*)(Words);
@@ -105,7 +106,9 @@ class Reader {
     void read_lines();
     void read_line(Words words);
     void close_all();
+    const SourceFile& add_source(const fs::path& path, std::string text);
     const SourceFile& included(std::string_view name);
+    void refuse_recursion(const SourceFile& source) const;
     Location here() const { return {&file_->source.path, file_->lines.line()}; }
     void count_repeated(std::size_t words);
 
@@ -156,7 +159,8 @@ class Reader {
     std::uint32_t current_object();
 
     ReadOptions options_;
-    std::map<fs::path, SourceFile> included_;  // by canonical path; contexts hold views of the texts
+    std::map<fs::path, SourceFile> sources_;  // by canonical path; contexts hold views of the texts
+    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // the same by the path as it was written
     OpenFile* file_ = nullptr;
     int include_depth_ = 0, repeating_arrays_ = 0;
     std::uint64_t repeated_words_ = 0;
@@ -212,9 +216,8 @@ Reader::Reader(const fs::path& path, const ReadOptions& options)
       vertices_("vertex", options.max_name_length),
       scene_(path, options) {}
 
-Scene Reader::read(const SourceFile& source) {
-    scene_.add_file(source.path);
-    read_file(source, {});
+Scene Reader::read(const fs::path& path, std::string text) {
+    read_file(add_source(path, std::move(text)), {});
     return scene_.finish();
 }
 
@@ -287,31 +290,40 @@ void Reader::close_all() {
     close_objects(file_->outer_objects);
 }
 
+const SourceFile& Reader::add_source(const fs::path& path, std::string text) {
+    std::error_code ignored;  // what has no canonical path gets an empty one
+    const auto [source, is_new] = sources_.try_emplace(fs::weakly_canonical(path, ignored), path, std::move(text));
+    if (is_new) scene_.add_file(path);
+    source_of_path_.emplace(path.string(), &source->second);
+    return source->second;
+}
+
 const SourceFile& Reader::included(std::string_view name) {
     const fs::path path = file_->source.path.parent_path() / name;
-    std::error_code error;
-    const fs::path canonical = fs::weakly_canonical(path, error);
-    const auto known = included_.find(canonical);
-    if (known != included_.end()) return known->second;
+    const auto known = source_of_path_.find(path.string());
+    if (known != source_of_path_.end()) return *known->second;
     try {
-        SourceFile source{path, read_text_file(path)};
-        scene_.add_file(path);
-        return included_.emplace(canonical, std::move(source)).first->second;
-    } catch (const InputError& missing) {
-        throw Fault(missing.what());
+        return add_source(path, read_text_file(path));
+    } catch (const InputError& unreadable) {
+        throw Fault(unreadable.what());
     }
+}
+
+void Reader::refuse_recursion(const SourceFile& source) const {
+    std::string chain = source.path.string();
+    bool recursion = false;
+    for (const OpenFile* open = file_; open && !recursion; open = open->includer) {
+        recursion = &open->source == &source;
+        chain = open->source.path.string() + " -> " + chain;
+    }
+    if (recursion) throw Fault("a file includes itself: " + chain);
 }
 
 void Reader::include(Words words) {
     if (include_depth_ >= options_.max_include_depth)
         throw Fault(fmt::format("includes are nested more than {} deep", options_.max_include_depth));
     const SourceFile& source = included(words[0]);
-    std::string chain = source.path.string();
-    for (const OpenFile* open = file_; open; open = open->includer) {
-        chain = open->source.path.string() + " -> " + chain;
-        std::error_code error;
-        if (fs::equivalent(open->source.path, source.path, error)) throw Fault("a file includes itself: " + chain);
-    }
+    refuse_recursion(source);
     ++include_depth_;
     read_file(source, words.subspan(1));
     --include_depth_;
@@ -618,14 +630,12 @@ ReadOptions checked(const ReadOptions& options) {
 }  // namespace
 
 Scene read_mgf(const fs::path& path, const ReadOptions& options) {
-    const SourceFile source{path, read_text_file(path)};
-    return Reader(path, checked(options)).read(source);
+    return Reader(path, checked(options)).read(path, read_text_file(path));
 }
 
 Scene read_mgf_text(std::string_view text, const fs::path& path, const ReadOptions& options) {
     require_text(text, path);
-    const SourceFile source{path, std::string(text)};
-    return Reader(path, checked(options)).read(source);
+    return Reader(path, checked(options)).read(path, std::string(text));
 }
 
 }  // namespace interflect

@@ -1,0 +1,235 @@
+// Bad input gives an InputError that names file and line, at once, and nothing else.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "interflect/base/error.h"
+#include "interflect/formats/load_scene.h"
+#include "interflect/formats/mgf.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+namespace fs = std::filesystem;
+using testing_support::TemporaryFolder;
+
+const std::string three_vertices = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\n";  // six lines
+
+template <class Read>
+std::string message_of(const Read& read) {
+    try {
+        read();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+std::string message(const std::string& text, const ReadOptions& options = {}) {
+    return message_of([&] { read_mgf_text(text, "bad.mgf", options); });
+}
+
+void expect_in(const std::string& message, const std::string& part) {
+    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
+}
+
+struct BadLine {
+    const char* name;
+    const char* line;      // the seventh, after the vertices
+    const char* expected;  // part of the message
+};
+
+class MgfBadLine : public testing::TestWithParam<BadLine> {};
+
+TEST_P(MgfBadLine, IsNamedWithItsFault) {
+    const std::string error = message(three_vertices + GetParam().line + "\nf a b d\n");
+    expect_in(error, "bad.mgf:7: ");
+    expect_in(error, GetParam().expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , MgfBadLine,
+    testing::Values(
+        BadLine{"UndefinedVertex", "f a b missing", "vertex 'missing' is not defined"},
+        BadLine{"TwoVertices", "f a b", "f vertex1 vertex2 vertex3"},
+        BadLine{"RepeatedVertices", "f a b a b", "three different vertices"},
+        BadLine{"EmptyHole", "fh - a b d", "three different vertices"},
+        BadLine{"HoleOfTwo", "fh a b d - a b", "three different vertices"},
+        BadLine{"NotANumber", "p nan 0 0", "'nan' is not a finite number"},
+        BadLine{"Infinity", "p 0 inf 0", "'inf' is not a finite number"},
+        BadLine{"BeyondSinglePrecision", "p 0 0 1e39", "'1e39' is not a finite number"},
+        BadLine{"Hexadecimal", "p 0 0 0x10", "'0x10' is not a finite number"}, BadLine{"CutPoint", "p 0 0", "p x y z"},
+        BadLine{"CutNumber", "p 0 0 -", "'-' is not a finite number"},
+        BadLine{"NegativeReflectance", "rd -.1", "'-.1' must not be negative"},
+        BadLine{"NegativeEmission", "ed -1", "'-1' must not be negative"},
+        BadLine{"NegativeSpecular", "rs -.1 0", "must not be negative"},
+        BadLine{"Sides", "sides 3", "sides must be 1 or 2"}, BadLine{"Chromaticity", "cxy .8 .3", "is no chromaticity"},
+        BadLine{"ChromaticityWithoutLuminance", "cxy .5 0", "is no chromaticity"},
+        BadLine{"Spectrum", "cspec 780 380 1 1", "the shortest wavelength"},
+        BadLine{"Temperature", "cct 500", "at least 1000 K"},
+        BadLine{"MixOfUndefined", "cmix 1 red 1 blue", "colour 'red' is not defined"},
+        BadLine{"MixOddly", "cmix 1 red 1 blue 1", "pairs"}, BadLine{"Refraction", "ir 0 0", "index of refraction"},
+        BadLine{"UndefinedMaterial", "m paint", "material 'paint' is not defined"},
+        BadLine{"UndefinedTemplate", "m paint = paint", "material 'paint' is not defined"},
+        BadLine{"NoEquals", "v a b", "expected '='"}, BadLine{"NoName", "v =", "is not defined"},
+        BadLine{"DashName", "v - =", "cannot be a name"}, BadLine{"Sphere", "sph a 0", "radius of a sphere"},
+        BadLine{"RingWithoutNormal", "ring a 0 1", "vertex 'a' needs a normal"},
+        BadLine{"Torus", "torus a 0 1", "needs a normal"}, BadLine{"Cone", "cone a 1 b -1", "must not differ in sign"},
+        BadLine{"Cylinder", "cyl a 1 a", "at one place"}, BadLine{"Prism", "prism a b d 0", "length of a prism"},
+        BadLine{"UnknownTransform", "xf -q 1", "'-q' is no transform"},
+        BadLine{"TransformByZero", "xf -s 0", "-s cannot scale by 0"},
+        BadLine{"CloseWithoutOpen", "xf", "none was opened"},
+        BadLine{"BillionCopies", "xf -a 1000000000 -t 1 0 0", "--max-patches"},
+        BadLine{"BillionCopiesTogether", "xf -a 10000 -t 1 0 0 -a 100000 -t 0 1 0", "--max-patches"},
+        BadLine{"MissingInclude", "i nowhere.mgf", "there is no such file"}),
+    [](const auto& bad_line) { return bad_line.param.name; });
+
+TEST(MgfBadInput, TransformThatOverflows) {
+    expect_in(message(three_vertices + "xf -s 1e38 -s 1e38\nf a b d\nxf\n"), "bad.mgf:8: the transformed point");
+    expect_in(message(three_vertices + "xf -i 1000000000 -s 2\n"), "bad.mgf:7: the transform is not finite");
+}
+
+TEST(MgfBadInput, NoUsableFaceIsLeft) {
+    expect_in(message(""), "no usable face is left");
+    expect_in(message(three_vertices), "no usable face is left");
+    expect_in(message("v a =\nv b =\nv d =\nf a b d\n"), "no usable face is left");
+    expect_in(message("some text that is no scene\nat all\n"), "no usable face is left");
+}
+
+TEST(MgfBadInput, BinaryJunk) {
+    std::string junk = "v a =\n p 0 0 0\n";
+    junk += '\0';
+    expect_in(message(junk), "bad.mgf:3: this is not a text file");
+}
+
+TEST(MgfBadInput, FileCutAtAnyPlaceIsReadOrRefused) {
+    const std::string text =
+        "m x =\n rd .5\n" + three_vertices + "o thing\nxf -t 0 0 1 -a 2 -t 0 0 3\nf a b d\nxf\no\n";
+    for (std::size_t length = 0; length < text.size(); ++length) {
+        const std::string error = message(text.substr(0, length));
+        if (error != "no error") expect_in(error, "bad.mgf");
+    }
+    EXPECT_EQ(message(text), "no error");
+}
+
+// ---- Limits: refused before the time and memory are spent
+
+TEST(MgfLimits, CopiesTimesContent) {
+    // 1,000 copies are within the limit of 10,000 patches; with 256 patches each they are not.
+    const std::string text = "v c =\nxf -a 1000 -t 3 0 0\nsph c 1\nxf\n";
+    expect_in(message(text, {.max_patches = 10'000}),
+              "bad.mgf:4: this would give more than 10000 patches; --max-patches");
+    EXPECT_EQ(message(text, {.max_patches = 256'000}), "no error");
+}
+
+TEST(MgfLimits, Patches) {
+    const std::string text = three_vertices + "f a b d\nf a b d\n";
+    EXPECT_EQ(message(text, {.max_patches = 4}), "no error");
+    expect_in(message(text, {.max_patches = 3}), "bad.mgf:8: this would give more than 3 patches");
+}
+
+TEST(MgfLimits, NestedArraysOfNothingEnd) {
+    std::string text = three_vertices;
+    for (int i = 0; i < 4; ++i) text += "xf -a 70 -t 1 0 0\n";  // 24 million copies
+    for (int i = 0; i < 4; ++i) text += "xf\n";
+    expect_in(message(text + "f a b d\n", {.max_patches = 10'000}), "--max-patches");
+    std::string sequence;
+    for (int i = 0; i < 1000; ++i) sequence += "xf -a 10000 -t 1 0 0\nxf\n";
+    expect_in(message(sequence, {.max_patches = 10'000}), "--max-patches");
+}
+
+TEST(MgfLimits, ABillionCopiesAreRefusedAtOnce) {
+    const auto start = std::chrono::steady_clock::now();
+    message("xf -a 1000000000 -t 1 0 0\n" + three_vertices + "f a b d\nxf\n");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+}
+
+TEST(MgfLimits, NestingOfTransformsAndObjects) {
+    std::string transforms, objects;
+    for (int i = 0; i < 11; ++i) {
+        transforms += "xf -s 1\n";
+        objects += "o x\n";
+    }
+    expect_in(message(transforms, {.max_nesting = 10}), "bad.mgf:11: transforms are nested more than 10 deep");
+    expect_in(message(objects, {.max_nesting = 10}), "bad.mgf:11: objects are nested more than 10 deep");
+}
+
+TEST(MgfLimits, LinesFacesAndNames) {
+    expect_in(message(three_vertices + "f a b \\\n d\n", {.max_line_length = 9}), "bad.mgf:7: a line of 11 characters");
+    expect_in(message(three_vertices + "f a b d\n", {.max_face_vertices = 2}), "bad.mgf:7: a face of 3 vertices");
+    expect_in(message("m longer =\n", {.max_name_length = 5}), "bad.mgf:1: a name of 6 characters");
+    expect_in(message("o a23\no b23\no c23\no d23\no e23\no f23\n", {.max_name_length = 5}), "bad.mgf:6: ");
+}
+
+TEST(MgfLimits, OptionsThemselves) {
+    EXPECT_THROW(read_mgf_text("", "x.mgf", {.curve_divisions = 0}), InputError);
+    EXPECT_THROW(read_mgf_text("", "x.mgf", {.max_patches = 5'000'000'000}), InputError);
+}
+
+// ---- Files
+
+TEST(MgfBadFiles, MissingFileAndFolder) {
+    const TemporaryFolder folder;
+    expect_in(message_of([&] { read_mgf(folder.path() / "none.mgf"); }), "none.mgf: there is no such file");
+    expect_in(message_of([&] { read_mgf(folder.path()); }), "this is a folder");
+}
+
+TEST(MgfBadFiles, IncludeNamesTheLineThatAskedForIt) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("a.mgf", "\n\ni b.mgf\n");
+    expect_in(message_of([&] { read_mgf(file); }), "a.mgf:3: " + (folder.path() / "b.mgf").string());
+}
+
+TEST(MgfBadFiles, FaultInAnIncludedFileIsNamedThere) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("a.mgf", "i b.mgf\n");
+    folder.write("b.mgf", "\nrd x\n");
+    expect_in(message_of([&] { read_mgf(file); }), "b.mgf:2: 'x' is not");
+}
+
+TEST(MgfBadFiles, IncludeOfItselfNamesTheChain) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("a.mgf", "i sub/../b.mgf\n");
+    fs::create_directory(folder.path() / "sub");
+    folder.write("b.mgf", "# comment\ni a.mgf\n");
+    const std::string error = message_of([&] { read_mgf(file); });
+    expect_in(error, "b.mgf:2: a file includes itself: ");
+    expect_in(error, "a.mgf -> ");
+}
+
+TEST(MgfBadFiles, IncludesThatNestTooDeep) {
+    const TemporaryFolder folder;
+    for (int i = 0; i < 4; ++i)
+        folder.write("f" + std::to_string(i) + ".mgf", "i f" + std::to_string(i + 1) + ".mgf\n");
+    expect_in(message_of([&] { read_mgf(folder.path() / "f0.mgf", {.max_include_depth = 3}); }), "more than 3 deep");
+}
+
+TEST(MgfBadFiles, IncludedFileCannotCloseWhatItDidNotOpen) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("a.mgf", "xf -s 2\ni b.mgf\nxf\n");
+    folder.write("b.mgf", "xf\n");
+    expect_in(message_of([&] { read_mgf(file); }), "b.mgf:1: this closes a transform");
+}
+
+TEST(MgfBadFiles, FilesThatIncludeEachOtherManyTimesEnd) {
+    // 10 files that include the next ten times each: 10^10 lines if nobody counts.
+    const TemporaryFolder folder;
+    for (int i = 0; i < 10; ++i) {
+        std::string text;
+        for (int k = 0; k < 10; ++k) text += "i f" + std::to_string(i + 1) + ".mgf\n";
+        folder.write("f" + std::to_string(i) + ".mgf", text);
+    }
+    folder.write("f10.mgf", "rd .5\n");
+    expect_in(message_of([&] { read_mgf(folder.path() / "f0.mgf", {.max_patches = 1000}); }), "--max-patches");
+}
+
+TEST(LoadScene, UnknownExtensionListsTheKnownOnes) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("scene.xyz", "");
+    expect_in(message_of([&] { load_scene(file); }), "'.xyz'; known: .mgf");
+    expect_in(message_of([&] { load_scene(folder.path()); }), "this is a folder");
+}
+
+}  // namespace
+}  // namespace interflect
