@@ -1,0 +1,156 @@
+// Sizes and weights of iterations (Eq. 6, Prikryl et al. 2000), and the estimate of the error.
+
+#include "interflect/solver/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+constexpr std::size_t patches = 100;
+
+std::vector<IterationPlan> all_plans(Schedule& schedule) {
+    std::vector<IterationPlan> plans;
+    for (IterationPlan plan = schedule.next(0); plan.rays > 0; plan = schedule.next(0)) {
+        plans.push_back(plan);
+        schedule.done(plan);
+    }
+    return plans;
+}
+
+TEST(Schedule, WeighsEqualIterationsAsThePaperDoes) {
+    SolveOptions options;
+    options.warm_up = 2;
+    options.iterations = 4;
+    options.rays_per_iteration = 1000;
+    Schedule schedule(options, patches);
+    const std::vector<IterationPlan> plans = all_plans(schedule);
+    ASSERT_EQ(plans.size(), 6u);
+    const double tau[] = {1, 1, 1, 1.0 / 2, 1.0 / 3, 1.0 / 4};
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+        EXPECT_EQ(plans[k].rays, 1000);
+        EXPECT_DOUBLE_EQ(plans[k].tau, tau[k]) << k;
+    }
+    EXPECT_EQ(schedule.averaged_rays(), 4000) << "the warm-up is not averaged";
+}
+
+TEST(Schedule, WeighsEveryAveragedRayAlike) {
+    SolveOptions options;
+    options.rays = 10'000'000;
+    Schedule schedule(options, patches);
+    schedule.began_with(123'456);
+    // What the start and each iteration weigh in the mean at the end: tau, times 1 - tau of all later ones.
+    std::vector<double> weight{1};
+    std::vector<double> rays{123'456};
+    for (const IterationPlan& plan : all_plans(schedule)) {
+        for (double& w : weight) w *= 1 - plan.tau;
+        weight.push_back(plan.tau);
+        rays.push_back(static_cast<double>(plan.rays));
+    }
+    for (std::size_t k = 0; k < weight.size(); ++k) EXPECT_NEAR(weight[k], rays[k] / 10'000'000, 1e-12) << k;
+}
+
+TEST(Schedule, SpendsTheBudgetExactly) {
+    for (const std::int64_t rays : {1, 2, 999, 50'001, 1'234'567})
+        for (const std::int64_t per_iteration : {0, 1, 1000})
+            for (const int warm_up : {0, 3}) {
+                SolveOptions options;
+                options.rays = rays;
+                options.rays_per_iteration = per_iteration;
+                options.warm_up = warm_up;
+                if (per_iteration == 1 && rays > 1000) continue;  // too many iterations
+                Schedule schedule(options, patches);
+                all_plans(schedule);
+                EXPECT_EQ(schedule.rays(), rays) << per_iteration << ' ' << warm_up;
+            }
+}
+
+TEST(Schedule, GrowsWithWhatIsAveraged) {
+    SolveOptions options;
+    options.rays = 100'000'000;
+    Schedule schedule(options, patches);
+    schedule.began_with(100'000);
+    std::int64_t averaged = 100'000;
+    const std::vector<IterationPlan> plans = all_plans(schedule);
+    for (std::size_t k = 0; k + 1 < plans.size(); ++k) {  // the last one spends what is left
+        EXPECT_EQ(plans[k].rays, std::min<std::int64_t>(averaged / 2, 1 << 24)) << k;
+        averaged += plans[k].rays;
+    }
+    EXPECT_LT(plans.size(), 30u);
+}
+
+TEST(Schedule, HasNoTinyLastIteration) {
+    SolveOptions options;
+    options.rays = 10'300;
+    options.rays_per_iteration = 1000;
+    Schedule schedule(options, patches);
+    EXPECT_EQ(all_plans(schedule).back().rays, 1300);
+}
+
+TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
+    SolveOptions options;
+    EXPECT_EQ(Schedule(options, patches).start_rays(), 50'000);
+    EXPECT_EQ(Schedule(options, 100'000).start_rays(), 400'000);
+    options.rays = 80'000;
+    EXPECT_EQ(Schedule(options, 100'000).start_rays(), 10'000) << "an eighth of the budget";
+    options.rays_per_iteration = 77;
+    EXPECT_EQ(Schedule(options, 100'000).start_rays(), 77);
+}
+
+TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
+    SolveOptions options;
+    options.rays = std::numeric_limits<std::int64_t>::max();
+    options.seconds = 10;
+    Schedule schedule(options, patches);
+    schedule.began_with(1'000'000);
+    EXPECT_EQ(schedule.next(1).rays, 500'000) << "there is time enough";
+    EXPECT_EQ(schedule.next(9).rays, 111'111) << "a million took nine seconds, one is left";
+    EXPECT_EQ(schedule.next(10).rays, 0);
+    EXPECT_EQ(schedule.next(11).rays, 0);
+}
+
+class ErrorEstimates : public testing::Test {
+  protected:
+    const Scene scene_ = testing_support::closed_box({1, 2, 3}, 10, {{"wall", Rgb(0), Rgb(0)}});
+    const Surfaces surfaces_{scene_};
+
+    /// What `rays` rays would estimate: `irradiance` with a standard deviation of `spread` / sqrt(rays) in each patch.
+    std::vector<Rgb> estimate(double irradiance, double spread, std::int64_t rays, std::uint64_t seed) const {
+        std::mt19937_64 random(seed);
+        std::normal_distribution<double> value(irradiance, spread / std::sqrt(static_cast<double>(rays)));
+        std::vector<Rgb> h(surfaces_.size());
+        for (Rgb& c : h) c = Rgb(static_cast<float>(value(random)));
+        return h;
+    }
+};
+
+TEST_F(ErrorEstimates, FindTheErrorOfTheMean) {
+    constexpr double irradiance = 5, spread = 100;
+    constexpr std::int64_t mean_rays = 30'000, rays = 10'000;
+    ErrorEstimate error;
+    for (std::uint64_t seed = 0; seed < 10; ++seed)
+        error.add(surfaces_, estimate(irradiance, spread, mean_rays, 2 * seed), mean_rays,
+                  estimate(irradiance, spread, rays, 2 * seed + 1), rays);
+    const double expected = spread / std::sqrt(40'000.0) / irradiance;
+    EXPECT_NEAR(error.relative(40'000) / expected, 1, 0.05);  // 6,000 differences: 1% noise
+}
+
+TEST_F(ErrorEstimates, AreInfiniteUntilThereAreTwoIterations) {
+    EXPECT_TRUE(std::isinf(ErrorEstimate().relative(1000)));
+}
+
+TEST_F(ErrorEstimates, AreZeroInTheDark) {
+    ErrorEstimate error;
+    const std::vector<Rgb> dark(surfaces_.size(), Rgb(0));
+    error.add(surfaces_, dark, 1000, dark, 1000);
+    EXPECT_EQ(error.relative(2000), 0);
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,205 @@
+// What a caller of solve() relies on, apart from the numbers being right: limits, interruption, reproducibility,
+// errors.
+
+#include "interflect/solver/solve.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
+#include "interflect/base/error.h"
+#include "tests/solver/reference_rooms.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+
+Solution solve(const Scene& scene, const SolveOptions& options, const Monitor& monitor = {}) {
+    return interflect::solve(scene, RayCaster(scene), options, monitor);
+}
+
+SolveOptions with_rays(std::int64_t rays) {
+    SolveOptions options;
+    options.rays = rays;
+    return options;
+}
+
+std::string error_of(const Scene& scene, const SolveOptions& options) {
+    try {
+        solve(scene, options);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "no InputError";
+}
+
+bool all_finite(const std::vector<Rgb>& colours) {
+    return std::all_of(colours.begin(), colours.end(), [](const Rgb& c) { return is_finite(c); });
+}
+
+std::vector<Rgb> solved_on_threads(int threads, const Scene& scene, const SolveOptions& options) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);  // more threads than cores too
+    return arena.execute([&] { return solve(scene, options).irradiance; });
+}
+
+class Reproducible : public testing::TestWithParam<PointSet> {};
+INSTANTIATE_TEST_SUITE_P(Points, Reproducible, testing::Values(PointSet::sobol, PointSet::random));
+
+TEST_P(Reproducible, SameSeedSameBitsForAnyNumberOfThreads) {
+    const Scene scene = furnished_room();
+    SolveOptions options = with_rays(150'000);
+    options.points = GetParam();
+    const std::vector<Rgb> irradiance = solved_on_threads(1, scene, options);
+    for (const int threads : {2, 3}) EXPECT_EQ(solved_on_threads(threads, scene, options), irradiance) << threads;
+}
+
+TEST_P(Reproducible, AnotherSeedGivesOtherBits) {
+    const Scene scene = furnished_room();
+    SolveOptions options = with_rays(100'000);
+    options.points = GetParam();
+    const std::vector<Rgb> irradiance = solve(scene, options).irradiance;
+    options.seed = 2;
+    EXPECT_NE(solve(scene, options).irradiance, irradiance);
+}
+
+TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
+    const Scene scene = colourful_box();
+    for (const std::int64_t rays : {1, 2, 7, 1000, 123'457}) {
+        for (const bool incremental_start : {true, false}) {
+            SolveOptions options = with_rays(rays);
+            options.incremental_start = incremental_start;
+            const Solution solution = solve(scene, options);
+            EXPECT_EQ(solution.iterations.back().rays, rays) << incremental_start;
+            EXPECT_TRUE(all_finite(solution.irradiance)) << rays;
+            EXPECT_FALSE(solution.interrupted);
+        }
+    }
+}
+
+TEST(Solve, ReportsEveryIterationInOrder) {
+    std::vector<IterationReport> reports;
+    const Solution solution = solve(colourful_box(), with_rays(200'000),
+                                    {[&](const IterationReport& report) { reports.push_back(report); }, nullptr});
+    ASSERT_EQ(reports.size(), solution.iterations.size());
+    ASSERT_GE(reports.size(), 3u);
+    EXPECT_EQ(reports[0].iteration, 0) << "the incremental start";
+    EXPECT_TRUE(std::isinf(reports[0].error_estimate));
+    for (std::size_t k = 1; k < reports.size(); ++k) {
+        EXPECT_EQ(reports[k].iteration, static_cast<int>(k));
+        EXPECT_GT(reports[k].rays, reports[k - 1].rays);
+        EXPECT_GE(reports[k].seconds, reports[k - 1].seconds);
+        EXPECT_TRUE(std::isfinite(reports[k].error_estimate));
+    }
+}
+
+TEST(Solve, EndsAfterTheIterationUnderWayWhenTold) {
+    constexpr int last = 3;
+    std::atomic<bool> stop{false};
+    const Monitor monitor{[&](const IterationReport& report) { stop = report.iteration == last; }, &stop};
+    const Solution solution = solve(colourful_box(), with_rays(std::numeric_limits<std::int64_t>::max()), monitor);
+    EXPECT_TRUE(solution.interrupted);
+    EXPECT_EQ(solution.iterations.back().iteration, last);
+    EXPECT_TRUE(all_finite(solution.irradiance));
+    EXPECT_GT(solution.irradiance[0].x, 0);
+}
+
+TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
+    const std::atomic<bool> stop{true};
+    SolveOptions options = with_rays(1000);
+    options.incremental_start = false;
+    options.rays_per_iteration = 1000;
+    std::atomic<bool> late{false};
+    const Monitor monitor{[&](const IterationReport&) { late = true; }, &late};
+    EXPECT_FALSE(solve(colourful_box(), options, monitor).interrupted);
+    EXPECT_TRUE(solve(colourful_box(), options, {{}, &stop}).interrupted);
+}
+
+TEST(Solve, KeepsToTheTimeLimit) {
+    SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
+    options.seconds = 0.3;
+    const IterationReport last = solve(colourful_box(), options).iterations.back();
+    EXPECT_GT(last.seconds, 0.2);
+    EXPECT_LT(last.seconds, 2) << "one iteration later at most, on a busy machine";
+}
+
+TEST(Solve, StopsOnceTheErrorIsSmallEnough) {
+    SolveOptions options = with_rays(20'000'000);
+    options.until = 0.02;
+    const IterationReport last = solve(colourful_box(), options).iterations.back();
+    EXPECT_LE(last.error_estimate, 0.02);
+    EXPECT_GT(last.error_estimate, 0) << "infinite and zero are no estimates";
+    EXPECT_LT(last.rays, options.rays / 10);
+}
+
+TEST(Solve, DoesAsManyIterationsAsItIsTold) {
+    SolveOptions options = with_rays(1'000'000);
+    options.incremental_start = false;
+    options.warm_up = 3;
+    options.iterations = 5;
+    options.rays_per_iteration = 1000;
+    const Solution solution = solve(colourful_box(), options);
+    ASSERT_EQ(solution.iterations.size(), 8u);
+    EXPECT_EQ(solution.iterations.back().rays, 8000);
+}
+
+TEST(Solve, CountsThePowerThatIsThere) {
+    const Scene scene = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.5f), Rgb(1, 2, 3)}});
+    const Solution solution = solve(scene, with_rays(50'000));
+    constexpr double surface = 22;  // m^2
+    for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(solution.emitted_power[channel], surface * (channel + 1), 1e-4);
+        const double limit = surface * (channel + 1) / 0.5;
+        EXPECT_NEAR(solution.iterations.back().total_power[channel] / limit, 1, 1.1e-3) << "0.1% may stay unshot";
+    }
+}
+
+TEST(Solve, LeavesADarkSceneDark) {
+    const Scene scene = closed_box({1, 1, 1}, 2, {{"wall", Rgb(0.5f), Rgb(0)}});
+    const Solution solution = solve(scene, with_rays(1000));
+    EXPECT_EQ(solution.irradiance, std::vector<Rgb>(scene.patches.size(), Rgb(0)));
+    EXPECT_TRUE(solution.iterations.empty());
+    EXPECT_FALSE(solution.interrupted);
+}
+
+TEST(Solve, CarriesEnormousAndTinyLights) {
+    for (const float exitance : {1e-30f, 1e30f, 3e37f}) {
+        const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(exitance)}});
+        const Solution solution = solve(scene, with_rays(10'000));
+        EXPECT_EQ(solution.non_finite, 0);
+        for (const Rgb& h : solution.irradiance) EXPECT_NEAR(h.x / exitance, 2, 0.2);
+    }
+}
+
+TEST(Solve, ListsAllOptionsOutOfRange) {
+    SolveOptions options;
+    options.rays = 0;
+    options.seconds = std::nan("");
+    options.until = 1;
+    options.warm_up = -1;
+    options.iterations = -1;
+    options.rays_per_iteration = -1;
+    const std::string message = error_of(colourful_box(), options);
+    for (const char* name : {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:"})
+        EXPECT_THAT(message, HasSubstr(name));
+}
+
+TEST(Solve, RefusesABrokenScene) {
+    Scene scene = colourful_box();
+    scene.materials[0].exitance.x = std::nanf("");
+    scene.materials[1].reflectance = Rgb(1.5f);
+    const std::string message = error_of(scene, {});
+    EXPECT_THAT(message, HasSubstr("material 'red': exitance"));
+    EXPECT_THAT(message, HasSubstr("material 'green': reflectance"));
+    scene.patches.clear();
+    EXPECT_THAT(error_of(scene, {}), HasSubstr("no patches"));
+}
+
+}  // namespace
+}  // namespace interflect
