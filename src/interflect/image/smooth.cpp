@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "interflect/base/error.h"
+#include "interflect/base/random.h"
 
 namespace interflect {
 
@@ -37,19 +41,63 @@ class DisjointSets {
     std::vector<std::uint32_t> parent_;
 };
 
-struct PositionHash {
-    std::size_t operator()(const V3f& p) const {
-        const std::hash<float> hash;  // equal for 0 and -0
-        return (hash(p.x) * 0x9e3779b97f4a7c15ull ^ hash(p.y)) * 0x9e3779b97f4a7c15ull ^ hash(p.z);
+/// Vertices closer than this share of the scene's largest coordinate are one: eight steps of a float there, more than
+/// what rounding moves a point by when it is computed from either end of an edge.
+constexpr float weld_share = 0x1p-20f;
+
+/// Finds vertices by where they are: a hash grid of cells four times as wide as the distance within which vertices are
+/// the same, so that most searches look into one cell.
+class VertexGrid {
+  public:
+    explicit VertexGrid(const std::vector<V3f>& positions) : positions_(positions), next_(positions.size(), none) {
+        float largest = 0;
+        for (const V3f& p : positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        tolerance_ = weld_share * largest;
+        first_.reserve(positions.size());
     }
+
+    /// An earlier vertex at the place of vertex `i`; where there is none, `i`, which later ones then find.
+    std::uint32_t weld(std::uint32_t i) {
+        const Cell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
+        for (std::int64_t x = low.x; x <= high.x; ++x)
+            for (std::int64_t y = low.y; y <= high.y; ++y)
+                for (std::int64_t z = low.z; z <= high.z; ++z)
+                    if (const std::uint32_t same = find_in({x, y, z}, positions_[i]); same != none) return same;
+        const auto [entry, is_new] = first_.try_emplace(cell_of(positions_[i]), i);
+        if (!is_new) next_[i] = std::exchange(entry->second, i);
+        return i;
+    }
+
+  private:
+    using Cell = Imath::Vec3<std::int64_t>;
+    struct CellHash {
+        std::size_t operator()(const Cell& c) const { return mix(mix(c.x, c.y), c.z); }
+    };
+
+    Cell cell_of(const V3f& p) const {
+        const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
+        const auto index = [&](float v) { return static_cast<std::int64_t>(std::floor(v / size)); };
+        return {index(p.x), index(p.y), index(p.z)};
+    }
+    std::uint32_t find_in(const Cell& cell, const V3f& p) const {
+        const auto entry = first_.find(cell);
+        if (entry == first_.end()) return none;
+        std::uint32_t i = entry->second;
+        while (i != none && (positions_[i] - p).length() > tolerance_) i = next_[i];
+        return i;
+    }
+
+    const std::vector<V3f>& positions_;
+    std::unordered_map<Cell, std::uint32_t, CellHash> first_;  // the latest vertex in each cell
+    std::vector<std::uint32_t> next_;                          // the one before it in the same cell
+    float tolerance_ = 0;                                      // [m]
 };
 
-/// For each vertex the first vertex at the same position.
+/// For each vertex the first one at the same place.
 std::vector<std::uint32_t> weld(const std::vector<V3f>& positions) {
-    std::unordered_map<V3f, std::uint32_t, PositionHash> first;
-    first.reserve(positions.size());
+    VertexGrid grid(positions);
     std::vector<std::uint32_t> welded(positions.size());
-    for (std::uint32_t i = 0; i < positions.size(); ++i) welded[i] = first.try_emplace(positions[i], i).first->second;
+    for (std::uint32_t i = 0; i < positions.size(); ++i) welded[i] = grid.weld(i);
     return welded;
 }
 

@@ -12,8 +12,9 @@ namespace interflect {
 
 /// What counts as one smooth surface.
 struct SmoothingOptions {
-    /// Patches whose normals differ by more than this do not shade into each other [degrees].
-    float crease_angle = 20;
+    /// Patches whose normals differ by more than this do not shade into each other [degrees]. The default is wider than
+    /// the 22.5 degrees between the facets of a sphere or cylinder that a reader has tessellated.
+    float crease_angle = 30;
 };
 
 /// Which corners of patches meet in one point of one smooth surface, and so share one value.
@@ -25,7 +26,9 @@ struct CornerGroups {
 /// Two corners at the same point are of one group where a chain of patches leads from one to the other, each sharing
 /// with the next an edge at that point, of equal material, with no crease between them, and of one orientation (the
 /// edge runs opposite ways in the two patches' vertex orders), so that fronts continue onto fronts and backs onto
-/// backs. Vertices are the same where their positions are exactly equal. Time O(n log n) in the number of patches n.
+/// backs. Vertices are the same where their positions are equal to rounding (2^-20 of the scene's largest coordinate).
+/// A vertex in the middle of a neighbour's edge is not looked for: there shading is not continuous. Time O(n log n) in
+/// the number of patches n.
 CornerGroups group_corners(const Scene& scene, const SmoothingOptions& options = {});
 
 /// One value a corner group: the mean of `values` (one a patch) over the group's corners, weighted by the angles that
