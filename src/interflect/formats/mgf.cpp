@@ -31,7 +31,7 @@ using Words = std::span<const std::string_view>;
 
 /// What arrays and includes may make the reader go over, in words: a two-sided quadrilateral that defines its own
 /// vertices takes 33. It stops files that nest copies of nothing.
-constexpr std::uint64_t repeated_words = 1'000'000, repeated_words_per_patch = 25;
+constexpr std::uint64_t repeated_words = 100'000, repeated_words_per_patch = 25;
 
 /// What is wrong with the line being read; where it is read, file and line are added.
 using Fault = std::invalid_argument;
