@@ -218,6 +218,11 @@ SolvedScene read_solution(const std::filesystem::path& path) {
         if (solved.solution.irradiance.size() != solved.scene.patches.size())
             throw std::runtime_error("irradiance and patches differ in number");
         for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
+        for (std::size_t i = 0; i < solved.solution.irradiance.size(); ++i) {
+            const Rgb& h = solved.solution.irradiance[i];
+            if (!is_finite(h) || std::min({h.x, h.y, h.z}) < 0)
+                throw std::runtime_error(fmt::format("the irradiance of patch {} is negative or not finite", i));
+        }
         return solved;
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("not a solution file that can be read: {}", e.what()));
