@@ -100,7 +100,7 @@ TEST(ExactFormFactors, AreZeroFromBehind) {
 }
 
 TEST(TracedFormFactors, AgreeWithTheExactOnes) {
-    constexpr std::int64_t rays = 20'000;
+    constexpr std::int64_t rays = 10'000;
     const Scene scene = colourful_box();
     const FormFactors exact = exact_form_factors(scene), traced = traced_form_factors(scene, rays, 1);
     std::vector<double> p_values;
