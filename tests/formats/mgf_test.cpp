@@ -170,6 +170,12 @@ TEST(Mgf, MaterialFromATemplate) {
     EXPECT_EQ(material_of(scene, 1).exitance.x, 0);
 }
 
+TEST(Mgf, MaterialThatIsAPlainCopyHasItsOwnName) {
+    const Scene scene = read_faces("f a b d\nm copy = grey\nf a b d\n");
+    EXPECT_EQ(material_of(scene, 0).name, "grey");
+    EXPECT_EQ(material_of(scene, 1).name, "copy");
+}
+
 TEST(Mgf, MaterialThatIsDefinedAgainTheSameIsOneMaterial) {
     EXPECT_EQ(read_faces("f a b d\n" + one_sided + "f a b d\n").materials.size(), 1u);
 }
