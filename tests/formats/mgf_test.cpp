@@ -125,6 +125,7 @@ TEST(Mgf, ColourGivesTheChromaticityRdAndEdTheLuminance) {
         EXPECT_NEAR(luminance(material.reflectance), 0.3, 1e-6) << colour;
         EXPECT_NEAR(luminance(material.exitance), 500, 1e-3) << colour;
         EXPECT_GT(material.reflectance.x, material.reflectance.z) << "all these are yellowish; " << colour;
+        EXPECT_GT(material.exitance.x, material.exitance.z) << colour;
     }
 }
 
