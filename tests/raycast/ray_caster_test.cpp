@@ -1,3 +1,7 @@
+// What rays meet: closed rooms hold them in, each face answers with the side that is seen.
+// Seen to fail (scripts/plant-faults) when the backs of two-sided faces answer as their fronts, backs of one-sided
+// faces stop rays, rays are not lifted off the surface that they leave.
+
 #include "interflect/raycast/ray_caster.h"
 
 #include <ImathMatrix.h>

@@ -1,5 +1,8 @@
 // The rays that leave a patch: origins uniform on its area, directions with density cos(theta) / pi. Pearson's
 // chi-square test against cell areas found by clipping, which shares nothing with the patch's parametrisation.
+//
+// Seen to fail (scripts/plant-faults) when directions lack the cosine or its root, azimuths turn over 6 radians,
+// origins crowd near the centre, origins are uniform in the parameters of an irregular quadrilateral.
 
 #include "interflect/solver/ray_source.h"
 
