@@ -202,7 +202,7 @@ TEST_P(Decal, LeavesTheRestOfTheTableAlone) {
 
 TEST(Decal, WinsOverTheCellsOfADividedTable) {
     DecalOnTable d(1, 0, false);
-    const Scene divided = split_patches(d.scene, 0.1f, 1'000'000);
+    const Scene divided = split_patches(d.scene, 0.28f, 1'000'000);  // cells of 0.25 x 0.25 m, less than the decal
     const RayCaster ray_caster(divided);
     const V3f n = d.decal.normal();
     int wrong = 0;
@@ -236,6 +236,16 @@ TEST(Decal, OfAStackTheSmallestAnswers) {
     EXPECT_EQ(wrong_answers(scene, note, above, note_face), 0);
     EXPECT_EQ(wrong_answers(scene, {sheet.corner, sheet.u, 0.4f * sheet.v}, below, sheet_face + 1), 0);
     EXPECT_EQ(wrong_answers(scene, {{0, 0, 0}, {1, 0, 0}, {0, 0.25f, 0}}, above, table), 0);
+}
+
+TEST(Decal, SeenFromItsBackGivesWayToTheNextOfTheStack) {
+    Scene scene = empty_scene();
+    add_face(scene, unit_square, true);
+    const Target note{{0.5f, 0.5f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
+    const std::uint32_t sheet = add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
+    const std::uint32_t one_sided_note = add_rectangle(scene, note.corner, note.u, note.v, 0);
+    EXPECT_EQ(wrong_answers(scene, note, above, one_sided_note), 0);
+    EXPECT_EQ(wrong_answers(scene, note, below, sheet + 1), 0);
 }
 
 TEST(Decal, ThatIsATriangleAnswersWithinIt) {
