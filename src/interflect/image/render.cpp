@@ -12,7 +12,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
-#include "interflect/image/camera.h"
+#include "interflect/raycast/camera.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {

@@ -1,4 +1,4 @@
-#include "interflect/image/camera.h"
+#include "interflect/raycast/camera.h"
 
 #include <fmt/format.h>
 
