@@ -10,8 +10,8 @@
 
 namespace interflect {
 
-/// An array of up to `capacity` zeros that never moves: address space is reserved at once, memory comes page by page as it
-/// is touched. So threads may use new entries while others still read old ones.
+/// An array of up to `capacity` zeros that never moves: address space is reserved at once, memory comes page by page as
+/// it is touched. So threads may use new entries while others still read old ones.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -19,7 +19,8 @@ class StableArray {
   public:
     explicit StableArray(std::size_t capacity = 0) : capacity_(capacity) {
         if (capacity == 0) return;
-        void* memory = ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        void* memory =
+            ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory == MAP_FAILED) throw std::bad_alloc();
         data_ = static_cast<T*>(memory);
     }

@@ -12,9 +12,9 @@
 
 namespace interflect {
 
-/// Quadtrees of elements over the patches of a scene: element i < patch_count() is patch i whole; children come in blocks
-/// of four, after their parents. Structure of arrays with 32-bit indices, 20 bytes an element. Threads may subdivide while
-/// others walk the trees; what they made gets its final numbers in put_in_order().
+/// Quadtrees of elements over the patches of a scene: element i < patch_count() is patch i whole; children come in
+/// blocks of four, after their parents. Structure of arrays with 32-bit indices, 20 bytes an element. Threads may
+/// subdivide while others walk the trees; what they made gets its final numbers in put_in_order().
 class ElementForest {
   public:
     /// Finest level: an element's side is then 2^-15 of its patch's.
@@ -29,8 +29,8 @@ class ElementForest {
 
     std::uint32_t patch(std::uint32_t e) const { return patch_[e]; }
     std::uint32_t parent(std::uint32_t e) const { return parent_[e]; }  ///< none for a root.
-    float area(std::uint32_t e) const { return area_[e]; }             ///< [m^2]
-    int level(std::uint32_t e) const;                                  ///< 0 for a root.
+    float area(std::uint32_t e) const { return area_[e]; }              ///< [m^2]
+    int level(std::uint32_t e) const;                                   ///< 0 for a root.
     /// The way from the root: 1, then two binary digits a level, the child's number.
     std::uint32_t path(std::uint32_t e) const { return path_[e]; }
     Cell cell(std::uint32_t e) const;
@@ -50,8 +50,8 @@ class ElementForest {
     /// @return  The first child; none where the forest is full or `e` is at the deepest level.
     std::uint32_t subdivide(std::uint32_t e);
 
-    /// Renumbers the elements made since there were `first` of them, which threads made in any order, by level, patch and
-    /// path. Call while no thread uses the forest.
+    /// Renumbers the elements made since there were `first` of them, which threads made in any order, by level, patch
+    /// and path. Call while no thread uses the forest.
     /// @return  Their new numbers: element first + i becomes renumbered[i].
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
@@ -72,8 +72,8 @@ void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& v
     for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
-/// Adds to every element what its parent has, from the roots down: of what arrived at an element, per unit of area, each
-/// of its parts got the same.
+/// Adds to every element what its parent has, from the roots down: of what arrived at an element, per unit of area,
+/// each of its parts got the same.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
     for (std::uint32_t e = forest.patch_count(); e < forest.size(); ++e) values[e] += values[forest.parent(e)];

@@ -61,8 +61,10 @@ Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner
     Parameters local{a, b};
     if (triangle_) {
         // Area-preserving and continuous: fold along the diagonal (Heitz 2019, 'A Low-Distortion Map').
-        if (b > a) local = {0.5f * a, b - 0.5f * a};
-        else local = {a - 0.5f * b, 0.5f * b};
+        if (b > a)
+            local = {0.5f * a, b - 0.5f * a};
+        else
+            local = {a - 0.5f * b, 0.5f * b};
     } else if (!parallelogram_) {
         // Marginal density of u: the jacobian at the middle of v; then that of v given u. Both are linear.
         const auto density = [&](float s, float t) {

@@ -9,7 +9,8 @@ namespace {
 template <class Weight>
 std::vector<double> for_leaves(const Sampled& s, const Weight& weight) {
     std::vector<double> w(s.leaves.size());
-    for (std::size_t i = 0; i < w.size(); ++i) w[i] = weight(s.leaves[i]) * static_cast<double>(s.forest.area(s.leaves[i]));
+    for (std::size_t i = 0; i < w.size(); ++i)
+        w[i] = weight(s.leaves[i]) * static_cast<double>(s.forest.area(s.leaves[i]));
     return w;
 }
 

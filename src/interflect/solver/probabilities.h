@@ -25,7 +25,7 @@ std::vector<double> power_weights(const Sampled& s);                ///< Eq. 3: 
 std::vector<double> importance_weights(const Sampled& s);           ///< Eq. 8: rho_s I_s.
 std::vector<double> total_importance_weights(const Sampled& s);     ///< Eq. 9: P_s I_s / A_s.
 std::vector<double> indirect_importance_weights(const Sampled& s);  ///< Eq. 10: P_s (I_s - V_s) / A_s.
-std::vector<double> view_weights(const Sampled& s);                 ///< P_s V_s / A_s: what is seen, not what lights it.
+std::vector<double> view_weights(const Sampled& s);  ///< P_s V_s / A_s: what is seen, not what lights it.
 
 /// Adds `share` of the distribution that `weights` make to q; nothing where they are all 0.
 void mix_in(std::vector<double>& q, const std::vector<double>& weights, double share);

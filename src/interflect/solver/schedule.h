@@ -47,7 +47,8 @@ class ErrorEstimate {
   public:
     /// Call before the merge.
     /// @param weights   How much each element counts: V with a view, area without.
-    /// @param mean      Luminance of what counts: of the running mean, of `mean_rays` rays; received: the new one, of `rays`.
+    /// @param mean      Luminance of what counts: of the running mean, of `mean_rays` rays; received: the new one, of
+    /// `rays`.
     void add(std::span<const double> weights, std::span<const double> mean, std::int64_t mean_rays,
              std::span<const double> received, std::int64_t rays);
     /// Relative to the weighted mean of the last call; infinite before the first.

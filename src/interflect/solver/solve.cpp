@@ -117,17 +117,21 @@ std::vector<double> power_step_weights(const Run& run, const Sampled& s, bool co
     if (run.importance_use() == ImportanceUse::off) return power_weights(s);
     const SolveOptions& o = run.options;
     const double for_power = combined ? 1 - o.alpha : 1;
-    if (!run.uses_bounces_of_importance()) mix_in(q, view_weights(s), for_power * (1 - o.beta));
-    else if (o.total_importance) mix_in(q, total_importance_weights(s), for_power * (1 - o.beta));
-    else mix_in(q, indirect_importance_weights(s), for_power * (1 - o.beta));
+    if (!run.uses_bounces_of_importance())
+        mix_in(q, view_weights(s), for_power * (1 - o.beta));
+    else if (o.total_importance)
+        mix_in(q, total_importance_weights(s), for_power * (1 - o.beta));
+    else
+        mix_in(q, indirect_importance_weights(s), for_power * (1 - o.beta));
     mix_in(q, power_weights(s), for_power * o.beta);
     if (combined) mix_in(q, importance_weights(s), o.alpha);
     return q;
 }
 
 /// The power that the oracle's threshold is relative to [lm or W]. With a view: what leaves the surfaces it sees, as if
-/// all were as bright as they appear on average; so it does not depend on lights elsewhere, on how an emitter is divided,
-/// or (times a length squared on both sides of Eq. 14) on the unit of length. Without a view: all emitted power.
+/// all were as bright as they appear on average; so it does not depend on lights elsewhere, on how an emitter is
+/// divided, or (times a length squared on both sides of Eq. 14) on the unit of length. Without a view: all emitted
+/// power.
 double reference_power(const Run& run, const std::vector<Rgb>& radiosity) {
     if (run.view.empty()) return channel_sum(run.solution.emitted_power) / 3;
     double seen = 0;  // sum of V B: the mean radiosity of the picture
@@ -239,8 +243,8 @@ void report(Run& run, int iteration, const RgbD& escaped_power, const Monitor& m
     if (monitor.report) monitor.report(r);
 }
 
-/// How many rays each bounce of the incremental start gets: in proportion to what is left to shoot; but if all bounces to
-/// come decay alike, they must do with half of the budget.
+/// How many rays each bounce of the incremental start gets: in proportion to what is left to shoot; but if all bounces
+/// to come decay alike, they must do with half of the budget.
 class BounceBudget {
   public:
     BounceBudget(std::int64_t first_bounce, std::int64_t budget) : first_bounce_(first_bounce), budget_(budget) {}
@@ -281,8 +285,8 @@ std::int64_t start_importance(Run& run) {
     return budget.used();
 }
 
-/// Follows the light bounce by bounce, shooting only what has not been shot: an estimate of all bounces in which no ray is
-/// thrown away ('incremental shooting', Neumann et al. 1995). The mesh stays as it is.
+/// Follows the light bounce by bounce, shooting only what has not been shot: an estimate of all bounces in which no ray
+/// is thrown away ('incremental shooting', Neumann et al. 1995). The mesh stays as it is.
 std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
     BounceBudget budget(run.schedule.start_rays(), rays);
     std::vector<Rgb> unshot = radiosity(run.surfaces, *run.forest, run.solution.irradiance);

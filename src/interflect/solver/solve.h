@@ -11,8 +11,8 @@
 
 #include "interflect/base/colour.h"
 #include "interflect/base/points.h"
-#include "interflect/raycast/ray_caster.h"
 #include "interflect/elements/forest.h"
+#include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
 #include "interflect/solver/view_importance.h"
 
@@ -48,7 +48,8 @@ struct SolveOptions {
     std::vector<WeightedView> views;  ///< What is looked at; empty: there is no importance.
 
     std::int64_t rays = 20'000'000;  ///< Most rays to trace in all; > 0.
-    double seconds = std::numeric_limits<double>::infinity();  ///< Most time to take [s]; > 0. Bits then depend on speed.
+    double seconds =
+        std::numeric_limits<double>::infinity();  ///< Most time to take [s]; > 0. Bits then depend on speed.
     double until = 0;  ///< Stop at this estimated relative error (see IterationReport); 0: never. In [0, 1).
     std::uint64_t seed = 1;
     PointSet points = PointSet::sobol;
@@ -70,7 +71,7 @@ struct SolveOptions {
     bool importance_at_elements = true;  ///< Importance is kept by leaves ('hi'), or by patches.
     bool total_importance = false;       ///< Eq. 9 in place of Eq. 10.
     double alpha = 0.1;                  ///< Share of the rays for importance, Eq. 11; in [0, 1].
-    double beta = 0.1;  ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
+    double beta = 0.1;       ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
     int eye_rays = 1 << 16;  ///< Rays that find V, per view; > 0.
 };
 
@@ -112,9 +113,9 @@ struct Monitor {
     const std::atomic<bool>* stop = nullptr;             ///< Once true, the run ends after the iteration under way.
 };
 
-/// Solves Eq. 1 of Prikryl et al. 2000 for the irradiance of every element: each iteration shoots N rays, chosen by power
-/// (Eq. 3) or by power and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is merged
-/// with the past (Eq. 6).
+/// Solves Eq. 1 of Prikryl et al. 2000 for the irradiance of every element: each iteration shoots N rays, chosen by
+/// power (Eq. 3) or by power and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is
+/// merged with the past (Eq. 6).
 /// @throws InputError listing every option out of range and every fault of the scene. A scene without light is legal.
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
                const Monitor& monitor = {});

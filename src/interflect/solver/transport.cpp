@@ -146,29 +146,34 @@ void find_way_to_leaf(const Descent& descent, std::uint32_t leaf, std::vector<Vi
     }
 }
 
-/// Walks a pair of elements down from the roots until the oracle accepts it: Section 3 of METHOD (Eq. 14, 15).
-/// @param way  Of the shooter; x and y are the parameters of the ray's two ends on their patches.
-void find_level(const Descent& descent, const Oracle& oracle, std::span<const Visit> way, Parameters x, Parameters y,
-                const Rgb& reflectance, Visit& shooter, Visit& receiver) {
+/// Walks a pair of elements down from the roots until the oracle accepts it (Eq. 14, 15); the larger of the two is
+/// divided.
+/// @param way     Of the shooter, to the leaf that the ray starts on.
+/// @param x, y    The parameters of the ray's two ends on their patches.
+/// @param patch   That is hit. @return The element of it that receives.
+std::uint32_t find_receiver(const Descent& descent, const Oracle& oracle, std::span<const Visit> way, Parameters x,
+                            std::uint32_t patch, Parameters y, const Rgb& reflectance) {
+    Visit shooter = way[0], receiver = descent.root(patch);
     std::size_t depth = 0;
-    shooter = way[0];
     while (!oracle.accepts(shooter.party, receiver.party, reflectance * shooter.radiosity, receiver.importance)) {
         const bool divide_shooter = shooter.party.area > receiver.party.area;
-        if ((divide_shooter ? shooter : receiver).party.area < 4 * oracle.smallest_area) return;
+        if ((divide_shooter ? shooter : receiver).party.area < 4 * oracle.smallest_area) break;
         if (!divide_shooter) {
-            if (!descent.subdivide(receiver, y)) return;
+            if (!descent.subdivide(receiver, y)) break;
         } else if (++depth < way.size()) {
             shooter = way[depth];
         } else if (!descent.subdivide(shooter, x)) {
-            return;
+            break;
         }
     }
+    return receiver.element;
 }
 
-/// What one ray of each leaf stands for, A_s / (N q_s) [m^2], and bounds of what all rays carry together.
+/// What one ray of each leaf stands for, A_s / (N q_s) [m^2], and what all rays carry together.
 struct Weights {
     std::vector<double> area;
-    double power = 0, importance = 0;
+    RgbD shot{0, 0, 0};
+    double importance = 0;
 };
 
 Weights make_weights(const Surfaces& surfaces, const ElementForest& forest, const TransportStep& step,
@@ -183,12 +188,7 @@ Weights make_weights(const Surfaces& surfaces, const ElementForest& forest, cons
         const double area = forest.area(leaf) * (q_sum / static_cast<double>(step.rays) / step.q[s]);
         const double rays_area = area * static_cast<double>(plan.count(s));
         weights.area[s] = area;
-        if (!step.radiosity.empty()) {
-            double largest = 0;  // the shooter may be any element that holds the leaf
-            for (std::uint32_t e = leaf; e != none; e = forest.parent(e))
-                largest = std::max<double>(largest, channel_sum(step.radiosity[e]));
-            weights.power += largest * rays_area;
-        }
+        if (!step.radiosity.empty()) weights.shot += RgbD(step.radiosity[leaf]) * rays_area;
         if (step.carries_importance)
             weights.importance += surfaces.mean_reflectance(forest.patch(leaf)) * step.importance[leaf] * rays_area;
     }
@@ -200,17 +200,19 @@ struct Sums {
     FixedPoint power_unit, importance_unit;
     StableArray<FixedPoint::Value> power;
     StableArray<std::int64_t> importance;
-    FixedPoint::Value escaped{}, shot{};
+    FixedPoint::Value escaped{};
     std::int64_t escaped_rays = 0;
 
     Sums(const Weights& weights, std::size_t power_capacity, std::size_t importance_capacity)
-        : power_unit(weights.power), importance_unit(weights.importance), power(power_capacity),
+        : power_unit(channel_sum(weights.shot)),
+          importance_unit(weights.importance),
+          power(power_capacity),
           importance(importance_capacity) {}
 };
 
 /// A tally of one task, added to the common sums at its end.
 struct Tally {
-    FixedPoint::Value escaped{}, shot{};
+    FixedPoint::Value escaped{};
     std::int64_t escaped_rays = 0;
 };
 
@@ -231,40 +233,32 @@ struct Receiving {
         const ElementForest& forest = descent.forest();
         const bool carries_power = !step.radiosity.empty();
         if (step.oracle.refines) find_way_to_leaf(descent, leaf, way);
-        const FixedPoint::Value leaf_power =
+        const FixedPoint::Value power =
             carries_power ? sums.power_unit.from(RgbD(step.radiosity[leaf]) * area) : FixedPoint::Value{};
-        const std::int64_t importance =
-            step.carries_importance
-                ? sums.importance_unit.from(surfaces.mean_reflectance(forest.patch(leaf)) * step.importance[leaf] * area)
-                : 0;
+        const std::int64_t importance = step.carries_importance
+                                            ? sums.importance_unit.from(surfaces.mean_reflectance(forest.patch(leaf)) *
+                                                                        step.importance[leaf] * area)
+                                            : 0;
         for (std::size_t r = 0; r < rays.size(); ++r) {
             const std::uint32_t patch = hits[r].patch;
             if (patch == none) {
                 ++tally.escaped_rays;
-                accumulate(tally.escaped, leaf_power);
-                accumulate(tally.shot, leaf_power);
+                accumulate(tally.escaped, power);
                 continue;
             }
             Parameters y;
             if (step.oracle.refines || !forest.is_leaf(patch))
                 y = forest.geometry(patch).parameters_of(rays[r].origin + hits[r].distance * rays[r].direction);
             if (carries_power) {
-                std::uint32_t receiver_element;
-                FixedPoint::Value power = leaf_power;
-                if (step.oracle.refines) {
-                    Visit shooter, receiver = descent.root(patch);
-                    find_level(descent, step.oracle, way, origins[r], y, surfaces.reflectance(patch), shooter, receiver);
-                    receiver_element = receiver.element;
-                    power = sums.power_unit.from(RgbD(shooter.radiosity) * area);
-                } else {
-                    receiver_element = descent.old_leaf_at(patch, y);
-                }
-                add_concurrently(sums.power[receiver_element], power);
-                accumulate(tally.shot, power);
+                const std::uint32_t receiver =
+                    step.oracle.refines
+                        ? find_receiver(descent, step.oracle, way, origins[r], patch, y, surfaces.reflectance(patch))
+                        : descent.old_leaf_at(patch, y);
+                add_concurrently(sums.power[receiver], power);
             }
             if (step.carries_importance)
                 add_concurrently(sums.importance[step.importance_at_patches ? patch : descent.old_leaf_at(patch, y)],
-                          importance);
+                                 importance);
         }
     }
 };
@@ -333,7 +327,6 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
                     hits.subspan(offset, length), batch.way, tally);
         });
         add_concurrently(sums.escaped, tally.escaped);
-        add_concurrently(sums.shot, tally.shot);
         add_concurrently(sums.escaped_rays, tally.escaped_rays);
     });
 
@@ -350,7 +343,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
             received.irradiance[e] = Rgb(sums.power_unit.to_colour(sums.power[e])) / forest.area(e);
         push(forest, received.irradiance);
         pull(forest, received.irradiance);
-        received.shot_power = sums.power_unit.to_colour(sums.shot);
+        received.shot_power = weights.shot;
         received.escaped_power = sums.power_unit.to_colour(sums.escaped);
     }
     if (step.carries_importance) {

@@ -48,17 +48,19 @@ struct TransportStep {
 struct Received {
     std::vector<Rgb> irradiance;    ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
     std::vector<float> importance;  ///< Importance per area, likewise; empty unless the step carried it.
-    RgbD shot_power{0, 0, 0};       ///< What all rays carried together, as their receivers accepted it [lm or W].
+    RgbD shot_power{0, 0, 0};       ///< What all rays carried together [lm or W]: the sum of what arrived and escaped.
     RgbD escaped_power{0, 0, 0};    ///< What the rays that hit nothing carried.
     std::int64_t escaped_rays = 0;
 };
 
 /// Estimates what every element receives in one bounce of Eq. 1 (power) and Eq. 7 (importance), Prikryl et al. 2000,
-/// without any form factor. A ray starts on leaf s with probability q_s / sum q, uniformly on s, in a cosine-distributed
-/// direction; it brings B_j A_s / (N q_s) of power to element i, and rho_s psi_s A_s / (N q_s) of importance to the leaf
-/// that it hits. Without a refining oracle j is s and i the leaf that is hit; with one, the search starts at the patches of
-/// both ends and the larger side is subdivided until the oracle accepts the pair, making children where there are none.
-/// Unbiased on a fixed mesh for every q that is positive wherever what is carried is.
+/// without any form factor. A ray starts on leaf s with probability q_s / sum q, uniformly on s, in a
+/// cosine-distributed direction; it brings B_s A_s / (N q_s) of power to element i, and rho_s psi_s A_s / (N q_s) of
+/// importance to the leaf that it hits. Without a refining oracle i is the leaf that is hit; with one, the search
+/// starts at the patches of both ends and the larger side is subdivided until the oracle accepts the pair, making
+/// children where there are none. The paper's rays carry B_j, the mean over the accepted shooter j; that loses or makes
+/// energy wherever B varies over j together with what j sees, 0.4% in a closed box, while B_s keeps shot = received +
+/// escaped exactly. Unbiased on a fixed mesh for every q that is positive wherever what is carried is.
 /// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
 /// Cost: O(N (log(patches) + levels)) time on all threads, 32 bytes an element.

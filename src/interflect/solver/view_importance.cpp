@@ -1,6 +1,5 @@
 #include "interflect/solver/view_importance.h"
 
-
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +20,8 @@ std::vector<Ray> eye_rays(const WeightedView& w, int rays, std::uint64_t key) {
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < columns; ++i) {
             const auto words = random_words(key, result.size());
-            result.push_back(camera.ray(static_cast<float>(i) + unit_float(words[0]),
-                                        static_cast<float>(j) + unit_float(words[1])));
+            result.push_back(
+                camera.ray(static_cast<float>(i) + unit_float(words[0]), static_cast<float>(j) + unit_float(words[1])));
         }
     return result;
 }

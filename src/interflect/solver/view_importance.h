@@ -13,7 +13,7 @@ namespace interflect {
 /// A view and how much it counts beside others.
 struct WeightedView {
     View view;
-    double weight = 1;  ///< > 0; what counts is its share of the sum of all.
+    double weight = 1;         ///< > 0; what counts is its share of the sum of all.
     float aspect = 16.0f / 9;  ///< Width over height of the picture.
 };
 
@@ -26,8 +26,8 @@ class ViewImportance {
                    int rays_per_view, std::uint64_t seed);
 
     bool empty() const { return points_.empty(); }
-    /// v = V / A of every element [1/m^2]: V is the share of the picture through which an eye sees the element, weighted
-    /// over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
+    /// v = V / A of every element [1/m^2]: V is the share of the picture through which an eye sees the element,
+    /// weighted over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
     /// @param at_patches  Spread each patch's V evenly over it.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches) const;
     /// Total area of the patches that are seen [m^2].
