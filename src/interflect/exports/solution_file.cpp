@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
@@ -136,6 +137,7 @@ Json describe(const Scene& scene, const Solution& solution) {
             {"rays", rays},
             {"emitted_power", json_of(solution.emitted_power)},
             {"interrupted", solution.interrupted},
+            {"has_importance", !solution.view_importance.empty()},
             {"views", views},
             {"materials", materials},
             {"objects", scene.objects}};
@@ -181,6 +183,35 @@ std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers) {
     return patches;
 }
 
+/// The elements that have children, in the order of their children: what a forest is rebuilt from.
+std::vector<std::uint32_t> subdivided_elements(const ElementForest& forest) {
+    std::vector<std::uint32_t> parents;
+    for (std::uint32_t e = forest.patch_count(); e < forest.size(); e += 4) parents.push_back(forest.parent(e));
+    return parents;
+}
+
+std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<std::uint32_t>& parents) {
+    const std::size_t size = scene.patches.size() + 4 * parents.size();
+    if (size >= none) throw std::runtime_error("too many elements");
+    auto forest = std::make_shared<ElementForest>(scene, size);
+    for (const std::uint32_t parent : parents) {
+        const std::uint32_t next = forest->size();
+        if (parent >= next || forest->subdivide(parent) != next)
+            throw std::runtime_error(fmt::format("element {} cannot be subdivided there", parent));
+    }
+    return forest;
+}
+
+void require_per_element(std::size_t size, const ElementForest& forest, const char* what) {
+    if (size != forest.size()) throw std::runtime_error(fmt::format("{} and elements differ in number", what));
+}
+
+void require_quantities(const std::vector<float>& numbers, const char* what) {
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (!std::isfinite(numbers[i]) || numbers[i] < 0)
+            throw std::runtime_error(fmt::format("number {} of the {} is negative or not finite", i, what));
+}
+
 SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
     const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
@@ -192,7 +223,21 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     read_description(description, solved);
     solved.scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
     solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", 7));
-    solved.solution.irradiance = grouped<Rgb>(read_array<float>(file, "/solution/irradiance", 3));
+    for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
+
+    Solution& solution = solved.solution;
+    solution.forest = forest_of(solved.scene, read_array<std::uint32_t>(file, "/elements/subdivided", 1));
+    const std::vector<float> irradiance = read_array<float>(file, "/solution/irradiance", 3);
+    require_quantities(irradiance, "irradiance");
+    solution.irradiance = grouped<Rgb>(irradiance);
+    require_per_element(solution.irradiance.size(), *solution.forest, "irradiance");
+    if (!description.at("has_importance").get<bool>()) return solved;
+    solution.view_importance = read_array<float>(file, "/solution/view_importance", 1);
+    solution.indirect_importance = read_array<float>(file, "/solution/indirect_importance", 1);
+    for (const auto* importance : {&solution.view_importance, &solution.indirect_importance}) {
+        require_per_element(importance->size(), *solution.forest, "importance");
+        require_quantities(*importance, "importance");
+    }
     return solved;
 }
 
@@ -207,18 +252,20 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     write_array(file, "/description", text.data(), text.size(), 1);
     write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3);
     write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), 7);
+    const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
+    write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);
     write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);
+    if (solution.view_importance.empty()) return;
+    write_array(file, "/solution/view_importance", solution.view_importance.data(), solution.view_importance.size(), 1);
+    write_array(file, "/solution/indirect_importance", solution.indirect_importance.data(),
+                solution.indirect_importance.size(), 1);
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
     if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
     try {
-        SolvedScene solved = read_solution_unchecked(path);
-        if (solved.solution.irradiance.size() != solved.scene.patches.size())
-            throw std::runtime_error("irradiance and patches differ in number");
-        for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
-        return solved;
+        return read_solution_unchecked(path);
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("not a solution file that can be read: {}", e.what()));
     }

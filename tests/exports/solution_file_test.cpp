@@ -1,0 +1,215 @@
+#include "interflect/exports/solution_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+
+#include "interflect/base/error.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A scene with everything that a solution file holds: triangles, two-sided faces, objects, views, names in UTF-8.
+SolvedScene example() {
+    SolvedScene solved;
+    Scene& scene = solved.scene;
+    scene = closed_box({1, 2, 3}, 2, {{"wände", {0.5f, 0.25f, 0.125f}, {1, 2, 3}}});
+    const std::uint32_t table = add_material(scene, Rgb(0.1f), Rgb(0));
+    add_rectangle(scene, {0.2f, 0.2f, 1}, {0.5f, 0, 0}, {0, 0.5f, 0}, table, 1, 1, true);
+    Patch triangle = scene.patches[0];
+    triangle.vertices[3] = none;
+    scene.patches[0] = triangle;
+    scene.objects = {"", "room", "room.table"};
+    scene.patches.back().object = 2;
+    scene.views = {{"door", {0.1f, 0.2f, 0.3f}, {1, 2, 3}, {0, 1, 0}, 60},
+                   {"corner", {1, 1, 1}, {0, 0, 0}, {0, 0, 1}, 45}};
+
+    SolveOptions options;
+    options.rays = 10'000;
+    options.seed = 0xfedcba9876543210;
+    solved.solution = solve(scene, RayCaster(scene), options);
+    return solved;
+}
+
+void expect_equal(const SolvedScene& a, const SolvedScene& b) {
+    EXPECT_EQ(a.scene.name, b.scene.name);
+    EXPECT_EQ(a.scene.vertices, b.scene.vertices);
+    EXPECT_EQ(a.scene.objects, b.scene.objects);
+    ASSERT_EQ(a.scene.patches.size(), b.scene.patches.size());
+    for (std::size_t i = 0; i < a.scene.patches.size(); ++i) {
+        const Patch &p = a.scene.patches[i], &q = b.scene.patches[i];
+        EXPECT_EQ(p.vertices, q.vertices);
+        EXPECT_EQ(p.material, q.material);
+        EXPECT_EQ(p.object, q.object);
+        EXPECT_EQ(p.other_side, q.other_side);
+    }
+    ASSERT_EQ(a.scene.materials.size(), b.scene.materials.size());
+    for (std::size_t i = 0; i < a.scene.materials.size(); ++i) {
+        EXPECT_EQ(a.scene.materials[i].name, b.scene.materials[i].name);
+        EXPECT_EQ(a.scene.materials[i].reflectance, b.scene.materials[i].reflectance);
+        EXPECT_EQ(a.scene.materials[i].exitance, b.scene.materials[i].exitance);
+    }
+    ASSERT_EQ(a.scene.views.size(), b.scene.views.size());
+    for (std::size_t i = 0; i < a.scene.views.size(); ++i) {
+        EXPECT_EQ(a.scene.views[i].name, b.scene.views[i].name);
+        EXPECT_EQ(a.scene.views[i].eye, b.scene.views[i].eye);
+        EXPECT_EQ(a.scene.views[i].look_at, b.scene.views[i].look_at);
+        EXPECT_EQ(a.scene.views[i].up, b.scene.views[i].up);
+        EXPECT_EQ(a.scene.views[i].fov, b.scene.views[i].fov);
+    }
+    EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
+    EXPECT_EQ(a.solution.method, b.solution.method);
+    EXPECT_EQ(a.solution.options.seed, b.solution.options.seed);
+    EXPECT_EQ(a.solution.emitted_power, b.solution.emitted_power);
+    EXPECT_EQ(a.solution.interrupted, b.solution.interrupted);
+}
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string error_of(const fs::path& path) {
+    try {
+        read_solution(path);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "no InputError";
+}
+
+class SolutionFile : public testing::Test {
+  protected:
+    const TemporaryFolder folder_;
+    const fs::path path_ = folder_.path() / "solution.h5";
+
+    std::string bytes_of(const SolvedScene& solved) const {
+        write_solution(path_, solved.scene, solved.solution);
+        return contents(path_);
+    }
+
+    /// A damaged file must be refused, or make a scene that is valid all the same; it must never crash the reader.
+    void expect_harmless(const std::string& bytes, const std::string& what) const {
+        const fs::path damaged = folder_.write("damaged.h5", bytes);
+        try {
+            const SolvedScene solved = read_solution(damaged);
+            EXPECT_TRUE(scene_faults(solved.scene).empty()) << what;
+            EXPECT_EQ(solved.solution.irradiance.size(), solved.scene.patches.size()) << what;
+            for (const Rgb& h : solved.solution.irradiance) EXPECT_TRUE(is_finite(h)) << what;
+        } catch (const InputError& e) {
+            EXPECT_THAT(e.what(), HasSubstr("damaged.h5")) << what;
+        }
+    }
+};
+
+TEST_F(SolutionFile, ReadsWhatWasWritten) {
+    SolvedScene solved = example();
+    for (const bool interrupted : {false, true}) {
+        solved.solution.interrupted = interrupted;
+        write_solution(path_, solved.scene, solved.solution);
+        expect_equal(read_solution(path_), solved);
+        EXPECT_EQ(read_solution(path_).solution.options.rays, 10'000) << "as many as were traced";
+    }
+}
+
+TEST_F(SolutionFile, KeepsADarkSolution) {
+    SolvedScene solved;
+    solved.scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
+    solved.solution = solve(solved.scene, RayCaster(solved.scene), {});
+    write_solution(path_, solved.scene, solved.solution);
+    expect_equal(read_solution(path_), solved);
+}
+
+TEST_F(SolutionFile, HasTheSameBytesForTheSameInput) {
+    const SolvedScene solved = example();
+    const std::string bytes = bytes_of(solved);
+    EXPECT_EQ(bytes_of(solved), bytes);
+    EXPECT_GT(bytes.size(), 0u);
+}
+
+TEST_F(SolutionFile, SaysWhatIsWrongWithAPath) {
+    EXPECT_THAT(error_of(folder_.path() / "missing.h5"), HasSubstr("no such file"));
+    EXPECT_THAT(error_of(folder_.path()), HasSubstr("is a folder"));
+}
+
+TEST_F(SolutionFile, RefusesOtherFiles) {
+    for (const std::string& text :
+         {std::string(), std::string("m wall =\n"), std::string("\x89HDF\r\n\x1a\n"),
+          std::string("\x89HDF\r\n\x1a\n") + std::string(5000, '\0'), std::string(100'000, '\xff')})
+        EXPECT_THAT(error_of(folder_.write("other.h5", text)), HasSubstr("not a solution file")) << text.size();
+}
+
+TEST_F(SolutionFile, CannotBeWrittenIntoAMissingFolder) {
+    const SolvedScene solved = example();
+    EXPECT_THROW(write_solution(folder_.path() / "missing" / "a.h5", solved.scene, solved.solution),
+                 std::runtime_error);
+}
+
+TEST_F(SolutionFile, IsRefusedWithIrradianceThatCannotBe) {
+    for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.0f}) {
+        SolvedScene solved = example();
+        solved.solution.irradiance[3].y = wrong;
+        write_solution(path_, solved.scene, solved.solution);
+        EXPECT_THAT(error_of(path_), HasSubstr("irradiance of patch 3")) << wrong;
+    }
+}
+
+TEST_F(SolutionFile, IsRefusedWherePatchesAndIrradianceDiffer) {
+    SolvedScene solved = example();
+    solved.solution.irradiance.pop_back();
+    write_solution(path_, solved.scene, solved.solution);
+    EXPECT_THAT(error_of(path_), HasSubstr("differ in number"));
+}
+
+TEST_F(SolutionFile, IsRefusedWhereverItIsCutOff) {
+    const std::string bytes = bytes_of(example());
+    for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 100)
+        EXPECT_THAT(error_of(folder_.write("cut.h5", bytes.substr(0, length))), HasSubstr("not a solution file"))
+            << length;
+    EXPECT_THAT(error_of(folder_.write("cut.h5", bytes.substr(0, bytes.size() - 1))), HasSubstr("not a solution file"));
+}
+
+TEST_F(SolutionFile, DoesNoHarmWithFlippedBits) {
+    const std::string bytes = bytes_of(example());
+    std::mt19937_64 random(1);
+    for (int trial = 0; trial < 300; ++trial) {
+        std::string damaged = bytes;
+        const std::size_t at = random() % bytes.size();
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << (random() % 8)));
+        expect_harmless(damaged, "byte " + std::to_string(at));
+    }
+}
+
+TEST_F(SolutionFile, DoesNoHarmWithOverwrittenStretches) {
+    const std::string bytes = bytes_of(example());
+    std::mt19937_64 random(2);
+    for (int trial = 0; trial < 150; ++trial) {
+        std::string damaged = bytes;
+        const std::size_t at = random() % bytes.size();
+        const char filling = static_cast<char>(random());
+        for (std::size_t i = at; i < std::min(at + 1 + random() % 64, bytes.size()); ++i) damaged[i] = filling;
+        expect_harmless(damaged, "from byte " + std::to_string(at));
+    }
+}
+
+TEST_F(SolutionFile, IsRecognised) {
+    bytes_of(example());
+    EXPECT_TRUE(is_solution_file(path_));
+    EXPECT_FALSE(is_solution_file(folder_.write("scene.mgf", "m wall =\n")));
+    EXPECT_FALSE(is_solution_file(folder_.write("empty.h5", "")));
+    EXPECT_FALSE(is_solution_file(folder_.path()));
+    EXPECT_FALSE(is_solution_file(folder_.path() / "missing.h5"));
+}
+
+}  // namespace
+}  // namespace interflect
