@@ -49,8 +49,7 @@ IterationPlan Schedule::next(double seconds) const {
     // What would remain for a last iteration of less than half the size goes into this one.
     if (left < rays + rays / 2) rays = left;
     if (rays <= 0) return {};
-    const double tau = warming_up ? 1.0 : static_cast<double>(rays) / static_cast<double>(averaged_rays_ + rays);
-    return {rays, tau};
+    return {rays, warming_up};
 }
 
 void Schedule::done(const IterationPlan& plan) {

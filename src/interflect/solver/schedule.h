@@ -10,12 +10,12 @@ namespace interflect {
 /// One iteration to come.
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
-    double tau = 1;         ///< Weight of the new iteration in Eq. 6.
+    bool warms_up = false;  ///< It is not averaged: the next one takes its place.
 };
 
-/// How many rays the next iteration gets and how it is weighted. Iterations are averaged by their ray counts,
-/// tau = N_m / (N_1 + ... + N_m), which is the paper's 1/m when all have the same; without a fixed size they grow with
-/// what was averaged before, so that early iterations, which still lack late bounces, soon weigh little.
+/// How many rays the next iteration gets. Iterations are averaged by their ray counts, tau = N_m / (N_1 + ... + N_m) in
+/// Eq. 6, which is the paper's 1/m when all have the same; without a fixed size they grow with what was averaged
+/// before, so that early iterations, which still lack late bounces and a fine mesh, soon weigh little.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);

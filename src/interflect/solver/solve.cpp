@@ -17,7 +17,7 @@ namespace interflect {
 namespace {
 
 /// The incremental start ends when this share of the emitted power, or importance, has not been shot.
-constexpr double negligible_unshot_power = 1e-3, negligible_unshot_importance = 0.02;
+constexpr double negligible_unshot_power = 1e-3, negligible_unshot_importance = 0.005;
 /// The smallest element is the square of the scene's diagonal over this, where the user sets no limit.
 constexpr double diagonal_over_smallest = 1500;
 
@@ -69,6 +69,7 @@ struct Run {
     Schedule schedule;
     ErrorEstimate error;
     Solution solution;
+    std::vector<float> history;  // of each element: rays that its mean stands for
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     Clock::time_point start = Clock::now();
 
@@ -85,6 +86,7 @@ struct Run {
         solution.method = o.method.name;
         solution.options = o;
         solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
+        history.assign(forest->size(), 0.0f);
         solution.emitted_power = integral(*forest, radiosity(surfaces, *forest, solution.irradiance));
         if (view.empty()) return;
         solution.view_importance = view.per_area(*forest, !o.importance_at_elements);
@@ -168,16 +170,29 @@ Received run_step(Run& run, const TransportStep& step) {
     Received received = transport(run.surfaces, *run.forest, run.ray_caster, step, run.streams);
     run.escaped_rays += received.escaped_rays;
     inherit(*run.forest, before, run.solution.irradiance);
+    inherit(*run.forest, before, run.history);
+    for (std::uint32_t e = before; e < run.forest->size(); ++e)
+        if (run.forest->parent(e) < before) run.history[e] *= static_cast<float>(run.options.inherited_trust);
     if (run.view.empty()) return received;
     inherit(*run.forest, before, run.solution.indirect_importance);
     run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);
     return received;
 }
 
+/// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. Where no
+/// element is new, that is the same tau for all.
 template <class T>
-void merge(std::vector<T>& mean, const std::vector<T>& received, double tau) {
-    const auto t = static_cast<float>(tau);
-    for (std::size_t e = 0; e < mean.size(); ++e) mean[e] += t * (received[e] - mean[e]);  // Eq. 6
+void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received, const IterationPlan& plan) {
+    const auto rays = static_cast<float>(plan.rays);
+    for (std::size_t e = 0; e < mean.size(); ++e) {
+        const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
+        mean[e] += tau * (received[e] - mean[e]);
+    }
+    pull(*run.forest, mean);
+}
+
+void remember(Run& run, const IterationPlan& plan) {
+    for (float& rays : run.history) rays = plan.warms_up ? 0.0f : rays + static_cast<float>(plan.rays);
 }
 
 TransportStep importance_step(const Run& run, const std::vector<float>& psi, std::int64_t rays) {
@@ -309,6 +324,7 @@ void start_incrementally(Run& run, const Monitor& monitor) {
     RgbD escaped_power(0, 0, 0);
     const std::int64_t importance_rays = run.uses_bounces_of_importance() ? start_importance(run) : 0;
     const std::int64_t power_rays = start_power(run, run.options.rays - importance_rays, escaped_power);
+    run.history.assign(run.forest->size(), static_cast<float>(power_rays));
     run.schedule.began_with(power_rays, importance_rays);
     report(run, 0, escaped_power, monitor);
 }
@@ -323,25 +339,25 @@ void iterate(Run& run, const IterationPlan& plan, int iteration, const Monitor& 
     run.power_rays += plan.rays - for_importance;
     if (with_importance && !combined && for_importance > 0) {
         const Received received = run_step(run, importance_step(run, total_importance(run), for_importance));
-        merge(run.solution.indirect_importance, received.importance, plan.tau);
+        merge(run, run.solution.indirect_importance, received.importance, plan);
     }
+    RgbD escaped_power(0, 0, 0);
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         std::vector<Rgb> b = radiosity(run.surfaces, *run.forest, run.solution.irradiance);
         remove_non_finite(b, run.solution);
         TransportStep step = power_step(run, std::move(b), combined, rays);
-        const bool deferred = run.options.defer_refinement && plan.tau == 1;
+        const bool deferred = run.options.defer_refinement && plan.warms_up;
         if (run.options.method.refines && !deferred) step.oracle = make_oracle(run, step.radiosity, step.importance);
         const Received received = run_step(run, step);
-        if (plan.tau < 1) estimate_error(run, received, rays);
-        merge(run.solution.irradiance, received.irradiance, plan.tau);
-        if (combined) merge(run.solution.indirect_importance, received.importance, plan.tau);
-        run.schedule.done(plan);
-        report(run, iteration, received.escaped_power, monitor);
-        return;
+        if (run.schedule.averaged_rays() > 0) estimate_error(run, received, rays);
+        merge(run, run.solution.irradiance, received.irradiance, plan);
+        if (combined) merge(run, run.solution.indirect_importance, received.importance, plan);
+        escaped_power = received.escaped_power;
     }
+    remember(run, plan);
     run.schedule.done(plan);
-    report(run, iteration, RgbD(0, 0, 0), monitor);
+    report(run, iteration, escaped_power, monitor);
 }
 
 bool reached(const Run& run, double relative_error) {

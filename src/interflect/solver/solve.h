@@ -65,7 +65,10 @@ struct SolveOptions {
     double epsilon = 2e-6;     ///< Threshold of the oracle, relative to the reference power (see reference_power); > 0.
     double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
     std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there.
-    bool defer_refinement = false;                     ///< No refinement before averaging begins ('dr').
+    /// How much the past of its parent counts for a new element, which inherits a mean that is too smooth; in [0, 1].
+    /// At 1 all elements are averaged alike, as in the paper.
+    double inherited_trust = 0.1;
+    bool defer_refinement = false;  ///< No refinement before averaging begins ('dr').
 
     bool separate_iterations = false;    ///< Importance and power in steps of their own ('si'), or combined ('ci').
     bool importance_at_elements = true;  ///< Importance is kept by leaves ('hi'), or by patches.

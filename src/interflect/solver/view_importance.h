@@ -12,7 +12,7 @@ namespace interflect {
 
 /// A view and how much it counts beside others.
 struct WeightedView {
-    View view;
+    View view = {};
     double weight = 1;         ///< > 0; what counts is its share of the sum of all.
     float aspect = 16.0f / 9;  ///< Width over height of the picture.
 };
