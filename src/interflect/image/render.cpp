@@ -12,8 +12,9 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/image/element_vertices.h"
+#include "interflect/image/smooth_field.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
 
@@ -25,29 +26,36 @@ constexpr std::size_t rays_per_batch = 4096;
 /// Luminance at points of the scene's surfaces.
 class Shader {
   public:
-    Shader(const Scene& scene, std::span<const Rgb> irradiance, const RenderOptions& options)
-        : scene_(scene), irradiance_(irradiance) {
-        if (options.shading == Shading::smooth) smooth_.emplace(scene, irradiance, options.smoothing);
+    Shader(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance,
+           const RenderOptions& options)
+        : scene_(scene), forest_(forest), irradiance_(irradiance) {
+        if (options.shading == Shading::flat) return;
+        vertices_.emplace(scene, forest, options.smoothing);
+        smooth_.emplace(forest, *vertices_, irradiance);
     }
+    Shader(const Shader&) = delete;  // smooth_ refers to vertices_
+    Shader& operator=(const Shader&) = delete;
 
     /// L = B / pi with B = M + rho H, where `ray` hit.
     Rgb luminance_at(const Ray& ray, const Hit& hit) const {
-        const Patch& patch = scene_.patches[hit.patch];
-        const Material& material = scene_.materials[patch.material];
-        const Rgb radiosity = material.exitance + material.reflectance * irradiance_at(ray, hit, patch);
+        const Material& material = scene_.materials[scene_.patches[hit.patch].material];
+        const Rgb radiosity = material.exitance + material.reflectance * irradiance_at(ray, hit);
         return radiosity / std::numbers::pi_v<float>;
     }
 
   private:
-    Rgb irradiance_at(const Ray& ray, const Hit& hit, const Patch& patch) const {
-        if (!smooth_) return irradiance_[hit.patch];
+    Rgb irradiance_at(const Ray& ray, const Hit& hit) const {
+        if (!smooth_ && forest_.is_leaf(hit.patch)) return irradiance_[hit.patch];
         const V3f point = ray.origin + hit.distance * ray.direction;
-        return smooth_->at(hit.patch, PatchGeometry(scene_, patch).parameters_of(point));
+        const Parameters p = forest_.geometry(hit.patch).parameters_of(point);
+        return smooth_ ? smooth_->at(hit.patch, p) : irradiance_[forest_.leaf_at(hit.patch, p)];
     }
 
     const Scene& scene_;
+    const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::optional<SmoothIrradiance> smooth_;
+    std::optional<ElementVertices> vertices_;
+    std::optional<SmoothField> smooth_;
 };
 
 /// The eye rays of one pixel after the other, jittered by a low-discrepancy sequence of each pixel's own.
@@ -64,20 +72,24 @@ void append_pixel_rays(const Camera& camera, std::size_t pixel, const RenderOpti
     }
 }
 
-void require_valid(const Scene& scene, std::span<const Rgb> irradiance, const RenderOptions& options) {
-    if (irradiance.size() != scene.patches.size())
-        throw InputError(fmt::format("irradiance has {} values, expected one for each of the scene's {} patches",
-                                     irradiance.size(), scene.patches.size()));
+void require_valid(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance,
+                   const RenderOptions& options) {
+    if (forest.patch_count() != scene.patches.size())
+        throw InputError(fmt::format("the forest is of {} patches, expected the scene's {}", forest.patch_count(),
+                                     scene.patches.size()));
+    if (irradiance.size() != forest.size())
+        throw InputError(fmt::format("irradiance has {} values, expected one for each of the forest's {} elements",
+                                     irradiance.size(), forest.size()));
     if (options.samples < 1) throw InputError(fmt::format("{} samples a pixel: expected 1 or more", options.samples));
 }
 
 }  // namespace
 
-Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, std::span<const Rgb> irradiance,
-                 const RenderOptions& options) {
-    require_valid(scene, irradiance, options);
+Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                 std::span<const Rgb> irradiance, const RenderOptions& options) {
+    require_valid(scene, forest, irradiance, options);
     const Camera camera(view, options.width, options.height);
-    const Shader shader(scene, irradiance, options);
+    const Shader shader(scene, forest, irradiance, options);
 
     Rendering result;
     result.image = Image(options.width, options.height);
