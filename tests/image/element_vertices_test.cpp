@@ -149,6 +149,28 @@ TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
     }
 }
 
+/// Where the four quarters of an irregular quadrilateral meet, each counts with its angle there.
+TEST(VertexValues, AreWeightedByAngles) {
+    Scene scene;
+    add_material(scene, grey, black);
+    scene.vertices = {V3f(0, 0, 0), V3f(4, 0.5f, 0), V3f(3, 2, 0), V3f(-1, 3, 0)};
+    scene.patches = {{.vertices = {0, 1, 2, 3}}};
+    ElementForest forest(scene, plenty);
+    forest.subdivide(0);
+    const ElementVertices vertices(scene, forest);
+    const std::uint32_t centre = vertices.corners(1)[2];
+    for (const auto& [leaf, corner] : {std::pair{1u, 2u}, {2u, 3u}, {3u, 1u}, {4u, 0u}}) {
+        ASSERT_EQ(vertices.corners(leaf)[corner], centre);
+        const std::vector<V3f> x = corner_points(forest, leaf);
+        const V3f to_next = (x[(corner + 1) % 4] - x[corner]).normalized();
+        const V3f to_last = (x[(corner + 3) % 4] - x[corner]).normalized();
+        const float share = std::acos(to_next.dot(to_last)) / (2 * std::numbers::pi_v<float>);
+        std::vector<Rgb> values(5, black);
+        values[leaf] = bright;
+        expect_near(vertex_values(forest, vertices, values)[centre], bright * share);
+    }
+}
+
 using Point = std::tuple<long, long, long>;
 Point rounded(const V3f& x) {  // to 0.1 mm
     return {std::lround(1e4f * x.x), std::lround(1e4f * x.y), std::lround(1e4f * x.z)};

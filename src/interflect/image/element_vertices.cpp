@@ -1,9 +1,10 @@
 #include "interflect/image/element_vertices.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
+#include <utility>
 
 #include "interflect/base/random.h"
 
@@ -21,16 +22,49 @@ using Places = std::array<std::array<std::uint32_t, 4>, 4>;
 constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
 constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};  // 3: a triangle's none
 
+/// Numbers by 64-bit keys: a hash table with linear probing, several times as fast here as std::unordered_map.
+class KeyTable {
+  public:
+    /// @param most  Entries at most: the table stays at most two thirds full.
+    explicit KeyTable(std::size_t most) : entries_(std::bit_ceil(most + most / 2 + 1)) {}
+
+    /// none where the key has no number.
+    std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].number; }
+    /// The number that the key has; where it has none it gets `number`.
+    std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t number) {
+        Entry& entry = entries_[slot(key)];
+        if (entry.number == none) entry = {key, number};
+        return entry.number;
+    }
+
+  private:
+    struct Entry {
+        std::uint64_t key = 0;
+        std::uint32_t number = none;  // none: free
+    };
+
+    std::size_t slot(std::uint64_t key) const {
+        const std::size_t mask = entries_.size() - 1;
+        std::size_t i = mix(key, 0) & mask;
+        while (entries_[i].number != none && entries_[i].key != key) i = (i + 1) & mask;
+        return i;
+    }
+
+    std::vector<Entry> entries_;
+};
+
 /// Gives elements their vertices, parents before children: those of patches are the corners of smooth surfaces; then
 /// every edge that is cut in two gets a vertex in its middle, one for all elements that share the edge.
 class VertexBuilder {
   public:
     VertexBuilder(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options)
-        : forest_(forest), surfaces_(find_smooth_surfaces(scene, options)), corners_(forest.size()) {
-        edges_of_.assign(surfaces_.corners.count, not_hanging);
+        : forest_(forest),
+          surfaces_(find_smooth_surfaces(scene, options)),
+          corners_(forest.size()),
+          middles_(forest.size() - forest.patch_count()) {  // a parent has four children and at most four edges
+        edges_of_.assign(surfaces_.corners.count, no_edge);
         for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
             for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[4 * p + c];
-        middles_.reserve((forest.size() - forest.patch_count()) / 2);
         for (std::uint32_t e = 0; e < forest.size(); ++e)
             if (!forest.is_leaf(e)) give_vertices_to_children(e);
     }
@@ -53,10 +87,7 @@ class VertexBuilder {
 
   private:
     using Ends = std::array<std::uint32_t, 2>;
-    static constexpr Ends not_hanging{none, none};  // of what is in the middle of no edge: corners and centres
-    struct KeyHash {
-        std::size_t operator()(std::uint64_t key) const { return mix(key, 0); }
-    };
+    static constexpr Ends no_edge{none, none};  // of vertices in the middle of none: corners of patches, centres
 
     Ends ends_of_edge(std::uint32_t e, std::uint32_t c) const {
         const Corners& corners = corners_[e];
@@ -77,9 +108,9 @@ class VertexBuilder {
         return count() - 1;
     }
     std::uint32_t middle_of_edge(std::uint32_t e, std::uint32_t c) {
-        const auto [entry, is_new] = middles_.try_emplace(edge_key(e, c), count());
-        if (is_new) add_vertex(ends_of_edge(e, c));
-        return entry->second;
+        const std::uint32_t middle = middles_.find_or_insert(edge_key(e, c), count());
+        if (middle == count()) add_vertex(ends_of_edge(e, c));
+        return middle;
     }
     void give_vertices_to_children(std::uint32_t e) {
         const Corners& corners = corners_[e];
@@ -87,7 +118,7 @@ class VertexBuilder {
         std::copy(corners.begin(), corners.end(), vertex.begin());
         const bool triangle = corners[3] == none;
         for (std::uint32_t c = 0; c < corner_count(corners); ++c) vertex[4 + c] = middle_of_edge(e, c);
-        if (!triangle) vertex[8] = add_vertex(not_hanging);
+        if (!triangle) vertex[8] = add_vertex(no_edge);
         const std::uint32_t child = forest_.first_child(e);
         for (std::uint32_t k = 0; k < 4; ++k)
             for (std::uint32_t c = 0; c < 4; ++c)
@@ -96,8 +127,7 @@ class VertexBuilder {
 
     void mark_middles_of_edges(std::uint32_t leaf, std::vector<bool>& hangs) const {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
-            if (const auto middle = middles_.find(edge_key(leaf, c)); middle != middles_.end())
-                hangs[middle->second] = true;
+            if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
     /// Whether v halves an edge that itself is half of one with a hanging middle; earlier vertices are marked already.
     bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
@@ -108,9 +138,9 @@ class VertexBuilder {
 
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
-    std::vector<Corners> corners_;                                       // of each element
-    std::vector<Ends> edges_of_;                                         // the ends of the edge that each vertex halves
-    std::unordered_map<std::uint64_t, std::uint32_t, KeyHash> middles_;  // of the edges that are cut, by edge_key
+    std::vector<Corners> corners_;  // of each element
+    std::vector<Ends> edges_of_;    // the ends of the edge that each vertex halves
+    KeyTable middles_;              // of the edges that are cut, by edge_key
 };
 
 float angle_between(const V3f& a, const V3f& b) { return std::atan2(a.cross(b).length(), a.dot(b)); }
