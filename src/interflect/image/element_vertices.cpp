@@ -114,7 +114,7 @@ class VertexBuilder {
     }
     void give_vertices_to_children(std::uint32_t e) {
         const Corners& corners = corners_[e];
-        std::array<std::uint32_t, 9> vertex;
+        std::array<std::uint32_t, 9> vertex{};
         std::copy(corners.begin(), corners.end(), vertex.begin());
         const bool triangle = corners[3] == none;
         for (std::uint32_t c = 0; c < corner_count(corners); ++c) vertex[4 + c] = middle_of_edge(e, c);
