@@ -51,4 +51,14 @@ struct Rec709Colour {
 /// @param largest    Upper bound of every channel: 0.99 for a reflectance, infinite for an exitance.
 Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double largest);
 
+/// A colour as MGF gives it.
+struct LuminousColour {
+    Chromaticity colour;
+    double luminance = 0;
+};
+
+/// The inverse: to_rec709() of what is returned gives `rgb` again, up to rounding, where no channel is above `largest`.
+/// @param rgb  Linear Rec. 709, each channel >= 0 and finite; black gets the chromaticity of neutral.
+LuminousColour from_rec709(const Rgb& rgb);
+
 }  // namespace interflect

@@ -20,6 +20,8 @@ namespace {
 
 using namespace building;
 
+constexpr float one_luminaire = 100;  // pitch beyond the size of any room [m]
+
 /// What a furnished room has, in the order in which places are looked for: what needs much room, or holds much, first.
 const std::array wall_furniture{&bookcase, &bookcase, &workstation, &workstation, &low_bookcase, &cabinet,
                                 &radiator, &picture,  &picture,     &cartons,     &waste_bin};
@@ -67,7 +69,7 @@ Scene make_maze(const MazeOptions& options) {
     for (std::uint32_t i = 0; i < options.rooms; ++i) {
         const Room& room = plan.rooms[i];
         Furnisher furnisher(scene, palette, i, random[i]);
-        furnisher.add_luminaire_at(room.x.middle(), room.y.middle(), plan.room_height, random[i].chance(.5f));
+        furnisher.add_luminaires(room, plan.room_height, one_luminaire, random[i].chance(.5f));
         const LookOut look_out = building::look_out(plan, i);
         if (options.furniture) furnish(plan, room, look_out, furnisher, random[i]);
         if (i < most_room_views) scene.views.push_back(look_out.view);

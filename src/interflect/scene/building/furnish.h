@@ -17,8 +17,8 @@ class Furnisher {
         : scene_(scene), palette_(palette), room_(room), random_(random) {}
 
     void add(const Furniture& piece, const Placement& place);
-    /// A luminaire whose middle is at (x, y), below a ceiling at `height`.
-    void add_luminaire_at(float x, float y, float height, bool turned);
+    /// Luminaires below the ceiling of a room, evenly in rows of at most `pitch` [m] along x and y; at least one.
+    void add_luminaires(const Room& room, float ceiling_height, float pitch, bool turned);
 
   private:
     std::uint32_t add_object(std::string_view name);

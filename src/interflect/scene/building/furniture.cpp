@@ -247,9 +247,8 @@ const Furniture cartons{"cartons", .56f, .56f, 0, build_cartons};
 const Furniture waste_bin{"waste-bin", .32f, .32f, 0, build_waste_bin};
 
 void add_luminaire(Solids solids, const Palette& palette, RandomSequence& random) {
-    constexpr float thickness = .06f;
-    solids.box({-luminaire_length / 2, -luminaire_width / 2, -gap - thickness},
-               {luminaire_length / 2, luminaire_width / 2, -gap}, palette.lacquer,
+    constexpr float half_length = .6f, half_width = .3f, thickness = .06f;
+    solids.box({-half_length, -half_width, -gap - thickness}, {half_length, half_width, -gap}, palette.lacquer,
                random.pick(std::span(palette.lamps)));
 }
 

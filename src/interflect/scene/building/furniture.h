@@ -28,8 +28,8 @@ extern const Furniture picture;  ///< Hangs on the wall, over nothing.
 extern const Furniture cartons;  ///< Three, stacked at random.
 extern const Furniture waste_bin;
 
-/// Adds a luminaire below a ceiling: a flat box, whose underside emits. Origin: the middle of its place on the ceiling.
-inline constexpr float luminaire_length = 1.2f, luminaire_width = 0.6f;  // [m], along x and y
+/// Adds a luminaire below a ceiling: a flat box of 1.2 m along x and 0.6 m along y, whose underside emits. The origin
+/// is the middle of its place on the ceiling.
 void add_luminaire(Solids solids, const Palette& palette, RandomSequence& random);
 
 }  // namespace interflect::building
