@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     add_render(app, exit_code);
     add_compare(app);
     add_bench(app);
+    add_make_scene(app);
 
     try {
         app.parse(argc, argv);

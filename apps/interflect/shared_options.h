@@ -17,7 +17,7 @@ struct SceneOptions {
     std::filesystem::path path;
     ReadOptions read;
 
-    void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf)");
+    void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf), or maze:ROOMS[:furniture]");
     /// Loads it and logs its warnings.
     Scene load() const;
 };

@@ -14,7 +14,7 @@ struct BoxesOptions {
 };
 
 /// One closed room, square, 2.8 m high and about the origin, with boxes of random sizes, turns and colours on its
-/// floor, about one to 1.4 m^2, and luminaires on its ceiling. Six one-sided patches a box and a luminaire, and six of
+/// floor, about one to 1.4 m^2, and luminaires on its ceiling. Six one-sided patches a box and a luminaire, and ten of
 /// the room. Views "room-0", from a corner, and "overview". Boxes keep at least 4 mm distance from each other and the
 /// room. Time and memory are linear in the boxes. @throws InputError where their number is out of range.
 Scene make_boxes(const BoxesOptions& options);
