@@ -254,11 +254,11 @@ INSTANTIATE_TEST_SUITE_P(
         MadeScene{"one_room",
                   [](std::uint64_t seed) { return make_maze({.rooms = 1, .furniture = true, .seed = seed}); }},
         MadeScene{"furnished_maze",
-                  [](std::uint64_t seed) { return make_maze({.rooms = 30, .furniture = true, .seed = seed}); }},
+                  [](std::uint64_t seed) { return make_maze({.rooms = 60, .furniture = true, .seed = seed}); }},
         MadeScene{"office", [](std::uint64_t seed) { return make_office({.seed = seed}); }},
         MadeScene{"offices",
                   [](std::uint64_t seed) {
-                      return make_office({.rooms = 5, .desk_rows = 2, .desks_per_row = 6, .seed = seed});
+                      return make_office({.rooms = 5, .desk_rows = 4, .desks_per_row = 10, .seed = seed});
                   }},
         MadeScene{"smallest_office",
                   [](std::uint64_t seed) { return make_office({.desk_rows = 1, .desks_per_row = 1, .seed = seed}); }},

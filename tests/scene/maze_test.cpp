@@ -195,6 +195,10 @@ Seen seen_in(const Scene& scene, const RayCaster& ray_caster, const View& view) 
     ray_caster.trace(rays, hits);
     Seen seen;
     for (const Hit& hit : hits) {
+        if (hit.patch == none) {
+            ADD_FAILURE() << view.name << " looks out of the maze";
+            break;
+        }
         const std::string& object = scene.objects[scene.patches[hit.patch].object];
         const bool here = object.starts_with(view.name + '.');
         seen.other_rooms += !here / double{width * height};

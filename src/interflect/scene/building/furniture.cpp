@@ -148,8 +148,8 @@ void build_workstation(Solids solids, const Palette& palette, RandomSequence& ra
         .box({-.22f, -.07f, gap}, {.22f, .07f, .02f}, palette.plastic);
     add_desk_lamp(solids.at({.60f, .20f, top}, random.between(-.5f, .5f)), palette);
     add_mug(solids.at({random.between(.45f, .65f), random.between(.45f, .65f), top}), palette, random);
-    add_pile(solids.at({-.58f, .24f, top}, random.between(-.3f, .3f)), 3, .025f, palette, random);
-    add_pile(solids.at({-.55f, .58f, top}, random.between(-.3f, .3f)), 2, .003f, palette, random);
+    add_pile(solids.at({-.58f, .22f, top}, random.between(-.15f, .15f)), 3, .025f, palette, random);
+    add_pile(solids.at({-.55f, .59f, top}, random.between(-.15f, .15f)), 2, .003f, palette, random);
     add_office_chair(
         solids.at({random.between(-.25f, .15f), random.between(1.10f, 1.18f), 0}, random.between(-.6f, .6f) + 3.1416f),
         palette, random);
