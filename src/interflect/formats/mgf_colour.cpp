@@ -153,12 +153,12 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
     return result;
 }
 
-LuminousColour from_rec709(const Rgb& rgb) {
+LuminousColour from_rec709(const RgbD& rgb) {
     static const M33d xyz_from_rec709 = rec709_from_xyz().inverse();
     if (!(largest_channel(rgb) > 0)) return {};
     const V3d xyz = multiply(xyz_from_rec709, V3d(rgb));
     const double total = xyz.x + xyz.y + xyz.z;
-    return {{xyz.x / total, xyz.y / total}, luminance(RgbD(rgb))};
+    return {{xyz.x / total, xyz.y / total}, luminance(rgb)};
 }
 
 }  // namespace interflect

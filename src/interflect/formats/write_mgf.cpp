@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <fstream>
 #include <ostream>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "interflect/formats/mgf_colour.h"
@@ -26,21 +26,11 @@ std::string printable(std::string_view name) {
     return text;
 }
 
-/// One name for each material: its own, if the format can hold it and no other has it.
-std::vector<std::string> material_names(const std::vector<Material>& materials) {
-    std::set<std::string> taken;
-    std::vector<std::string> names;
-    for (const Material& material : materials) {
-        std::string name = printable(material.name);
-        if (name.starts_with('-')) name[0] = '_';
-        if (name.empty() || name == "=") name = "material";
-        if (!taken.insert(name).second) {
-            name += fmt::format("_{}", names.size());
-            while (!taken.insert(name).second) name += '_';
-        }
-        names.push_back(std::move(name));
-    }
-    return names;
+/// What a material can be called: white space would end its name, '-' separates the loops of a face, '=' defines.
+std::string material_name(const Material& material) {
+    std::string name = printable(material.name);
+    if (name.starts_with('-') || name == "=") name[0] = '_';
+    return name;
 }
 
 /// "room.desk.leg" as {"room", "desk", "leg"}; nothing for "".
@@ -61,11 +51,9 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
 class MgfWriter {
   public:
     MgfWriter(const Scene& scene, std::ostream& out)
-        : scene_(scene),
-          out_(out),
-          names_(material_names(scene.materials)),
-          sides_written_(scene.materials.size(), 0),
-          vertex_written_(scene.vertices.size(), false) {}
+        : scene_(scene), out_(out), vertex_written_(scene.vertices.size(), false) {
+        for (const Material& material : scene.materials) names_.push_back(material_name(material));
+    }
 
     void write() {
         put("# {} patches\n", scene_.patches.size());
@@ -73,7 +61,7 @@ class MgfWriter {
             const Patch& patch = scene_.patches[i];
             const bool two_sided = patch.other_side == i + 1;
             enter_object(patch.object);
-            enter_material(patch.material, two_sided ? 2 : 1);
+            enter_material(patch.material, two_sided ? two_sides : 1);
             add_face(patch);
             if (two_sided) ++i;
         }
@@ -82,6 +70,14 @@ class MgfWriter {
     }
 
   private:
+    static constexpr int two_sides = 2;  // what a new material has
+
+    /// What the file so far means by a material's name.
+    struct Definition {
+        std::uint32_t material = none;
+        int sides = two_sides;
+    };
+
     template <class... Values>
     void put(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(buffer_), format, std::forward<Values>(values)...);
@@ -109,22 +105,32 @@ class MgfWriter {
         for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
     }
 
-    /// `sides` belongs to the material in this format, so it may have to change.
+    /// Materials of one name take turns to be what the file means by it, and what has no name is forgotten as soon as
+    /// another is entered. `sides` belongs to the material in this format, so it may have to change as well.
     void enter_material(std::uint32_t material, int sides) {
-        const bool is_new = sides_written_[material] == 0, other_sides = sides_written_[material] != sides;
-        if (material != material_ || is_new) put("m {}{}\n", names_[material], is_new ? " =" : "");
-        if (is_new) define_material(scene_.materials[material]);
-        if (other_sides) put("\tsides {}\n", sides);
+        const std::string& name = names_[material];
+        Definition& definition = definitions_[name];
+        const bool is_new = definition.material != material || (name.empty() && material_ != material);
+        if (is_new) {
+            put("m {}{}\n", name, name.empty() ? "" : " =");
+            define_material(scene_.materials[material]);
+            definition = {material, two_sides};
+        } else if (material_ != material) {
+            put("m {}\n", name);
+        }
+        if (definition.sides != sides) put("\tsides {}\n", sides);
+        definition.sides = sides;
         material_ = material;
-        sides_written_[material] = sides;
     }
 
     void define_material(const Material& material) {
-        put_colour("rd", material.reflectance);
-        if (channel_sum(material.exitance) > 0) put_colour("ed", material.exitance);
+        RgbD reflectance(material.reflectance);
+        for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], largest_reflectance);
+        put_colour("rd", reflectance);
+        if (channel_sum(material.exitance) > 0) put_colour("ed", RgbD(material.exitance));
     }
 
-    void put_colour(std::string_view entity, const Rgb& rgb) {
+    void put_colour(std::string_view entity, const RgbD& rgb) {
         const auto [chromaticity, luminance] = from_rec709(rgb);
         put("\tc\n\t\tcxy {} {}\n\t{} {}\n", chromaticity.x, chromaticity.y, entity, luminance);
     }
@@ -144,8 +150,8 @@ class MgfWriter {
 
     const Scene& scene_;
     std::ostream& out_;
-    std::vector<std::string> names_;  // of materials
-    std::vector<int> sides_written_;  // of each material; 0 where it is not defined yet
+    std::vector<std::string> names_;                           // of materials
+    std::unordered_map<std::string, Definition> definitions_;  // by name
     std::vector<bool> vertex_written_;
     std::vector<std::string> open_objects_;
     std::uint32_t object_ = 0, material_ = none;

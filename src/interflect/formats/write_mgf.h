@@ -14,9 +14,8 @@ namespace interflect {
 ///
 /// What does not come back: vertices and materials that no patch uses, and vertices that lie at one position apart
 /// from each other; patches that add_polygon() takes for degenerate; views, for which there is write_view_list();
-/// names that the format has no room for. White space, control characters and '\' in a name become '_', so
-/// does a '-' at the start of a material's; materials without a name, or with that of another one, are named after
-/// their index.
+/// characters that the format has no room for: white space, control characters and '\' in a name become '_', so do a
+/// '-' at the start of a material's and an empty part of an object's.
 ///
 /// @param scene  Without scene_faults(). Time is linear in the patches, memory in the vertices (4 bytes each).
 /// @throws std::runtime_error where the stream fails, or the file cannot be written.
