@@ -29,22 +29,22 @@ struct MadeScene {
     std::string name;
     std::function<Scene(std::uint64_t seed)> make;
 };
-void PrintTo(const MadeScene& scene, std::ostream* out) { *out << scene.name; }
+std::ostream& operator<<(std::ostream& out, const MadeScene& made) { return out << made.name; }
 
 class MadeScenes : public testing::TestWithParam<MadeScene> {
   protected:
-    Scene scene_ = GetParam().make(1);
+    Scene scene = GetParam().make(1);
 };
 
 bool is_shell(const Scene& scene, const Patch& patch) { return scene.objects[patch.object].ends_with(".shell"); }
 
-TEST_P(MadeScenes, HaveNoFaults) { EXPECT_EQ(scene_faults(scene_), std::vector<std::string>()); }
+TEST_P(MadeScenes, HaveNoFaults) { EXPECT_EQ(scene_faults(scene), std::vector<std::string>()); }
 
 TEST_P(MadeScenes, NamesAreDifferent) {
-    EXPECT_EQ(std::set(scene_.objects.begin(), scene_.objects.end()).size(), scene_.objects.size());
+    EXPECT_EQ(std::set(scene.objects.begin(), scene.objects.end()).size(), scene.objects.size());
     std::set<std::string> materials, views;
-    for (const Material& material : scene_.materials) EXPECT_TRUE(materials.insert(material.name).second);
-    for (const View& view : scene_.views) EXPECT_TRUE(views.insert(view.name).second);
+    for (const Material& material : scene.materials) EXPECT_TRUE(materials.insert(material.name).second);
+    for (const View& view : scene.views) EXPECT_TRUE(views.insert(view.name).second);
 }
 
 std::string text_of(const Scene& scene) {
@@ -60,14 +60,14 @@ std::string text_of(const Scene& scene) {
 }
 
 TEST_P(MadeScenes, DependOnTheSeedAlone) {
-    EXPECT_TRUE(text_of(GetParam().make(1)) == text_of(scene_));
-    EXPECT_FALSE(text_of(GetParam().make(2)) == text_of(scene_));
+    EXPECT_TRUE(text_of(GetParam().make(1)) == text_of(scene));
+    EXPECT_FALSE(text_of(GetParam().make(2)) == text_of(scene));
 }
 
 TEST_P(MadeScenes, SurfacesAreClosed) {
     // Each edge belongs to two patches that run along it in opposite directions: no gap, no T-vertex, no patch twice.
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-    for (const Patch& patch : scene_.patches) {
+    for (const Patch& patch : scene.patches) {
         ASSERT_EQ(patch.other_side, none) << "all faces are one-sided";
         for (int k = 0; k < patch.vertex_count(); ++k) {
             const std::pair edge(patch.vertices[k], patch.vertices[(k + 1) % patch.vertex_count()]);
@@ -109,7 +109,7 @@ std::vector<Solid> solids_of(const Scene& scene) {
 }
 
 TEST_P(MadeScenes, SolidsLookOutwards) {
-    for (const Solid& solid : solids_of(scene_)) {
+    for (const Solid& solid : solids_of(scene)) {
         V3d centre(0);
         for (const V3d& v : solid.vertices) centre += v / 8.0;
         for (const V3d& normal : solid.normals) {
@@ -153,7 +153,7 @@ double separation(const Solid& a, const Solid& b) {
 constexpr double promised_distance = 0.004 - 1e-4;  // [m], less rounding
 
 TEST_P(MadeScenes, SolidsKeepTheirDistance) {
-    std::vector<Solid> solids = solids_of(scene_);
+    std::vector<Solid> solids = solids_of(scene);
     std::sort(solids.begin(), solids.end(),
               [](const Solid& a, const Solid& b) { return a.bounds.min.x < b.bounds.min.x; });
     for (std::size_t i = 0; i < solids.size(); ++i) {
@@ -189,8 +189,8 @@ std::map<std::string, Box3d> rooms_of(const Scene& scene) {
 }
 
 TEST_P(MadeScenes, SolidsAreInTheirRooms) {
-    const std::map<std::string, Box3d> rooms = rooms_of(scene_);
-    for (const Solid& solid : solids_of(scene_)) {
+    const std::map<std::string, Box3d> rooms = rooms_of(scene);
+    for (const Solid& solid : solids_of(scene)) {
         const Box3d& room = rooms.at(room_of(solid.object));
         for (int axis = 0; axis < 3; ++axis) {
             ASSERT_GE(solid.bounds.min[axis] - room.min[axis], promised_distance) << solid.object;
@@ -209,12 +209,12 @@ V3f uniform_direction(std::uint64_t key, std::uint64_t index) {
 
 TEST_P(MadeScenes, NoRayEscapes) {
     constexpr std::uint64_t count = 100'000;
-    const RayCaster ray_caster(scene_);
+    const RayCaster ray_caster(scene);
     std::vector<Ray> rays;
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto words = random_words(1, i);
-        const Patch& patch = scene_.patches[words[0] % scene_.patches.size()];
-        const PatchGeometry geometry(scene_, patch);
+        const Patch& patch = scene.patches[words[0] % scene.patches.size()];
+        const PatchGeometry geometry(scene, patch);
         V3f direction = uniform_direction(2, i);
         if (direction.dot(geometry.normal()) < 0) direction = -direction;
         const V3f origin = geometry.point(geometry.uniform_parameters(unit_float(words[1]), unit_float(words[2])));
@@ -228,8 +228,8 @@ TEST_P(MadeScenes, NoRayEscapes) {
 TEST_P(MadeScenes, EyesHaveRoomAroundThem) {
     constexpr std::uint64_t directions = 2000;
     constexpr float arm = 0.3f;  // [m]
-    const RayCaster ray_caster(scene_);
-    for (const View& view : scene_.views) {
+    const RayCaster ray_caster(scene);
+    for (const View& view : scene.views) {
         if (view.name == "overview") continue;
         EXPECT_TRUE(view.fov >= 45 && view.fov <= 60);
         std::vector<Ray> rays;
@@ -241,9 +241,9 @@ TEST_P(MadeScenes, EyesHaveRoomAroundThem) {
 }
 
 TEST_P(MadeScenes, LightShinesDownwardsOnly) {
-    for (const Patch& patch : scene_.patches)
-        if (channel_sum(scene_.materials[patch.material].exitance) > 0) {
-            ASSERT_EQ(PatchGeometry(scene_, patch).normal(), V3f(0, 0, -1));
+    for (const Patch& patch : scene.patches)
+        if (channel_sum(scene.materials[patch.material].exitance) > 0) {
+            ASSERT_EQ(PatchGeometry(scene, patch).normal(), V3f(0, 0, -1));
         }
 }
 

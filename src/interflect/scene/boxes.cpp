@@ -56,7 +56,8 @@ Scene make_boxes(const BoxesOptions& options) {
     scene.objects.emplace_back("room-0.boxes");
     const auto object = static_cast<std::uint32_t>(scene.objects.size() - 1);
     for (std::uint32_t i = 1; i <= options.boxes; ++i) {
-        const V3f centre(static_cast<float>(i % columns) + 0.5f, static_cast<float>(i / columns) + 0.5f, 0);
+        const std::uint32_t row = i / columns, column = i % columns;
+        const V3f centre(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f, 0);
         add_box(scene, V3f(-half, -half, 0) + centre * cell, object, palette, random);
     }
     scene.views = {look_out(plan, 0).view, bird_view(plan)};

@@ -38,9 +38,9 @@ struct Room {
 
 /// An opening from the floor up, through the wall that two rooms share.
 struct Doorway {
-    std::array<std::uint32_t, 2> rooms;  ///< The western or southern one first.
-    Side side;                           ///< Of the first room: east or north.
-    Interval opening;                    ///< Along the wall.
+    std::array<std::uint32_t, 2> rooms{none, none};  ///< The western or southern one first.
+    Side side = east;                                ///< Of the first room: east or north.
+    Interval opening;                                ///< Along the wall.
 };
 
 /// Rooms on a grid, joined by doorways, about the origin; floors at z = 0.

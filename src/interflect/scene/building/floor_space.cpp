@@ -72,11 +72,11 @@ std::optional<Placement> FloorSpace::against_wall(const Furniture& piece, Random
     };
     for (int i = 0; i < random_tries; ++i) {
         const auto wall = static_cast<Side>(random.below(side_count));
-        if (const auto place = try_at(wall, random.uniform())) return place;
+        if (auto place = try_at(wall, random.uniform())) return place;
     }
     for (const Side wall : {west, south, east, north})
         for (int i = 0; i <= tried_places; ++i)
-            if (const auto place = try_at(wall, static_cast<float>(i) / tried_places)) return place;
+            if (auto place = try_at(wall, static_cast<float>(i) / tried_places)) return place;
     return std::nullopt;
 }
 
@@ -87,7 +87,7 @@ std::optional<Placement> FloorSpace::in_the_open(const Furniture& piece, RandomS
         const float along =
             room_.along(back).low + random.between(aisle + piece.width / 2, room_width - aisle - piece.width / 2);
         const float across = room_.wall(back) + random.between(aisle, room_depth - aisle - piece.depth);
-        if (const auto place = take_if_free(piece, back, along_x(back) ? V2f(along, across) : V2f(across, along)))
+        if (auto place = take_if_free(piece, back, along_x(back) ? V2f(along, across) : V2f(across, along)))
             return place;
     }
     return std::nullopt;

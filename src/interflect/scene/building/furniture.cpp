@@ -11,7 +11,7 @@ namespace {
 
 struct Books {
     Interval thickness, height, depth;  // height as a share of what fits
-    float chance_of_space;              // after a book
+    float chance_of_space = 0;          // after a book
 };
 
 constexpr Books books{{.016f, .048f}, {.60f, .92f}, {.14f, .21f}, .10f};
@@ -22,7 +22,7 @@ std::uint32_t draw_paper(const Palette& palette, RandomSequence& random) {
 }
 
 /// A row of books between `low` and `high`, with their backs in line at high.y, and with spaces.
-void add_books(Solids& solids, const V3f& low, const V3f& high, const Books& kind, const Palette& palette,
+void add_books(const Solids& solids, const V3f& low, const V3f& high, const Books& kind, const Palette& palette,
                RandomSequence& random) {
     for (float x = low.x;;) {
         const float thickness = random.between(kind.thickness.low, kind.thickness.high);
@@ -36,7 +36,7 @@ void add_books(Solids& solids, const V3f& low, const V3f& high, const Books& kin
 }
 
 /// Sides, back and boards of a case of the given outer size, and books on all boards but the uppermost.
-void add_bookcase(Solids& solids, const V3f& size, int rows, const Books& kind, const Palette& palette,
+void add_bookcase(const Solids& solids, const V3f& size, int rows, const Books& kind, const Palette& palette,
                   RandomSequence& random) {
     constexpr float board = .02f, back = .01f, plinth = .05f, set_back = .02f;
     const std::uint32_t wood = random.pick(std::span(palette.woods));
@@ -56,16 +56,16 @@ void add_bookcase(Solids& solids, const V3f& size, int rows, const Books& kind, 
     }
 }
 
-void build_bookcase(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_bookcase(const Solids& solids, const Palette& palette, RandomSequence& random) {
     add_bookcase(solids, {bookcase.width, bookcase.depth, 2.0f}, 5, books, palette, random);
 }
 
-void build_low_bookcase(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_low_bookcase(const Solids& solids, const Palette& palette, RandomSequence& random) {
     add_bookcase(solids, {low_bookcase.width, low_bookcase.depth, .82f}, 2, binders, palette, random);
 }
 
 /// Legs at the corners of a rectangle about the origin.
-void add_legs(Solids& solids, float half_x, float half_y, float thickness, float height, std::uint32_t material) {
+void add_legs(const Solids& solids, float half_x, float half_y, float thickness, float height, std::uint32_t material) {
     for (const float x : {-half_x, half_x})
         for (const float y : {-half_y, half_y})
             solids.box({x - thickness / 2, y - thickness / 2, gap}, {x + thickness / 2, y + thickness / 2, height},
@@ -73,7 +73,7 @@ void add_legs(Solids& solids, float half_x, float half_y, float thickness, float
 }
 
 /// Within 0.33 m of the origin, its front towards +y.
-void add_office_chair(Solids solids, const Palette& palette, RandomSequence& random) {
+void add_office_chair(const Solids& solids, const Palette& palette, RandomSequence& random) {
     const std::uint32_t fabric = random.pick(std::span(palette.fabrics));
     add_legs(solids, .20f, .20f, .05f, .06f, palette.plastic);
     solids.tapered_box({-.22f, -.22f, .06f + gap}, {.22f, .22f, .11f}, .3f, palette.plastic);
@@ -88,7 +88,7 @@ void add_office_chair(Solids solids, const Palette& palette, RandomSequence& ran
 }
 
 /// Within 0.3 m of the origin, its front towards +y.
-void add_chair(Solids solids, std::uint32_t wood, std::uint32_t fabric) {
+void add_chair(const Solids& solids, std::uint32_t wood, std::uint32_t fabric) {
     add_legs(solids, .19f, .18f, .035f, .43f, wood);
     solids.box({-.21f, -.20f, .43f + gap}, {.21f, .20f, .47f}, fabric);
     for (const float x : {-.19f, .19f}) solids.box({x - .015f, -.195f, .47f + gap}, {x + .015f, -.165f, .90f}, wood);
@@ -96,7 +96,7 @@ void add_chair(Solids solids, std::uint32_t wood, std::uint32_t fabric) {
 }
 
 /// Things that lie on each other, each turned a little; within 0.2 m of the origin.
-void add_pile(Solids solids, int count, float thickness, const Palette& palette, RandomSequence& random) {
+void add_pile(const Solids& solids, int count, float thickness, const Palette& palette, RandomSequence& random) {
     for (int i = 0; i < count; ++i) {
         const float z = gap + static_cast<float>(i) * (thickness + gap);
         const float half_x = random.between(.08f, .11f), half_y = random.between(.11f, .15f);
@@ -105,26 +105,26 @@ void add_pile(Solids solids, int count, float thickness, const Palette& palette,
     }
 }
 
-void add_mug(Solids solids, const Palette& palette, RandomSequence& random) {
+void add_mug(const Solids& solids, const Palette& palette, RandomSequence& random) {
     solids.tapered_box({-.035f, -.035f, gap}, {.035f, .035f, .10f}, 1.15f, draw_paper(palette, random));
 }
 
 /// Its front, the display, towards +y.
-void add_monitor(Solids solids, const Palette& palette) {
+void add_monitor(const Solids& solids, const Palette& palette) {
     solids.tapered_box({-.12f, -.08f, gap}, {.12f, .08f, .02f}, .8f, palette.plastic);
     solids.box({-.025f, -.03f, .02f + gap}, {.025f, -.01f, .25f}, palette.plastic);
     solids.box({-.27f, -.01f + gap, .10f}, {.27f, .02f, .43f}, palette.plastic);
     solids.box({-.26f, .02f + gap, .11f}, {.26f, .028f, .42f}, palette.screen);
 }
 
-void add_desk_lamp(Solids solids, const Palette& palette) {
+void add_desk_lamp(const Solids& solids, const Palette& palette) {
     solids.tapered_box({-.07f, -.07f, gap}, {.07f, .07f, .025f}, .7f, palette.metal);
     solids.box({-.01f, -.01f, .025f + gap}, {.01f, .01f, .38f}, palette.metal);
     solids.tapered_box({-.09f, -.06f, .38f + gap}, {.09f, .12f, .45f}, .5f, palette.metal);
 }
 
 /// Body, three drawers and their handles, towards +y; origin at the back, on the floor.
-void add_drawers(Solids solids, std::uint32_t wood, const Palette& palette) {
+void add_drawers(const Solids& solids, std::uint32_t wood, const Palette& palette) {
     solids.box({-.20f, 0, .03f}, {.20f, .52f, .64f}, wood);
     for (int i = 0; i < 3; ++i) {
         const float z = .05f + .195f * static_cast<float>(i);
@@ -134,7 +134,7 @@ void add_drawers(Solids solids, std::uint32_t wood, const Palette& palette) {
 }
 
 /// The desk is 0.8 m deep and stands at the wall; who works there looks at the wall, so that its chair is in front.
-void build_workstation(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_workstation(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float half_width = .8f - gap, depth = .78f, under = .71f, top = .735f, side = .025f;
     const std::uint32_t wood = random.pick(std::span(palette.woods));
     solids.box({-half_width, gap, under}, {half_width, depth, top}, wood);
@@ -155,7 +155,7 @@ void build_workstation(Solids solids, const Palette& palette, RandomSequence& ra
         palette, random);
 }
 
-void build_cabinet(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_cabinet(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float half_width = .45f - gap, depth = .44f, height = 1.15f, door = .02f;
     constexpr float front = depth - door - gap;  // of the body
     solids.box({-half_width + .02f, gap, gap}, {half_width - .02f, front - .03f, .06f}, palette.plastic);
@@ -172,14 +172,13 @@ void build_cabinet(Solids solids, const Palette& palette, RandomSequence& random
         .box({-.12f, -.12f, gap}, {.12f, .12f, .16f}, palette.cardboard);
 }
 
-void build_table(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_table(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float half_x = .8f, half_y = .42f, under = .70f, top = .73f, reach = .62f;
     const std::uint32_t wood = random.pick(std::span(palette.woods));
     const std::uint32_t fabric = random.pick(std::span(palette.fabrics));
     const Solids middle = solids.at({0, table.depth / 2, 0});
-    Solids plate = middle;
-    plate.box({-half_x, -half_y, under}, {half_x, half_y, top}, wood);
-    add_legs(plate, half_x - .05f, half_y - .05f, .06f, under - gap, wood);
+    middle.box({-half_x, -half_y, under}, {half_x, half_y, top}, wood);
+    add_legs(middle, half_x - .05f, half_y - .05f, .06f, under - gap, wood);
     for (const float x : {-.4f, .4f})
         for (const float side : {-1.f, 1.f}) {
             const float turn = random.between(-.25f, .25f) + (side > 0 ? 3.1416f : 0);
@@ -193,7 +192,7 @@ void build_table(Solids solids, const Palette& palette, RandomSequence& random) 
     }
 }
 
-void build_radiator(Solids solids, const Palette& palette, RandomSequence&) {
+void build_radiator(const Solids& solids, const Palette& palette, RandomSequence&) {
     constexpr int fins = 12;
     constexpr float half_width = .5f - gap, front = .12f, low = .14f, high = .68f, pipe = .03f;
     constexpr float pitch = 2 * half_width / fins;
@@ -207,7 +206,7 @@ void build_radiator(Solids solids, const Palette& palette, RandomSequence&) {
         solids.box({x - .02f, .05f, gap}, {x + .02f, .08f, low - 2 * gap - pipe}, palette.metal);
 }
 
-void build_picture(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_picture(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float bar = .03f, thickness = .02f;
     const float half_x = random.between(.25f, .34f), low = random.between(1.2f, 1.35f);
     const float high = low + random.between(.4f, .6f);
@@ -219,7 +218,7 @@ void build_picture(Solids solids, const Palette& palette, RandomSequence& random
                draw_paper(palette, random));
 }
 
-void build_cartons(Solids solids, const Palette& palette, RandomSequence& random) {
+void build_cartons(const Solids& solids, const Palette& palette, RandomSequence& random) {
     float z = gap;
     for (const float half : {.19f, .17f, .14f}) {
         const float height = random.between(.18f, .30f);
@@ -229,7 +228,7 @@ void build_cartons(Solids solids, const Palette& palette, RandomSequence& random
     }
 }
 
-void build_waste_bin(Solids solids, const Palette& palette, RandomSequence&) {
+void build_waste_bin(const Solids& solids, const Palette& palette, RandomSequence&) {
     const float y = waste_bin.depth / 2;
     solids.tapered_box({-.11f, y - .11f, gap}, {.11f, y + .11f, .30f}, 1.25f, palette.plastic);
 }
@@ -246,7 +245,7 @@ const Furniture picture{"picture", .7f, .04f, 0, build_picture};
 const Furniture cartons{"cartons", .56f, .56f, 0, build_cartons};
 const Furniture waste_bin{"waste-bin", .32f, .32f, 0, build_waste_bin};
 
-void add_luminaire(Solids solids, const Palette& palette, RandomSequence& random) {
+void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float half_length = .6f, half_width = .3f, thickness = .06f;
     solids.box({-half_length, -half_width, -gap - thickness}, {half_length, half_width, -gap}, palette.lacquer,
                random.pick(std::span(palette.lamps)));

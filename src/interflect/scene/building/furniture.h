@@ -15,7 +15,7 @@ struct Furniture {
     std::string_view name;
     float width, depth;  ///< [m]
     float clearance;     ///< Floor to keep free before it, to reach it [m].
-    void (*build)(Solids solids, const Palette& palette, RandomSequence& random);
+    void (*build)(const Solids& solids, const Palette& palette, RandomSequence& random);
 };
 
 extern const Furniture bookcase;      ///< 2 m high, five rows of books.
@@ -30,6 +30,6 @@ extern const Furniture waste_bin;
 
 /// Adds a luminaire below a ceiling: a flat box of 1.2 m along x and 0.6 m along y, whose underside emits. The origin
 /// is the middle of its place on the ceiling.
-void add_luminaire(Solids solids, const Palette& palette, RandomSequence& random);
+void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random);
 
 }  // namespace interflect::building

@@ -13,9 +13,9 @@ struct LookOut {
     Imath::Box2f standing_room;
 };
 
-/// From the corner of a room that has a doorway nearest to the middle of its picture, at eye height, towards the
+/// From the corner of room `index` that has a doorway nearest to the middle of its picture, at eye height, towards the
 /// opposite corner. The eye is 0.45 m from both walls, as far as from what stands beside `standing_room`.
-LookOut look_out(const FloorPlan& plan, std::uint32_t room);
+LookOut look_out(const FloorPlan& plan, std::uint32_t index);
 
 /// The whole plan from above and south of it, "overview": one-sided ceilings and walls let the eye in.
 View bird_view(const FloorPlan& plan);

@@ -40,12 +40,13 @@ Placement Placement::at(const V3f& local, float radians) const {
     return placement;
 }
 
-void Solids::box(const V3f& low, const V3f& high, std::uint32_t material, std::optional<std::uint32_t> underside) {
+void Solids::box(const V3f& low, const V3f& high, std::uint32_t material,
+                 std::optional<std::uint32_t> underside) const {
     tapered_box(low, high, 1, material);
     if (underside) scene_->patches[scene_->patches.size() - box_faces.size() + underside_face].material = *underside;
 }
 
-void Solids::tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) {
+void Solids::tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) const {
     const auto first = static_cast<std::uint32_t>(scene_->vertices.size());
     const V3f centre = (low + high) / 2, half = (high - low) / 2;
     for (unsigned corner = 0; corner < 8; ++corner) {

@@ -30,7 +30,8 @@ class Placement {
     float cosine_ = 1, sine_ = 0;
 };
 
-/// Adds closed solids to a scene, each of six one-sided faces that look outwards, with eight vertices of its own.
+/// A place in a scene where solids are added, closed ones, each of six one-sided faces that look outwards, with eight
+/// vertices of its own.
 class Solids {
   public:
     Solids(Scene& scene, const Placement& placement, std::uint32_t object)
@@ -44,10 +45,10 @@ class Solids {
     /// @param low, high  Opposite corners, low < high in each coordinate.
     /// @param underside  Material of the lower face, where it is another.
     void box(const V3f& low, const V3f& high, std::uint32_t material,
-             std::optional<std::uint32_t> underside = std::nullopt);
+             std::optional<std::uint32_t> underside = std::nullopt) const;
 
     /// A box whose top is `top_scale` times as large as its bottom, about the same vertical axis; top_scale > 0.
-    void tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material);
+    void tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) const;
 
   private:
     Scene* scene_;
