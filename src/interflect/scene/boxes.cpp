@@ -19,7 +19,7 @@ using namespace building;
 
 constexpr float cell = 1.2f;                                       // side of the square in which one box stands [m]
 constexpr float luminaire_pitch = 3.6f;                            // [m]
-constexpr Interval half_side{.10f, .36f}, box_height{.10f, 1.6f};  // [m]
+constexpr Interval half_side{.10f, .36f}, box_height{.10f, 1.4f};  // [m]
 
 /// A box somewhere within a cell, turned at random.
 void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const Palette& palette,

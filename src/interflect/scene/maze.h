@@ -22,7 +22,7 @@ struct MazeOptions {
 ///
 /// All faces are one-sided: floors, walls, ceilings and the insides of doorways are together one closed surface that is
 /// lit from inside; furniture is made of closed convex solids that keep 4 mm distance from each other and from it. A
-/// room has about 50 patches, with furniture about 2,560, so that nine rooms are the size of the scene in Prikryl et
+/// room has about 50 patches, with furniture about 2,590, so that nine rooms are the size of the scene in Prikryl et
 /// al. 2000 (23,182 patches). Objects are named "room-0.shell", "room-0.bookcase-1". The first 64 rooms have a view
 /// each, "room-0" and so on, from a corner at eye height; the view "overview" looks in from above, through the
 /// ceilings' backs.
