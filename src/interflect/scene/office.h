@@ -17,7 +17,7 @@ struct OfficeOptions {
 
 /// An office building of one floor: equal rooms, joined by doorways, in which desks stand in rows behind each other,
 /// all the same way round, below a grid of luminaires; along the walls bookcases, cabinets, radiators, pictures.
-/// Otherwise as make_maze(): closed, one-sided, about the origin, the same names of objects and views. About 250
+/// Otherwise as make_maze(): closed, one-sided, about the origin, the same names of objects and views. About 230
 /// patches a desk and 650 a bookcase, of which there is one for every two rows.
 ///
 /// Time and memory are linear in the desks. @throws InputError where an option is out of its range.
