@@ -53,7 +53,8 @@ class Shader {
 /// The eye rays of one pixel after the other, jittered by a low-discrepancy sequence of each pixel's own.
 void append_pixel_rays(const Camera& camera, std::size_t pixel, const RenderOptions& options, std::vector<Ray>& rays) {
     const auto left = static_cast<float>(pixel % static_cast<std::size_t>(options.width));
-    const auto top = static_cast<float>(pixel / static_cast<std::size_t>(options.width));
+    const std::size_t row = pixel / static_cast<std::size_t>(options.width);
+    const auto top = static_cast<float>(row);
     const auto samples = static_cast<std::size_t>(options.samples);
     thread_local PointBlock points;
     for (std::size_t first = 0; first < samples; first += PointBlock::capacity) {
