@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
@@ -51,30 +52,47 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// Rays as the solver would trace them when the light has already spread through the scene.
-std::vector<Ray> solver_rays(const Scene& scene, const RayCaster& ray_caster, std::int64_t count) {
+/// What the solver traces when the light has already spread through the scene.
+struct Workload {
+    Surfaces surfaces;
+    std::vector<double> q;
+    SampleStreams streams;
+    std::vector<Ray> rays;
+};
+
+Workload typical_workload(const Scene& scene, const RayCaster& ray_caster, std::int64_t count) {
     SolveOptions options;
     options.rays = std::min<std::int64_t>(count, 1'000'000);
     const Solution solution = solve(scene, ray_caster, options);
     if (!(channel_sum(solution.emitted_power) > 0))
         throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
-    const Surfaces surfaces(scene);
-    const std::vector<double> q = power_weights(radiated_power(surfaces, solution.irradiance));
-    return transport_rays(surfaces, ray_caster, q, count, {options.points, options.seed, surfaces.size()});
+    Workload work{Surfaces(scene), {}, {options.points, options.seed, scene.patches.size()}, {}};
+    work.q = power_weights(radiated_power(work.surfaces, solution.irradiance));
+    work.rays = transport_rays(work.surfaces, ray_caster, work.q, count, work.streams);
+    return work;
 }
 
 struct Measurement {
     double ceiling = 0, solver = 0;                  // [rays/s], of one round
     std::array<double, interfaces.size()> embree{};  // [rays/s], each interface
+    double making_rays = 0, tracing = 0;             // each alone; shares of the solver's time
 };
 
+/// Traces as the solver does: batches of rays, which become hits.
+void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
+    constexpr std::size_t batch_rays = 4096;
+    parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
+        std::array<Hit, batch_rays> hits;
+        ray_caster.trace(rays.subspan(begin, end - begin), std::span(hits).first(end - begin));
+    });
+}
+
 /// Everything in one run, one after the other, since the speed of a machine changes with its load.
-Measurement measure(const Scene& scene, const RayCaster& ray_caster, const std::vector<Ray>& rays,
-                    const Options& options) {
+Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workload& work, const Options& options) {
     Measurement m;
-    const auto count = static_cast<double>(rays.size());
+    const auto count = static_cast<double>(work.rays.size());
     for (std::size_t i = 0; i < interfaces.size(); ++i) {
-        PreparedRays prepared(rays, interfaces[i].first);
+        PreparedRays prepared(work.rays, interfaces[i].first);
         m.embree[i] = count / seconds_for([&] {
                           parallel_for_ranges(prepared.group_count(), 1, [&](std::size_t group, std::size_t) {
                               prepared.trace_group(ray_caster, group);
@@ -86,7 +104,11 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const std::
     solve_options.rays = options.rays;
     Solution solution;
     const double seconds = seconds_for([&] { solution = solve(scene, ray_caster, solve_options); });
-    if (!solution.iterations.empty()) m.solver = static_cast<double>(solution.iterations.back().rays) / seconds;
+    m.solver = static_cast<double>(solution.iterations.back().rays) / seconds;
+    const auto share = [&](double seconds_for_count) { return seconds_for_count / count * m.solver; };
+    m.making_rays =
+        share(seconds_for([&] { transport_rays(work.surfaces, ray_caster, work.q, options.rays, work.streams); }));
+    m.tracing = share(seconds_for([&] { trace_in_batches(ray_caster, work.rays); }));
     return m;
 }
 
@@ -94,27 +116,38 @@ void run(const Options& options) {
     const ThreadLimit limit(options.threads);
     const Scene scene = options.mesh.divide(options.scene.load(), options.scene.read);
     const RayCaster ray_caster(scene);
-    const std::vector<Ray> rays = solver_rays(scene, ray_caster, options.rays);
+    const Workload work = typical_workload(scene, ray_caster, options.rays);
 
-    std::vector<double> ratios, ceilings, solvers;
+    std::vector<double> ratios, ceilings, solvers, making_rays, tracing;
     std::array<std::vector<double>, interfaces.size()> embree;
     for (int round = 0; round < options.rounds; ++round) {
-        const Measurement m = measure(scene, ray_caster, rays, options);
+        const Measurement m = measure(scene, ray_caster, work, options);
         ratios.push_back(m.solver / m.ceiling);
         ceilings.push_back(m.ceiling);
         solvers.push_back(m.solver);
+        making_rays.push_back(m.making_rays);
+        tracing.push_back(m.tracing);
         for (std::size_t i = 0; i < interfaces.size(); ++i) embree[i].push_back(m.embree[i]);
     }
 
+    const double making_share = median(making_rays), tracing_share = median(tracing);
+    const double rest = std::max(0.0, 1 - making_share - tracing_share);
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     if (options.json) {
         Json by_interface;
         for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = median(embree[i]);
-        const Json result{{"scene", scene.name},      {"patches", scene.patches.size()},
-                          {"threads", threads},       {"rays", options.rays},
-                          {"rounds", options.rounds}, {"ceiling_rays_per_second", median(ceilings)},
-                          {"embree", by_interface},   {"solver_rays_per_second", median(solvers)},
-                          {"ratio", median(ratios)},  {"ray_tracer_bytes", ray_caster.memory()}};
+        const Json shares{{"making_rays", making_share}, {"tracing", tracing_share}, {"rest", rest}};
+        const Json result{{"scene", scene.name},
+                          {"patches", scene.patches.size()},
+                          {"threads", threads},
+                          {"rays", options.rays},
+                          {"rounds", options.rounds},
+                          {"ceiling_rays_per_second", median(ceilings)},
+                          {"embree", by_interface},
+                          {"solver_rays_per_second", median(solvers)},
+                          {"ratio", median(ratios)},
+                          {"shares_of_time", shares},
+                          {"ray_tracer_bytes", ray_caster.memory()}};
         std::cout << result.dump(2) << '\n';
         return;
     }
@@ -124,6 +157,8 @@ void run(const Options& options) {
         fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, median(embree[i]) / 1e6);
     fmt::print("  whole solver          {:8.2f} M rays/s\n", median(solvers) / 1e6);
     fmt::print("  solver over Embree    {:8.3f}\n", median(ratios));
+    fmt::print("  of the solver's time  {:.0f}% making rays, {:.0f}% tracing, {:.0f}% the rest\n", 100 * making_share,
+               100 * tracing_share, 100 * rest);
 }
 
 }  // namespace
@@ -133,7 +168,9 @@ void add_bench(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("bench", "Measure the solver's rays a second beside the ray tracer's own");
     options->scene.add_to(command);
     options->mesh.add_to(command);
-    add_parsed(command, "--rays", options->rays, parse_count, "Rays of each measurement (default 4M)");
+    add_parsed(command, "--rays", options->rays, parse_count, "Rays of each measurement")
+        ->type_name("COUNT")
+        ->default_str("4M");
     command.add_option("--rounds", options->rounds, "How often to measure; medians are reported")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));

@@ -50,14 +50,15 @@ void add_compare(CLI::App& app) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App& command = *app.add_subcommand("compare", "Measure how a picture differs from a reference");
-    command.add_option("IMAGE", options->image, "Picture (.exr .hdr .png .jpg)")->required();
+    command.add_option("IMAGE", options->image, "Picture (.exr .hdr .png)")->required()->type_name("FILE");
     command.add_option("REFERENCE", options->reference, "Reference: as large, or smaller by a whole factor")
-        ->required();
+        ->required()
+        ->type_name("FILE");
     command.add_flag("--scale", options->compare.scale, "Divide the ratio of mean luminances out first");
     command.add_flag("--json", options->json, "As JSON on stdout");
     command.callback([options] {
-        const ImageDifference difference =
-            compare(read_image(options->image), read_image(options->reference), options->compare);
+        const Image image = read_image(options->image);
+        const ImageDifference difference = compare(image, read_image(options->reference), options->compare);
         if (options->json)
             std::cout << to_json(difference).dump(2) << '\n';
         else

@@ -1,6 +1,7 @@
+#include <ImathBox.h>
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -25,7 +26,8 @@ struct Emitter {
 
 struct Summary {
     std::size_t triangles = 0, two_sided = 0;
-    double area = 0;
+    Imath::Box3f bounds;  // [m]
+    double area = 0;      // [m^2]
     RgbD emitted_power{0, 0, 0};
     std::map<std::uint32_t, Emitter> emitters;  // by material
 };
@@ -35,6 +37,7 @@ Summary summarise(const Scene& scene) {
     for (const Patch& patch : scene.patches) {
         const double area = patch_area(scene, patch);
         s.area += area;
+        for (int k = 0; k < patch.vertex_count(); ++k) s.bounds.extendBy(scene.vertices[patch.vertices[k]]);
         s.triangles += patch.is_triangle();
         s.two_sided += patch.other_side != none;
         const Rgb& exitance = scene.materials[patch.material].exitance;
@@ -77,12 +80,26 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
                             {"patches", e.patches},
                             {"area", e.area},
                             {"power", json_of(e.power)}});
-    return {{"scene", scene.name},      {"patches", scene.patches.size()},
-            {"triangles", s.triangles}, {"two_sided_patches", s.two_sided},
-            {"area", s.area},           {"emitted_power", json_of(s.emitted_power)},
-            {"emitters", emitters},     {"views", views},
-            {"files", scene.files},     {"files_outside", outside},
+    const Json bounds{{"min", json_of(s.bounds.min)}, {"max", json_of(s.bounds.max)}};
+    return {{"scene", scene.name},
+            {"patches", scene.patches.size()},
+            {"triangles", s.triangles},
+            {"two_sided_patches", s.two_sided},
+            {"bounds", bounds},
+            {"area", s.area},
+            {"emitted_power", json_of(s.emitted_power)},
+            {"emitters", emitters},
+            {"views", views},
+            {"files", scene.files},
+            {"files_outside", outside},
             {"warnings", warnings}};
+}
+
+/// "-0.15 to 6": the ends of an interval, without digits that are rounding error in a scene of that size.
+std::string interval(float low, float high, float scene_size) {
+    const float step = 1e-4f * scene_size;
+    const auto rounded = [step](float x) { return std::round(x / step) * step + 0.0f; };  // no -0
+    return fmt::format("{:.4g} to {:.4g}", rounded(low), rounded(high));
 }
 
 template <class Vector>
@@ -94,6 +111,10 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     fmt::print("{}\n", scene.name);
     fmt::print("  patches   {} ({} triangles; {} on two-sided faces)\n", scene.patches.size(), s.triangles,
                s.two_sided);
+    const V3f low = s.bounds.min, high = s.bounds.max;
+    const float size = s.bounds.size().length();
+    fmt::print("  bounds    x {}, y {}, z {} m\n", interval(low.x, high.x, size), interval(low.y, high.y, size),
+               interval(low.z, high.z, size));
     fmt::print("  area      {:.6g} m2\n", s.area);
     fmt::print("  emitted   {:.6g} lm (RGB {})\n", luminance(s.emitted_power), text_of(s.emitted_power));
     for (const auto& [material, e] : s.emitters)
@@ -102,7 +123,7 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     for (const View& v : scene.views)
         fmt::print("  view      {}: eye {}, look at {}, up {}, fov {:.4g}\n", v.name, text_of(v.eye),
                    text_of(v.look_at), text_of(v.up), v.fov);
-    for (const std::string& file : scene.files) fmt::print("  file      {}\n", file);
+    fmt::print("  files     {}\n", scene.files.size());
     for (const std::string& file : outside) fmt::print("  outside   {}: not in the scene's own folder\n", file);
 }
 

@@ -2,9 +2,34 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
+#include <string>
 
 #include "apps/interflect/commands.h"
 #include "interflect/base/error.h"
+
+namespace {
+
+/// What is said about wrong usage: the fault, and where help is.
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+    const auto chosen = app->get_subcommands();
+    std::string command = app->get_name(), message = error.what();
+    if (chosen.empty()) {
+        const auto unknown = app->remaining();
+        message = unknown.empty() ? std::string() : "'" + unknown.front() + "' is no subcommand; ";
+        message += "expected one of:";
+        for (const CLI::App* subcommand : app->get_subcommands({})) message += " " + subcommand->get_name();
+    } else {
+        command += " " + chosen.front()->get_name();
+    }
+    return "error: " + message + "\n`" + command + " --help` tells what may be given.\n";
+}
+
+constexpr const char* footer =
+    "`interflect SUBCOMMAND --help` lists the options of each.\n"
+    "Lengths are in metres, powers in lumens. Results go to stdout, messages to stderr.\n"
+    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 bad input, 130 interrupted, keeping what there is.";
+
+}  // namespace
 
 int main(int argc, char** argv) {
     using namespace interflect::command;
@@ -14,6 +39,7 @@ int main(int argc, char** argv) {
     CLI::App app("Interflect: diffuse global illumination that goes where the eye looks", "interflect");
     app.set_version_flag("--version", "interflect " INTERFLECT_VERSION);
     app.require_subcommand(1);
+    app.failure_message(usage_message);
     int exit_code = done;
     add_info(app);
     add_solve(app, exit_code);
@@ -21,6 +47,7 @@ int main(int argc, char** argv) {
     add_compare(app);
     add_bench(app);
     add_make_scene(app);
+    app.footer(footer);  // after the subcommands, which would inherit it
 
     try {
         app.parse(argc, argv);

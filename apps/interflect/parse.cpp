@@ -1,19 +1,21 @@
 #include "apps/interflect/parse.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 namespace interflect::command {
 
 namespace {
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {
-    throw CLI::ValidationError("'" + text + "'", "expected " + expected);
+    throw std::invalid_argument("expected " + expected + ", found '" + text + "'");
 }
 
 /// Reads a finite number from the front of `text` and removes it; false where there is none.
 bool take_number(std::string_view& text, double& number) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || !std::isfinite(number)) return false;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
@@ -39,6 +41,13 @@ std::int64_t parse_count(const std::string& text) {
     number *= std::pow(1000.0, static_cast<double>(power));
     if (!(number >= 1) || number > 1e18) refuse(text, expected);
     return std::llround(number);
+}
+
+std::uint64_t parse_seed(const std::string& text) {
+    std::uint64_t seed = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (error != std::errc() || end != text.data() + text.size()) refuse(text, "a whole number from 0 to 2^64 - 1");
+    return seed;
 }
 
 double parse_share(const std::string& text) {
@@ -68,6 +77,27 @@ Size parse_size(const std::string& text) {
     const auto fits = [](double n) { return n >= 1 && n <= 32768 && n == std::floor(n); };
     if (!parsed || !fits(width) || !fits(height)) refuse(text, "WIDTHxHEIGHT, such as 640x360, each from 1 to 32768");
     return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+float parse_mesh_size(const std::string& text) {
+    if (text == "auto") return automatic_mesh_size;
+    if (text == "none") return whole_patches;
+    std::string_view rest = text;
+    double number = 0;
+    const bool parsed = take_number(rest, number) && rest.empty();
+    const auto size = static_cast<float>(number);
+    if (!parsed || !(size > 0) || !std::isfinite(size)) refuse(text, "a length in metres above 0, auto or none");
+    return size;
+}
+
+CLI::Validator number_between(double low, double high) {
+    const auto check = [low, high](std::string& text) {
+        std::string_view rest = text;
+        double number = 0;
+        if (take_number(rest, number) && rest.empty() && number >= low && number <= high) return std::string();
+        return fmt::format("expected a number from {} to {}, found '{}'", low, high, text);
+    };
+    return CLI::Validator(check, "");
 }
 
 }  // namespace interflect::command

@@ -1,31 +1,66 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "interflect/base/colour.h"
 
 namespace interflect::command {
 
-/// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand. @throws CLI::ValidationError
+// Each reads a whole text or throws std::invalid_argument, which says what was expected and what was found.
+
+/// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand.
 std::int64_t parse_count(const std::string& text);
-/// "2%" or "0.02" -> 0.02, above 0 and below 1. @throws CLI::ValidationError
+/// "42" -> 42: a whole number of 64 bits, >= 0.
+std::uint64_t parse_seed(const std::string& text);
+/// "2%" or "0.02" -> 0.02, above 0 and below 1.
 double parse_share(const std::string& text);
-/// "1,2.5,-3" -> (1, 2.5, -3). @throws CLI::ValidationError
+/// "1,2.5,-3" -> (1, 2.5, -3).
 V3f parse_vector(const std::string& text);
-/// "640x360" -> {640, 360}, each from 1 to 32768. @throws CLI::ValidationError
+/// "640x360" -> {640, 360}, each from 1 to 32768.
 struct Size {
     int width = 1280, height = 720;
 };
 Size parse_size(const std::string& text);
+/// "0.05" -> 0.05, above 0; "auto" -> automatic_mesh_size; "none" -> whole_patches.
+float parse_mesh_size(const std::string& text);
+inline constexpr float automatic_mesh_size = 0, whole_patches = -1;
 
-/// Adds an option whose text goes through one of the functions above.
-template <class T>
-CLI::Option* add_parsed(CLI::App& app, const std::string& name, T& value, T (*parse)(const std::string&),
+/// Accepts a finite number from `low` to `high`. (CLI::Range lets NaN pass, and prints bounds with 300 digits.)
+CLI::Validator number_between(double low, double high);
+
+/// Adds an option whose text goes through one of the functions above; a fault is reported with the option's name.
+template <class Value, class Parsed>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Parsed (*parse)(const std::string&),
                         const std::string& help) {
-    return app.add_option_function<std::string>(
-        name, [&value, parse](const std::string& text) { value = parse(text); }, help);
+    const auto set = [name, &value, parse](const std::string& text) {
+        try {
+            value = parse(text);
+        } catch (const std::invalid_argument& e) {
+            throw CLI::ValidationError(name, e.what());
+        }
+    };
+    return app.add_option_function<std::string>(name, set, help);
+}
+
+/// Adds an option that takes one of a few words; the help lists them.
+template <class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
+                        const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
+    std::string words;
+    for (const auto& [word, ignored] : choices) words += (words.empty() ? "" : "|") + word;
+    const auto set = [name, &value, choices, words](const std::string& text) {
+        const auto is_meant = [&](const auto& choice) { return choice.first == text; };
+        const auto choice = std::find_if(choices.begin(), choices.end(), is_meant);
+        if (choice == choices.end()) throw CLI::ValidationError(name, "expected " + words + ", found '" + text + "'");
+        value = choice->second;
+    };
+    return app.add_option_function<std::string>(name, set, help)->type_name(words);
 }
 
 }  // namespace interflect::command

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <string_view>
 
 namespace interflect::command {
 
@@ -18,15 +20,25 @@ constexpr double seconds_between_lines = 2;  // where stderr is no terminal
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
+constexpr std::string_view below_bar_stop_notice =
+    "\nstopping after this iteration, keeping what there is; once more ends at once, keeping nothing\n";
+std::string_view stop_notice;  // set before the signal handler is
+
 extern "C" void request_stop(int signal) {
     stop_requested = true;
     std::signal(signal, SIG_DFL);  // a second one ends the process
+    const int errno_before = errno;
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, stop_notice.data(), stop_notice.size());
+    errno = errno_before;
 }
+
+bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
 
 }  // namespace
 
 StopOnInterrupt::StopOnInterrupt() {
     stop_requested = false;
+    stop_notice = below_bar_stop_notice.substr(stderr_is_terminal() ? 0 : 1);
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
 }
@@ -60,7 +72,7 @@ double fraction_done(const SolveOptions& options, const IterationReport& report)
     return std::clamp(fraction, 0.0, 1.0);
 }
 
-ProgressBar::ProgressBar(const SolveOptions& options) : options_(options), terminal_(::isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(const SolveOptions& options) : options_(options), terminal_(stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() {
     if (terminal_) fmt::print(stderr, "\n");

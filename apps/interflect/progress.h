@@ -7,8 +7,8 @@
 
 namespace interflect::command {
 
-/// Until the end of its scope, the first Ctrl-C (or SIGTERM) sets a flag instead of ending the process; the second ends
-/// it.
+/// Until the end of its scope, the first Ctrl-C (or SIGTERM) sets a flag, and says so, instead of ending the process;
+/// the second ends it.
 class StopOnInterrupt {
   public:
     StopOnInterrupt();

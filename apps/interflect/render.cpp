@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <map>
 #include <memory>
 
 #include "apps/interflect/commands.h"
@@ -11,6 +10,7 @@
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/exports/solution_file.h"
+#include "interflect/image/camera.h"
 #include "interflect/image/image_files.h"
 #include "interflect/image/render.h"
 #include "interflect/image/tone_map.h"
@@ -69,6 +69,7 @@ void run(Options& options, int& exit_code) {
     else
         solved.scene = options.mesh.divide(options.scene.load(), options.scene.read);
     const View view = view_to_draw(solved.scene, options.view);
+    Camera(view, options.size.width, options.size.height);  // refuses what defines no picture
     const RayCaster ray_caster(solved.scene);
     if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, options.solver);
 
@@ -83,26 +84,31 @@ void run(Options& options, int& exit_code) {
 }  // namespace
 
 void add_render(CLI::App& app, int& exit_code) {
-    static const std::map<std::string, Shading> shadings{{"flat", Shading::flat}, {"smooth", Shading::smooth}};
-    static const std::map<std::string, Tonemap> tonemaps{
-        {"linear", Tonemap::linear}, {"reinhard", Tonemap::reinhard}, {"filmic", Tonemap::filmic}};
     const auto options = std::make_shared<Options>();
     CLI::App& command = *app.add_subcommand("render", "Draw a view of a solution, or of a scene after solving it");
     options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
-    command.add_option("-o,--output", options->output, "Picture to write: .png .jpg .exr .hdr")->required();
+    command.add_option("-o,--output", options->output, "Picture to write: .png .jpg .exr .hdr")
+        ->required()
+        ->type_name("FILE");
     options->view.add_to(command);
-    add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels (default 1280x720)")
-        ->type_name("WxH");
+    add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
+        ->type_name("WxH")
+        ->default_str("1280x720");
     command.add_option("--samples", options->render.samples, "Eye rays a pixel")
         ->capture_default_str()
         ->check(CLI::Range(1, 65536));
-    command.add_option("--shading", options->render.shading, "flat, or smooth: interpolated over each surface")
-        ->transform(CLI::CheckedTransformer(shadings))
+    add_choice<Shading>(command, "--shading", options->render.shading,
+                        {{"smooth", Shading::smooth}, {"flat", Shading::flat}},
+                        "smooth: interpolated over each surface; flat: one value a patch")
         ->default_str("smooth");
-    command.add_option("--exposure", options->exposure,
-                       "Brightness of .png and .jpg [stops]: 1 more is twice as bright (default: automatic)");
-    command.add_option("--tonemap", options->tonemap, "Curve of .png and .jpg: filmic, reinhard or linear")
-        ->transform(CLI::CheckedTransformer(tonemaps))
+    command
+        .add_option("--exposure", options->exposure,
+                    "Brightness of .png and .jpg: 1 more is twice as bright (default: automatic)")
+        ->type_name("STOPS")
+        ->check(number_between(-100, 100));
+    add_choice<Tonemap>(command, "--tonemap", options->tonemap,
+                        {{"filmic", Tonemap::filmic}, {"reinhard", Tonemap::reinhard}, {"linear", Tonemap::linear}},
+                        "Curve of .png and .jpg")
         ->default_str("filmic");
     options->solver.add_to(command);
     options->mesh.add_to(command);

@@ -65,8 +65,6 @@ void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& com
 }
 
 void log_outcome(const Solution& solution) {
-    if (!(channel_sum(solution.emitted_power) > 0))
-        spdlog::warn("nothing in the scene emits light: everything is black");
     if (solution.non_finite > 0)
         spdlog::warn("{} powers were not finite and were left out: the result is not to be trusted",
                      solution.non_finite);

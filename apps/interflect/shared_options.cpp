@@ -3,23 +3,21 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
-#include <map>
 
-#include "apps/interflect/parse.h"
+#include "interflect/image/camera.h"
 #include "interflect/scene/split.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {
 
 void SceneOptions::add_to(CLI::App& app, const std::string& what) {
-    app.add_option("SCENE", path, what)->required();
+    app.add_option("SCENE", path, what)->required()->type_name("FILE");
     app.add_option("--curve-divisions", read.curve_divisions, "Flat pieces per quarter circle of curved surfaces")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
-    app.add_option_function<std::string>(
-           "--max-patches",
-           [this](const std::string& text) { read.max_patches = static_cast<std::uint64_t>(parse_count(text)); },
-           "Refuse a scene of more patches (files can ask for any number)")
+    add_parsed(app, "--max-patches", read.max_patches, parse_count,
+               "Refuse a scene of more patches (files can ask for any number)")
+        ->type_name("COUNT")
         ->default_str("50M");
 }
 
@@ -37,44 +35,37 @@ void log_warnings(const Warnings& warnings) {
 }
 
 void MeshOptions::add_to(CLI::App& app) {
-    const auto check = [](const std::string& text) {
-        if (text == "auto" || text == "none") return std::string();
-        float number = 0;
-        return CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number)
-                   ? std::string()
-                   : std::string("expected a length in metres, auto or none");
-    };
-    app.add_option("--mesh-size", size,
-                   "Longest edge of the mesh [m]; auto: from the scene's size; none: as in the file")
-        ->capture_default_str()
-        ->check(CLI::Validator(check, "METRES|auto|none"))
+    add_parsed(app, "--mesh-size", size, parse_mesh_size,
+               "Longest edge of the mesh [m]; auto: from the scene's size; none: as in the file")
+        ->type_name("METRES|auto|none")
+        ->default_str("auto")
         ->group("Solver");
 }
 
 Scene MeshOptions::divide(Scene scene, const ReadOptions& read) const {
-    if (size == "none") return scene;
-    const float edge = size == "auto" ? default_mesh_size(scene) : std::stof(size);
+    if (size == whole_patches) return scene;
+    const float edge = size == automatic_mesh_size ? default_mesh_size(scene) : size;
     return split_patches(scene, edge, read.max_patches);
 }
 
 void ViewOptions::add_to(CLI::App& app) {
-    const auto group = [](CLI::Option* option) { option->group("View"); };
-    group(app.add_option("--view", names, "Name of a view that the scene has (may be repeated)"));
-    group(app.add_option("--view-file", files, "Radiance view file, .vf (may be repeated)"));
-    const auto vector_option = [&](const std::string& name, std::optional<V3f>& v, const std::string& help) {
-        CLI::Option* option = app.add_option_function<std::string>(
-            name, [&v](const std::string& text) { v = parse_vector(text); }, help);
-        option->group("View")->type_name("X,Y,Z");
+    const auto group = [](CLI::Option* option) {
+        option->group("View");
         return option;
+    };
+    group(app.add_option("--view", names, "Name of a view that the scene has (may be repeated)")->type_name("NAME"));
+    group(app.add_option("--view-file", files, "Radiance view file, .vf (may be repeated)")->type_name("FILE"));
+    const auto vector_option = [&](const std::string& name, auto& v, const std::string& help) {
+        return group(add_parsed(app, name, v, parse_vector, help)->type_name("X,Y,Z"));
     };
     CLI::Option* eye_option = vector_option("--eye", eye, "Where the eye is [m]");
     CLI::Option* look_at_option = vector_option("--look-at", look_at, "A point in the middle of the picture [m]");
     eye_option->needs(look_at_option);
     look_at_option->needs(eye_option);
-    group(add_parsed(app, "--up", up, parse_vector, "What is up in the picture (default 0,0,1)")->type_name("X,Y,Z"));
+    vector_option("--up", up, "What is up in the picture")->default_str("0,0,1");
     group(app.add_option("--fov", fov, "Vertical field of view of --eye [degrees]")
               ->capture_default_str()
-              ->check(CLI::Range(0.001, 179.0)));
+              ->check(number_between(0.001, 179)));
 }
 
 std::vector<View> ViewOptions::views(const Scene& scene) const {
@@ -82,6 +73,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back({"command line", *eye, *look_at, up, fov});
+    for (const View& view : views) Camera(view, 1, 1);  // refuses what defines no picture
     return views;
 }
 
@@ -92,21 +84,26 @@ void add_threads(CLI::App& app, int& threads) {
 }
 
 void SolverOptions::add_to(CLI::App& app) {
-    static const std::map<std::string, PointSet> point_sets{{"sobol", PointSet::sobol}, {"random", PointSet::random}};
     const auto group = [](CLI::Option* option) {
         option->group("Solver");
         return option;
     };
-    group(app.add_option("--method", method, "srr: stochastic ray radiosity, flat")
-              ->capture_default_str()
-              ->check(CLI::IsMember({"srr"})));
+    group(add_choice<std::string>(app, "--method", method, {{"srr", "srr"}}, "srr: stochastic ray radiosity, flat")
+              ->default_str("srr"));
     rays_ = group(add_parsed(app, "--rays", solve.rays, parse_count,
-                             "Most rays to trace, such as 20M (default 20M, unless --time or --until is given)"));
-    group(app.add_option("--time", solve.seconds, "Most seconds to take")->check(CLI::PositiveNumber));
-    group(add_parsed(app, "--until", solve.until, parse_share, "Stop at this estimated relative error, such as 2%"));
-    group(app.add_option("--seed", solve.seed, "Same seed, same bits")->capture_default_str());
-    group(app.add_option("--points", solve.points, "Sample points: sobol (scrambled Sobol') or random")
-              ->transform(CLI::CheckedTransformer(point_sets, CLI::ignore_case))
+                             "Most rays to trace, such as 20M (default 20M, unless --time or --until is given)")
+                      ->type_name("COUNT"));
+    group(app.add_option("--time", solve.seconds, "Most seconds to take")
+              ->type_name("SECONDS")
+              ->check(number_between(1e-3, 1e9)));
+    group(add_parsed(app, "--until", solve.until, parse_share, "Stop at this estimated relative error, such as 2%")
+              ->type_name("SHARE"));
+    group(add_parsed(app, "--seed", solve.seed, parse_seed, "Same seed, same bits")
+              ->type_name("NUMBER")
+              ->default_str("1"));
+    group(add_choice<PointSet>(app, "--points", solve.points,
+                               {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
+                               "Sample points: scrambled Sobol' or pseudo-random")
               ->default_str("sobol"));
     group(app.add_option("--warm-up", solve.warm_up, "Iterations that are not averaged, after the first estimate")
               ->capture_default_str()
@@ -115,10 +112,12 @@ void SolverOptions::add_to(CLI::App& app) {
               ->capture_default_str()
               ->check(CLI::Range(0, 1'000'000'000)));
     group(add_parsed(app, "--rays-per-iteration", solve.rays_per_iteration, parse_count,
-                     "Rays of each iteration; default: small at first, then growing"));
+                     "Rays of each iteration; default: small at first, then growing")
+              ->type_name("COUNT"));
     group(app.add_flag("--incremental-start,!--no-incremental-start", solve.incremental_start,
                        "First estimate by following the light bounce by bounce (default), or from darkness"));
-    group(app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines"));
+    group(app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
+              ->type_name("FILE"));
     add_threads(app, threads);
 }
 

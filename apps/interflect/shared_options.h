@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/interflect/parse.h"
 #include "interflect/formats/load_scene.h"
 #include "interflect/scene/scene.h"
 #include "interflect/solver/solve.h"
@@ -24,7 +25,7 @@ struct SceneOptions {
 
 /// How finely a scene is divided before a method that does not refine by itself.
 struct MeshOptions {
-    std::string size = "auto";
+    float size = automatic_mesh_size;  ///< [m], or one of the two words of parse_mesh_size.
 
     void add_to(CLI::App& app);
     Scene divide(Scene scene, const ReadOptions& read) const;
@@ -39,7 +40,8 @@ struct ViewOptions {
     float fov = 45;
 
     void add_to(CLI::App& app);
-    /// The views that were asked for; empty where none was. @throws InputError for one that is not there.
+    /// The views that were asked for; empty where none was. @throws InputError for one that is not there or shows
+    /// nothing.
     std::vector<View> views(const Scene& scene) const;
 };
 

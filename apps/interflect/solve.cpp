@@ -3,10 +3,20 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/threads.h"
+#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/exports/solution_file.h"
 
 namespace interflect::command {
+
+namespace {
+
+void require_solution_name(const std::filesystem::path& path) {
+    if (path.extension() != ".h5")
+        throw InputError(path, 0, "a solution file is HDF5: expected a name that ends in .h5");
+}
+
+}  // namespace
 
 void add_solve(CLI::App& app, int& exit_code) {
     struct Options {
@@ -19,12 +29,13 @@ void add_solve(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *app.add_subcommand("solve", "Find the light on the surfaces of a scene");
     options->scene.add_to(command);
-    command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required();
+    command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
     options->solver.add_to(command);
     options->mesh.add_to(command);
     options->view.add_to(command);
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
+        require_solution_name(options->output);
         PendingFile output(options->output);
         Scene scene = options->mesh.divide(options->scene.load(), options->scene.read);
         // What was asked for comes first: `render` takes the first view of a solution.

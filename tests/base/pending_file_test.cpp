@@ -55,6 +55,8 @@ TEST(PendingFile, LeavesNothingWhenAbandoned) {
     const TemporaryFolder folder;
     {
         const PendingFile file(folder.path() / "out.h5");
+        EXPECT_EQ(entries(folder.path()), 0);  // so that nothing is left by a process that is killed in a long solve
+        write(file.temporary_path(), "half");
         EXPECT_EQ(entries(folder.path()), 1);
     }
     EXPECT_EQ(entries(folder.path()), 0);
@@ -77,6 +79,7 @@ TEST(PendingFile, KeepsTheOldFileUntilCommitted) {
 TEST(PendingFile, MayBeMoved) {
     const TemporaryFolder folder;
     std::optional<PendingFile> file(std::in_place, folder.path() / "out.h5");
+    write(file->temporary_path(), "new");
     PendingFile moved = std::move(*file);
     file.reset();
     EXPECT_EQ(entries(folder.path()), 1);

@@ -1,3 +1,6 @@
+// Stratification and uniformity of the points that rays are made from. Seen to fail (scripts/plant-faults) when all
+// dimensions share one scrambling.
+
 #include "interflect/base/points.h"
 
 #include <gtest/gtest.h>

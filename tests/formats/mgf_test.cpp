@@ -125,6 +125,7 @@ TEST(Mgf, ColourGivesTheChromaticityRdAndEdTheLuminance) {
         EXPECT_NEAR(luminance(material.reflectance), 0.3, 1e-6) << colour;
         EXPECT_NEAR(luminance(material.exitance), 500, 1e-3) << colour;
         EXPECT_GT(material.reflectance.x, material.reflectance.z) << "all these are yellowish; " << colour;
+        EXPECT_GT(material.exitance.x, material.exitance.z) << colour;
     }
 }
 
@@ -168,6 +169,12 @@ TEST(Mgf, MaterialFromATemplate) {
     EXPECT_EQ(material_of(scene, 0).reflectance.x, 0.5f);
     EXPECT_EQ(material_of(scene, 0).exitance.x, 3);
     EXPECT_EQ(material_of(scene, 1).exitance.x, 0);
+}
+
+TEST(Mgf, MaterialThatIsAPlainCopyHasItsOwnName) {
+    const Scene scene = read_faces("f a b d\nm copy = grey\nf a b d\n");
+    EXPECT_EQ(material_of(scene, 0).name, "grey");
+    EXPECT_EQ(material_of(scene, 1).name, "copy");
 }
 
 TEST(Mgf, MaterialThatIsDefinedAgainTheSameIsOneMaterial) {

@@ -17,9 +17,17 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <memory>
 
 #include "interflect/base/error.h"
+#include "interflect/image/srgb.h"
 #include "tests/support/scenes.h"
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_NO_STDIO
+#define STBI_ONLY_JPEG
+#include <stb/stb_image.h>
 
 namespace interflect {
 namespace {
@@ -65,8 +73,11 @@ class EveryFormat : public testing::TestWithParam<const char*> {
     std::string name() const { return std::string("picture") + GetParam(); }
     TemporaryFolder folder;
 };
-INSTANTIATE_TEST_SUITE_P(Extensions, EveryFormat, testing::Values(".png", ".jpg", ".exr", ".hdr"),
-                         [](const auto& extension) { return std::string(extension.param + 1); });
+class ReadableFormats : public EveryFormat {};
+
+std::string extension_name(const testing::TestParamInfo<const char*>& extension) { return extension.param + 1; }
+INSTANTIATE_TEST_SUITE_P(Extensions, EveryFormat, testing::Values(".png", ".jpg", ".exr", ".hdr"), extension_name);
+INSTANTIATE_TEST_SUITE_P(Extensions, ReadableFormats, testing::Values(".png", ".exr", ".hdr"), extension_name);
 
 TEST(ImageFiles, OpenExrKeepsEveryBit) {
     Image image = gradient(37, 23);
@@ -117,11 +128,25 @@ TEST(ImageFiles, JpegIsClose) {
     for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 64; ++x)
             image.at(x, y) = Rgb(0.2f + static_cast<float>(x) / 128, 0.5f, 0.3f + static_cast<float>(y) / 96);
-    const Image found = after_round_trip(image, "a.jpeg");
-    ASSERT_EQ(found.width, 64);
-    ASSERT_EQ(found.height, 48);
+    const TemporaryFolder folder;
+    write_image(folder.path() / "a.jpg", image);
+    const std::string bytes = bytes_of(folder.path() / "a.jpg");
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> found(
+        stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width,
+                              &height, &channels, 3),
+        stbi_image_free);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(width, 64);
+    ASSERT_EQ(height, 48);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.pixels[i][c], image.pixels[i][c], 0.03);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.get()[3 * i + c], srgb_byte(image.pixels[i][c]), 5);
+}
+
+TEST(ImageFiles, JpegIsNotRead) {
+    const TemporaryFolder folder;
+    write_image(folder.path() / "a.jpg", gradient(8, 8));
+    EXPECT_THAT(refusal(folder.path() / "a.jpg"), HasSubstr("only written, expected .png .exr .hdr"));
 }
 
 TEST(ImageFiles, WhatIsNotFiniteShowsAsMagenta) {
@@ -195,7 +220,7 @@ TEST_P(EveryFormat, SameImageSameBytes) {
     EXPECT_GT(first.size(), 100u);
 }
 
-TEST_P(EveryFormat, CutShortIsRefusedWhereverTheCutIs) {
+TEST_P(ReadableFormats, CutShortIsRefusedWhereverTheCutIs) {
     write_image(folder.path() / name(), gradient(40, 30));
     const std::string whole = bytes_of(folder.path() / name());
     for (int part = 0; part < 40; ++part) {
@@ -207,7 +232,7 @@ TEST_P(EveryFormat, CutShortIsRefusedWhereverTheCutIs) {
     EXPECT_THAT(refusal(cut), HasSubstr("cannot read this image")) << "the last byte is missing";
 }
 
-TEST_P(EveryFormat, JunkIsRefused) {
+TEST_P(ReadableFormats, JunkIsRefused) {
     std::string junk;
     for (int i = 0; i < 5000; ++i) junk.push_back(static_cast<char>(i * i * 31 >> 3));
     EXPECT_THAT(refusal(folder.write(name(), junk)), HasSubstr("cannot read this image"));
@@ -215,7 +240,7 @@ TEST_P(EveryFormat, JunkIsRefused) {
 }
 
 /// Whatever a damaged file says, reading it ends, in an image or in an InputError.
-TEST_P(EveryFormat, DamageNeverCrashes) {
+TEST_P(ReadableFormats, DamageNeverCrashes) {
     write_image(folder.path() / name(), gradient(40, 30));
     const std::string whole = bytes_of(folder.path() / name());
     for (std::size_t i = 0; i < whole.size(); i += 1 + whole.size() / 300) {
@@ -228,7 +253,7 @@ TEST_P(EveryFormat, DamageNeverCrashes) {
     }
 }
 
-TEST_P(EveryFormat, MissingFilesAndFoldersAreRefused) {
+TEST_P(ReadableFormats, MissingFilesAndFoldersAreRefused) {
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr(name() + ": there is no such file"));
     fs::create_directory(folder.path() / name());
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("is not a file"));

@@ -86,15 +86,20 @@ TEST(Render, UpIsUpAndLeftIsLeft) {
     EXPECT_EQ(image.at(0, 1), Rgb(0, 0, 0));
 }
 
-/// A white edge at x = 0.3 of a picture from -1 to 1 and 4 pixels wide covers pixel 2 (0 to 0.5) to 60%.
+/// Pixel 2 of a picture from -1 to 1 that is 4 pixels wide reaches from 0 to 0.5: an edge at 0.3 covers 60% of it.
 TEST(Render, EdgesAreSmoothedByCoverage) {
-    Scene scene;
-    add_facing(scene, -9, 0.3f, -9, 9, add_material(scene, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
-    const Image image = picture(scene, {Rgb(0, 0, 0)}, {.width = 4, .height = 4, .samples = 64});
-    for (int y = 0; y < 4; ++y) {
-        EXPECT_EQ(image.at(1, y), Rgb(1, 1, 1));
-        EXPECT_NEAR(image.at(2, y).x, 0.6, 1.5 / 64) << "64 points are stratified in 64 columns";
-        EXPECT_EQ(image.at(3, y), Rgb(0, 0, 0));
+    Scene left, top;
+    add_facing(left, -9, 0.3f, -9, 9, add_material(left, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
+    add_facing(top, -9, 9, -0.3f, 9, add_material(top, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
+    const RenderOptions options{.width = 4, .height = 4, .samples = 64};
+    const Image upright = picture(left, {Rgb(0, 0, 0)}, options), level = picture(top, {Rgb(0, 0, 0)}, options);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_EQ(upright.at(1, i), Rgb(1, 1, 1));
+        EXPECT_NEAR(upright.at(2, i).x, 0.6, 1.5 / 64) << "64 points lie in 64 different columns";
+        EXPECT_EQ(upright.at(3, i), Rgb(0, 0, 0));
+        EXPECT_EQ(level.at(i, 1), Rgb(1, 1, 1));
+        EXPECT_NEAR(level.at(i, 2).x, 0.6, 1.5 / 64) << "and in 64 different rows";
+        EXPECT_EQ(level.at(i, 3), Rgb(0, 0, 0));
     }
 }
 

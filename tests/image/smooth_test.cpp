@@ -179,6 +179,15 @@ TEST(SmoothPatches, DoesNotPassThroughASharedCorner) {
     expect_near(SmoothPatches(scene, std::vector{dark, bright}).at(0, {1, 1}), dark);
 }
 
+/// Faces that lie on each other share edges, but run along them the same way: one does not continue the other.
+TEST(SmoothPatches, CoincidentPatchesDoNotShadeIntoEachOther) {
+    Scene scene = grid(1);
+    scene.patches.push_back(scene.patches[0]);
+    const SmoothPatches smooth(scene, std::vector{dark, bright});
+    expect_near(smooth.at(0, {0, 0.5f}), dark);
+    expect_near(smooth.at(1, {1, 1}), bright);
+}
+
 TEST(SmoothPatches, KeepsTheSidesOfAFaceApart) {
     const Scene scene = grid(3, true);
     std::vector<Rgb> values;

@@ -1,6 +1,11 @@
 // Eq. 1 (Prikryl et al. 2000) as a dense linear system, patch by patch and channel by channel: the solver's mean over
 // many seeds must be its solution. In an empty box the form factors are exact; in a furnished room they come from an
 // independent ray tracer, whose own noise enters the test.
+//
+// Seen to fail (scripts/plant-faults) when radiosity lacks rho, irradiance or power lacks the area, a quantum lacks q,
+// rays are allocated uniformly, 0.5% of the power is lost, directions lack the cosine or turn over 6 radians, origins
+// crowd near the centre, escaped rays land on a patch, backs of faces answer as their fronts, rays are not lifted off
+// their surface.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,8 @@
 // Form factors from ray counts against Howell's closed forms; first the closed forms themselves against figures that
 // anyone can look up, and the independent ray tracer of tests/support against the closed forms.
+//
+// Seen to fail (scripts/plant-faults) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
+// directions lack the cosine, origins crowd near the centre, the seed is ignored.
 
 #include "tests/support/form_factors.h"
 
@@ -100,7 +103,7 @@ TEST(ExactFormFactors, AreZeroFromBehind) {
 }
 
 TEST(TracedFormFactors, AgreeWithTheExactOnes) {
-    constexpr std::int64_t rays = 20'000;
+    constexpr std::int64_t rays = 10'000;
     const Scene scene = colourful_box();
     const FormFactors exact = exact_form_factors(scene), traced = traced_form_factors(scene, rays, 1);
     std::vector<double> p_values;

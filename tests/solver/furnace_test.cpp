@@ -2,6 +2,10 @@
 // H = B = M + rho H and B = M / (1 - rho). Before the limit the expected value follows Eq. 6, so each iteration has its
 // exact answer. The box is 1 x 2 x 3 m, 3 x 3 patches a wall: in a cube of 2 x 2 all 24 patches are congruent, and
 // wrong directions or starting points pass unseen.
+//
+// Seen to fail (scripts/plant-faults) when radiosity lacks rho, the incremental start has rho twice, irradiance or
+// power lacks the area, a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost, directions lack the
+// cosine or turn over 6 radians, origins crowd near the centre, tau is always 1/2, streams do not advance.
 
 #include <gtest/gtest.h>
 

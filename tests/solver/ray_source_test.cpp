@@ -1,5 +1,8 @@
 // The rays that leave a patch: origins uniform on its area, directions with density cos(theta) / pi. Pearson's
 // chi-square test against cell areas found by clipping, which shares nothing with the patch's parametrisation.
+//
+// Seen to fail (scripts/plant-faults) when directions lack the cosine or its root, azimuths turn over 6 radians,
+// origins crowd near the centre, origins are uniform in the parameters of an irregular quadrilateral.
 
 #include "interflect/solver/ray_source.h"
 
@@ -169,7 +172,7 @@ TEST_P(ShotRays, BeginUniformlyOnThePatch) {
 
 TEST_P(ShotRays, BeginLiftedAboveThePatchAndNowhereElse) {
     const Plane plane(GetParam());
-    const double scale = GetParam().scale, rounding = 4e-7 * (scale + 1);  // of floats, patch within 3 scale + 0.4 m
+    const double scale = GetParam().scale, rounding = 1e-6 * (scale + 1);  // of floats, patch within 3 scale + 0.4 m
     for (const Ray& ray : rays_of(GetParam(), PointSet::sobol)) {
         ASSERT_NEAR((V3d(ray.origin) - plane.origin).dot(plane.normal()), lift * scale, rounding);
         const V2d p = plane.coordinates(ray.origin);

@@ -1,4 +1,5 @@
 // Sizes and weights of iterations (Eq. 6, Prikryl et al. 2000), and the estimate of the error.
+// Seen to fail (scripts/plant-faults) when tau is always 1/2, the estimate forgets the noise of the earlier mean.
 
 #include "interflect/solver/schedule.h"
 

@@ -1,4 +1,6 @@
 // One transport step: nothing is lost, nothing depends on the threads, streams go on where they ended.
+// Seen to fail (scripts/plant-faults) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
+// streams do not advance, all patches share one sequence of points.
 
 #include "interflect/solver/transport.h"
 
@@ -16,7 +18,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr std::int64_t rays = 100'000;
+constexpr std::int64_t rays = 50'000;
 
 /// A scene with what a transport step needs.
 struct Room {
@@ -69,15 +71,15 @@ TEST(ReceivePower, IsUnbiasedForAnyPositiveWeights) {
     }
 
     const FormFactors f = exact_form_factors(room.scene);
-    std::vector<double> p_values, p_values_off;  // of the right answer and of one that is one percent off
+    std::vector<double> p_values, p_values_off;  // of the right answer and of one that is two percent off
     for (std::size_t i = 0; i < q.size(); ++i) {
         double expected = 0;  // R_i = sum_s F_si P_s
         for (std::size_t s = 0; s < q.size(); ++s) expected += f(s, i) * room.power[s].y;
         p_values.push_back(t_test(arrived[i], expected));
-        p_values_off.push_back(t_test(arrived[i], 1.01 * expected));
+        p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
     }
     EXPECT_GT(bonferroni(p_values), false_alarm);
-    EXPECT_LT(bonferroni(p_values_off), false_alarm) << "would notice one percent";
+    EXPECT_LT(bonferroni(p_values_off), false_alarm) << "would notice two percent";
 }
 
 TEST(ReceivePower, AdvancesTheStreamsByWhatItShot) {
@@ -117,6 +119,16 @@ TEST(ReceivePower, ShootsNothingWhereNothingRadiates) {
     const Received received = room.receive(streams);
     EXPECT_EQ(received.shot_power, RgbD(0, 0, 0));
     EXPECT_EQ(total(received.power), RgbD(0, 0, 0));
+}
+
+TEST(TransportRays, DrawFromASequenceOfItsOwnForEachPatch) {
+    const Room room(colourful_box());
+    const std::vector<double> q(room.surfaces.size(), 1.0);
+    const std::int64_t rays_per_patch = 4, all = rays_per_patch * static_cast<std::int64_t>(q.size());
+    const std::vector<Ray> traced = transport_rays(room.surfaces, room.ray_caster, q, all, room.streams(1));
+    // Patches 0 ... 8 are congruent and lie in one wall: with the same numbers they would shoot in the same directions.
+    for (std::size_t patch = 1; patch < 9; ++patch)
+        EXPECT_GT((traced[patch * rays_per_patch].direction - traced[0].direction).length(), 1e-4f) << patch;
 }
 
 TEST(TransportRays, AreThoseThatReceivePowerTraces) {

@@ -1,10 +1,10 @@
 #include "tests/support/brute_force.h"
 
-#include <tbb/parallel_for.h>
-
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "interflect/base/parallel.h"
 
 namespace interflect::testing_support {
 
@@ -58,7 +58,7 @@ FormFactors traced_form_factors(const Scene& scene, std::int64_t rays_per_patch,
     const std::vector<Rectangle> rectangles = rectangles_of(scene);
     const std::vector<Target> targets(rectangles.begin(), rectangles.end());
     FormFactors f(rectangles.size());
-    tbb::parallel_for(std::size_t{0}, rectangles.size(), [&](std::size_t i) {
+    parallel_for_ranges(rectangles.size(), 1, [&](std::size_t i, std::size_t) {
         const Rectangle& from = rectangles[i];
         std::seed_seq sequence{seed, static_cast<std::uint64_t>(i)};
         Random random(sequence);

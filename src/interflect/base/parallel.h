@@ -14,7 +14,9 @@
 #endif
 #endif
 #ifdef INTERFLECT_THREAD_SANITIZER
-#include <sanitizer/tsan_interface.h>
+#include <array>
+#include <atomic>
+#include <thread>
 #endif
 
 namespace interflect {
@@ -24,22 +26,18 @@ namespace interflect {
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
     const std::size_t ranges = (count + grain - 1) / grain;
-    // ThreadSanitizer does not see the fork and join inside the (uninstrumented) TBB library: tell it.
-    [[maybe_unused]] char fork = 0, join = 0;
+    const auto do_range = [&](std::size_t range) { body(range * grain, std::min(count, (range + 1) * grain)); };
 #ifdef INTERFLECT_THREAD_SANITIZER
-    __tsan_release(&fork);
-#endif
-    tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t range) {
-#ifdef INTERFLECT_THREAD_SANITIZER
-        __tsan_acquire(&fork);
-#endif
-        body(range * grain, std::min(count, (range + 1) * grain));
-#ifdef INTERFLECT_THREAD_SANITIZER
-        __tsan_release(&join);
-#endif
-    });
-#ifdef INTERFLECT_THREAD_SANITIZER
-    __tsan_acquire(&join);
+    // ThreadSanitizer cannot see into the TBB library and takes its tasks for races: plain threads share the ranges.
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        for (std::size_t range = next++; range < ranges; range = next++) do_range(range);
+    };
+    std::array<std::thread, 2> others{std::thread(work), std::thread(work)};
+    work();
+    for (std::thread& other : others) other.join();
+#else
+    tbb::parallel_for(std::size_t{0}, ranges, do_range);
 #endif
 }
 

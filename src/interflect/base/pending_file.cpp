@@ -30,6 +30,7 @@ PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path
         throw InputError("cannot write '" + final_path_.string() + "': " + reason);
     }
     ::close(descriptor);
+    ::unlink(temporary_path_.c_str());
 }
 
 PendingFile::PendingFile(PendingFile&& other) noexcept

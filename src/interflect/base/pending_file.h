@@ -5,10 +5,11 @@
 namespace interflect {
 
 /// An output file that appears under its name only when it is complete: written beside, then renamed. Made before long
-/// work begins, so that a path that cannot be written is an error at once, not after an hour.
+/// work begins, so that a path that cannot be written is an error at once, not after an hour. Nothing is left where the
+/// process is killed before it begins to write.
 class PendingFile {
   public:
-    /// Creates an empty temporary file beside `final_path`.
+    /// Finds out whether it can create a temporary file beside `final_path`, and removes it.
     /// @throws InputError when `final_path` is a folder or its folder is missing or cannot be written.
     explicit PendingFile(std::filesystem::path final_path);
     /// Removes the temporary file if commit() was not reached.

@@ -206,10 +206,11 @@ void require_per_element(std::size_t size, const ElementForest& forest, const ch
     if (size != forest.size()) throw std::runtime_error(fmt::format("{} and elements differ in number", what));
 }
 
-void require_quantities(const std::vector<float>& numbers, const char* what) {
+void require_quantities(const std::vector<float>& numbers, std::size_t per_element, const char* what) {
     for (std::size_t i = 0; i < numbers.size(); ++i)
         if (!std::isfinite(numbers[i]) || numbers[i] < 0)
-            throw std::runtime_error(fmt::format("number {} of the {} is negative or not finite", i, what));
+            throw std::runtime_error(
+                fmt::format("the {} of element {} is negative or not finite", what, i / per_element));
 }
 
 SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
@@ -228,7 +229,7 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     Solution& solution = solved.solution;
     solution.forest = forest_of(solved.scene, read_array<std::uint32_t>(file, "/elements/subdivided", 1));
     const std::vector<float> irradiance = read_array<float>(file, "/solution/irradiance", 3);
-    require_quantities(irradiance, "irradiance");
+    require_quantities(irradiance, 3, "irradiance");
     solution.irradiance = grouped<Rgb>(irradiance);
     require_per_element(solution.irradiance.size(), *solution.forest, "irradiance");
     if (!description.at("has_importance").get<bool>()) return solved;
@@ -236,7 +237,7 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     solution.indirect_importance = read_array<float>(file, "/solution/indirect_importance", 1);
     for (const auto* importance : {&solution.view_importance, &solution.indirect_importance}) {
         require_per_element(importance->size(), *solution.forest, "importance");
-        require_quantities(*importance, "importance");
+        require_quantities(*importance, 1, "importance");
     }
     return solved;
 }

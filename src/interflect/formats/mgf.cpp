@@ -31,7 +31,7 @@ using Words = std::span<const std::string_view>;
 
 /// What arrays and includes may make the reader go over, in words: a two-sided quadrilateral that defines its own
 /// vertices takes 33. It stops files that nest copies of nothing.
-constexpr std::uint64_t repeated_words = 1'000'000, repeated_words_per_patch = 25;
+constexpr std::uint64_t repeated_words = 100'000, repeated_words_per_patch = 25;
 
 /// What is wrong with the line being read; where it is read, file and line are added.
 using Fault = std::invalid_argument;
@@ -75,7 +75,7 @@ struct OpenTransform {
     Location opened;
     std::vector<int> copy;  // indices of the copy being read; empty where the transform is no array
     LineReader::Position body;
-    double copies_outside = 1;  // product of the sizes of all arrays around, this one included
+    double copies_together = 1;  // product of the sizes of all arrays around, this one included
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
@@ -525,13 +525,17 @@ void Reader::transform(Words words) {
 void Reader::open_transform(Words words, const LineReader::Position& body) {
     if (transforms_.size() >= static_cast<std::size_t>(options_.max_nesting))
         throw Fault(fmt::format("transforms are nested more than {} deep", options_.max_nesting));
-    OpenTransform transform{
-        TransformSequence(words), M44d(), here(), {}, body, transforms_.empty() ? 1 : transforms_.back().copies_outside,
-        scene_.patch_count()};
-    for (const int size : transform.sequence.array_sizes()) transform.copies_outside *= size;
-    if (transform.copies_outside > static_cast<double>(options_.max_patches))
+    OpenTransform transform{TransformSequence(words),
+                            M44d(),
+                            here(),
+                            {},
+                            body,
+                            transforms_.empty() ? 1 : transforms_.back().copies_together,
+                            scene_.patch_count()};
+    for (const int size : transform.sequence.array_sizes()) transform.copies_together *= size;
+    if (transform.copies_together > static_cast<double>(options_.max_patches))
         throw Fault(fmt::format("an array of {:.0f} copies is beyond the limit of {} patches; --max-patches raises it",
-                                transform.copies_outside, options_.max_patches));
+                                transform.copies_together, options_.max_patches));
     transform.copy.assign(transform.sequence.array_sizes().size(), 0);
     transforms_.push_back(std::move(transform));
     place_copy(transforms_.back());

@@ -20,8 +20,8 @@ namespace interflect {
 ///   warnings "specular-reflection", "diffuse-transmission", "specular-transmission" tell the share. `ir` is checked
 ///   only.
 /// * `o` names objects, nested names with dots; the copies of an array are objects "a0", "a1" ..., or "a0.0" ...
-/// * `xf` and `i`: transforms, arrays, files, the latter relative to the including file. Contexts are not local to a
-/// file.
+/// * `xf` and `i`: transforms, arrays and files, which are found relative to the including file and share its contexts.
+///   What a file leaves open is closed at its end, with a warning; of an array left open only the first copy is read.
 /// * `ies` and unknown entities are skipped with a warning.
 ///
 /// Scene::files lists the files read. Warnings are counted under these kinds: "unsupported-entity", "ies",

@@ -16,8 +16,7 @@ void require_allowed_size(std::int64_t width, std::int64_t height);
 
 std::string encode_png(const Image& image);
 std::string encode_jpeg(const Image& image);
-/// PNG and JPEG, whichever `bytes` are.
-Image decode_srgb(std::string_view bytes);
+Image decode_png(std::string_view bytes);
 
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes);

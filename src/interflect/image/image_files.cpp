@@ -45,8 +45,9 @@ void write_bytes(const fs::path& path, const std::string& bytes) {
 Image read_as(ImageFormat format, const fs::path& path) {
     switch (format) {
         case ImageFormat::png:
+            return codecs::decode_png(read_bytes(path));
         case ImageFormat::jpeg:
-            return codecs::decode_srgb(read_bytes(path));
+            throw std::runtime_error("JPEG loses detail and is only written, expected .png .exr .hdr");
         case ImageFormat::hdr:
             return codecs::decode_radiance(read_bytes(path));
         case ImageFormat::exr:

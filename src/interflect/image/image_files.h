@@ -11,7 +11,7 @@ namespace interflect {
 
 enum class ImageFormat {
     png,   ///< 8 bit sRGB: for people. Needs a tone-mapped image.
-    jpeg,  ///< As png, lossy.
+    jpeg,  ///< As png, lossy: written, never read.
     exr,   ///< OpenEXR, linear 32 bit float: for measuring. Carries ImageMetadata.
     hdr,   ///< Radiance RGBE, linear, 8 bit mantissas with a common exponent.
 };
@@ -45,11 +45,11 @@ struct ImageMetadata {
 void write_image(const std::filesystem::path& path, const Image& image,
                  const ImageMetadata& metadata = ImageMetadata());
 
-/// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png and .jpg are decoded from sRGB).
+/// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png is decoded from sRGB).
 /// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.
-/// @throws InputError with the path and the reason for a file that is missing, is no such image, is cut short or
-/// damaged,
-///         or claims more than most_image_pixels.
+/// @throws InputError with the path and the reason for a file that is missing, is no such image, is a JPEG, is cut
+/// short
+///         or damaged, or claims more than most_image_pixels.
 Image read_image(const std::filesystem::path& path);
 
 }  // namespace interflect

@@ -147,7 +147,7 @@ void read_encoded_line(Reader& reader, std::vector<Rgbe>& line) {
             const int code = reader.byte();
             const bool run = code > longest_literal;
             const auto length = static_cast<std::size_t>(run ? code - longest_literal : code);
-            if (length == 0 || length > line.size() - x) throw std::runtime_error("a run of pixels leaves its row");
+            if (length > line.size() - x) throw std::runtime_error("a run of pixels leaves its row");
             const std::uint8_t repeated = run ? reader.byte() : std::uint8_t{0};
             for (std::size_t i = 0; i < length; ++i) line[x++][component] = run ? repeated : reader.byte();
         }

@@ -1,4 +1,4 @@
-// PNG and JPEG through stb.
+// PNG and JPEG through stb. JPEG is written only: stb's reader of it can be made to write outside its tables.
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -11,7 +11,6 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
 #define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
 #include <stb/stb_image.h>
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -91,11 +90,11 @@ std::string encode_jpeg(const Image& image) {
     return file;
 }
 
-Image decode_srgb(std::string_view bytes) {
+Image decode_png(std::string_view bytes) {
     int width = 0, height = 0, file_channels = 0;
     ByteSource header{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &header, &width, &height, &file_channels))
-        throw std::runtime_error(std::string("it is no PNG or JPEG of a usable size (") + stbi_failure_reason() + ")");
+        throw std::runtime_error(std::string("it is no PNG of a usable size (") + stbi_failure_reason() + ")");
     require_allowed_size(width, height);
 
     // 8 bit files come as exact multiples of 65535 / 255.

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/raycast/coincident.h"
 #include "interflect/raycast/ray_caster.h"
 
 namespace interflect {
@@ -83,8 +84,9 @@ struct RayCaster::Embree {
     RTCScene scene = nullptr;
     std::vector<Faces> geometries;          // [geometry id][primitive]: front patch
     std::vector<std::uint32_t> other_side;  // of each patch
+    CoincidentFaces coincident;
 
-    Embree();
+    explicit Embree(CoincidentFaces coincident_faces);
     ~Embree();
     Embree(const Embree&) = delete;
     Embree& operator=(const Embree&) = delete;

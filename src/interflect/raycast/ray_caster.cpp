@@ -1,5 +1,6 @@
 #include "interflect/raycast/ray_caster.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -13,6 +14,16 @@ namespace interflect {
 namespace {
 
 constexpr float relative_lift = 0x1p-17f;
+
+/// Faces closer than this part of the lift coincide: 16 roundings of the largest coordinate. What transforms have moved
+/// off its plane is well below it, and from there on Embree tells the distances apart.
+constexpr float relative_tolerance = 0.25f;
+
+float largest_coordinate(const Scene& scene) {
+    float largest = 0;
+    for (const V3f& v : scene.vertices) largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return largest;
+}
 
 void throw_embree_error(void*, RTCError, const char* message) {
     throw std::runtime_error(std::string("Embree: ") + message);
@@ -36,7 +47,8 @@ void reject_backs(const RTCFilterFunctionNArguments* a) {
 
 }  // namespace
 
-RayCaster::Embree::Embree() : device(rtcNewDevice(nullptr)) {
+RayCaster::Embree::Embree(CoincidentFaces coincident_faces)
+    : device(rtcNewDevice(nullptr)), coincident(std::move(coincident_faces)) {
     if (!device) throw std::runtime_error("Embree cannot start a device");
     rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
     rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);
@@ -80,29 +92,32 @@ Hit RayCaster::Embree::first_hit(EmbreeContext& context, const Ray& ray) const {
     context.intersect(scene, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const std::uint32_t front = geometries[query.hit.geomID][query.hit.primID];
+    const float distance = query.ray.tfar;
+    if (coincident.is_contested(front)) {
+        const V3f x = ray.origin + distance * ray.direction;
+        const std::uint32_t patch = coincident.answering_patch(front, x, ray.direction);
+        if (patch != none) return {patch, distance};
+    }
     const float facing =
         query.hit.Ng_x * ray.direction.x + query.hit.Ng_y * ray.direction.y + query.hit.Ng_z * ray.direction.z;
     const std::uint32_t behind = other_side[front];
-    return {facing > 0 && behind != none ? behind : front, query.ray.tfar};
+    return {facing > 0 && behind != none ? behind : front, distance};
 }
 
-RayCaster::RayCaster(const Scene& scene) : embree_(std::make_unique<Embree>()) {
+RayCaster::RayCaster(const Scene& scene) : lift_(relative_lift * largest_coordinate(scene)) {
+    embree_ = std::make_unique<Embree>(CoincidentFaces(scene, relative_tolerance * lift_));
     Faces faces[2][2];  // [triangle][two-sided]
     embree_->other_side.reserve(scene.patches.size());
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         embree_->other_side.push_back(patch.other_side);
-        if (patch.other_side == none || patch.other_side > i)
+        if (patch.other_side >= i && !embree_->coincident.is_hidden(i))
             faces[patch.is_triangle()][patch.other_side != none].push_back(i);
     }
     for (const bool triangles : {false, true})
         for (const bool two_sided : {false, true})
             embree_->add_faces(scene, std::move(faces[triangles][two_sided]), triangles, two_sided);
     embree_->commit();
-
-    float largest = 0;
-    for (const V3f& v : scene.vertices) largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    lift_ = relative_lift * largest;
 }
 
 RayCaster::~RayCaster() = default;
@@ -112,6 +127,8 @@ void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = embree_->first_hit(context, rays[i]);
 }
 
-std::size_t RayCaster::memory() const { return static_cast<std::size_t>(embree_->bytes.load()); }
+std::size_t RayCaster::memory() const {
+    return static_cast<std::size_t>(embree_->bytes.load()) + embree_->coincident.memory();
+}
 
 }  // namespace interflect

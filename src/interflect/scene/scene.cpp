@@ -40,8 +40,10 @@ std::vector<std::string> scene_faults(const Scene& scene) {
         check(!vertices_exist || patch_area(scene, p) > 0, [&] { return fmt::format("patch {} has no area", i); });
         check(p.material < scene.materials.size(),
               [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
-        check(p.other_side == none ||
-                  (p.other_side < scene.patches.size() && scene.patches[p.other_side].other_side == i),
+        check(p.object < scene.objects.size(),
+              [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
+        check(p.other_side == none || (p.other_side != i && p.other_side < scene.patches.size() &&
+                                       scene.patches[p.other_side].other_side == i),
               [&] { return fmt::format("patch {}: its other side {} does not point back", i, p.other_side); });
     }
     for (const View& v : scene.views)

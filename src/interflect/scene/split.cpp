@@ -21,7 +21,8 @@ struct Pieces {
 };
 
 std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
-    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil((b - a).length() / largest_edge)));
+    constexpr float most = 1e9f;  // far beyond any limit, and the division may give infinity
+    return static_cast<std::uint64_t>(std::clamp(std::ceil((b - a).length() / largest_edge), 1.0f, most));
 }
 
 Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {

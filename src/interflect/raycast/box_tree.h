@@ -1,0 +1,50 @@
+#pragma once
+
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace interflect {
+
+/// Something with a box around it, as an element of a box tree.
+struct Boxed {
+    Imath::Box3f box;         ///< Once in a tree: around everything in this element's subtree.
+    std::uint32_t index = 0;  ///< What it stands for.
+};
+
+/// Orders `elements` as a tree of boxes that needs no room of its own: the middle element is the root, those before and
+/// after it are its subtrees. O(n log n).
+inline void arrange_box_tree(std::span<Boxed> elements) {
+    if (elements.empty()) return;
+    Imath::Box3f all, centres;  // centres: twice them
+    for (const Boxed& e : elements) {
+        all.extendBy(e.box);
+        centres.extendBy(e.box.min + e.box.max);
+    }
+    const auto axis = static_cast<int>(centres.majorAxis());
+    const std::size_t middle = elements.size() / 2;
+    std::nth_element(elements.begin(), elements.begin() + static_cast<std::ptrdiff_t>(middle), elements.end(),
+                     [axis](const Boxed& a, const Boxed& b) {
+                         return a.box.min[axis] + a.box.max[axis] < b.box.min[axis] + b.box.max[axis];
+                     });
+    arrange_box_tree(elements.first(middle));
+    arrange_box_tree(elements.subspan(middle + 1));
+    elements[middle].box = all;
+}
+
+/// Calls visit(index) for every element of an arranged tree but those whose subtree's box `reaches` (box -> bool) turns
+/// down. What is visited may lie outside: an element's own box is no longer there to be asked.
+template <class Reaches, class Visit>
+void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
+    if (tree.empty()) return;
+    const std::size_t middle = tree.size() / 2;
+    if (!reaches(tree[middle].box)) return;
+    visit(tree[middle].index);
+    visit_box_tree(tree.first(middle), reaches, visit);
+    visit_box_tree(tree.subspan(middle + 1), reaches, visit);
+}
+
+}  // namespace interflect

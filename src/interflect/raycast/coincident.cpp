@@ -1,0 +1,178 @@
+#include "interflect/raycast/coincident.h"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+#include "interflect/base/random.h"
+#include "interflect/raycast/face_overlap.h"
+#include "interflect/raycast/flat_surfaces.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+namespace {
+
+using V3d = Imath::V3d;
+
+bool is_face(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side >= patch; }
+
+std::vector<V3f> corners(const Scene& scene, const Patch& patch) {
+    std::vector<V3f> result;
+    for (int i = 0; i < patch.vertex_count(); ++i)
+        result.push_back(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]);
+    return result;
+}
+
+/// The same for all faces with the same corners, wherever they begin and whichever way they go round.
+std::uint64_t corners_key(const Scene& scene, const Patch& patch) {
+    std::uint64_t key = 0;
+    for (const V3f& corner : corners(scene, patch)) {
+        const V3f x = corner + V3f(0);  // -0 + 0 = 0
+        const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f)}; };
+        key += mix(bits(x.x) << 32 | bits(x.y), bits(x.z));
+    }
+    return key;
+}
+
+bool have_same_corners(const Scene& scene, const Patch& p, const Patch& q) {
+    const std::vector<V3f> a = corners(scene, p), b = corners(scene, q);
+    return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
+}
+
+/// Whether `p`, which has the corners of `q`, answers every ray that `q` would.
+bool answers_for(const Scene& scene, const Patch& p, const Patch& q) {
+    if (p.other_side != none) return true;
+    return q.other_side == none && PatchGeometry(scene, p).normal().dot(PatchGeometry(scene, q).normal()) > 0;
+}
+
+}  // namespace
+
+CoincidentFaces::Winner::Winner(const Scene& scene, std::uint32_t face, float margin)
+    : front(face), back(scene.patches[face].other_side) {
+    const std::vector<V3f> vertices = corners(scene, scene.patches[face]);
+    normal = PatchGeometry(scene, scene.patches[face]).normal();
+    origin = vertices[0];
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const std::size_t a = i % vertices.size(),
+                          b = (i + 1) % vertices.size();  // a triangle's first edge comes twice
+        const V3d along(V3d(vertices[b]) - V3d(vertices[a]));
+        const V3d inward = V3d(normal).cross(along).normalized();
+        edges[i] = {V3f(inward), static_cast<float>(inward.dot(V3d(vertices[a]) - V3d(origin))) - margin};
+    }
+}
+
+std::uint32_t CoincidentFaces::Winner::side_towards(const V3f& direction) const {
+    return normal.dot(direction) > 0 ? back : front;
+}
+
+bool CoincidentFaces::Winner::answers(const V3f& x, const V3f& direction) const {
+    const V3f d = x - origin;
+    return side_towards(direction) != none && std::all_of(edges.begin(), edges.end(), [&](const HalfPlane& edge) {
+               return edge.inward.dot(d) >= edge.offset;
+           });
+}
+
+CoincidentFaces::CoincidentFaces(const Scene& scene, float tolerance)
+    : hidden_(scene.patches.size()), contested_(scene.patches.size()) {
+    const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene);
+    hide_duplicates(scene, rank);
+    find_stand_ins(scene, rank, tolerance);
+}
+
+/// Goes through the faces of one key by rank; a face that one before it answers for is hidden. Of those that are not,
+/// there are at most three: one for each side and one for both.
+void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
+    struct KeyedFace {
+        std::uint64_t key;
+        std::uint32_t rank, face;
+    };
+    std::vector<KeyedFace> faces;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (is_face(scene, i)) faces.push_back({corners_key(scene, scene.patches[i]), rank[i], i});
+    std::sort(faces.begin(), faces.end(),
+              [](const KeyedFace& a, const KeyedFace& b) { return std::tie(a.key, a.rank) < std::tie(b.key, b.rank); });
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (i == 0 || faces[i].key != faces[i - 1].key) kept.clear();
+        const Patch& patch = scene.patches[faces[i].face];
+        const bool hidden = std::any_of(kept.begin(), kept.end(), [&](std::uint32_t other) {
+            return have_same_corners(scene, scene.patches[other], patch) &&
+                   answers_for(scene, scene.patches[other], patch);
+        });
+        if (!hidden) kept.push_back(faces[i].face);
+        hidden_[faces[i].face] = hidden;
+        hidden_count_ += hidden;
+    }
+}
+
+void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank, float tolerance) {
+    struct Decided {
+        std::uint32_t loser, winner;
+    };
+    std::vector<Decided> pairs;
+    std::vector<std::uint32_t> winners;  // faces
+    for (const FacePair& p : overlapping_faces(scene, hidden_, tolerance)) {
+        const auto [winner, loser] =
+            std::minmax(p.larger, p.smaller, [&](auto a, auto b) { return rank[a] < rank[b]; });
+        pairs.push_back({loser, winner});
+        winners.push_back(winner);
+    }
+    if (pairs.empty()) return;
+    const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
+    std::sort(winners.begin(), winners.end(), by_rank);
+    winners.erase(std::unique(winners.begin(), winners.end()), winners.end());
+    for (const std::uint32_t face : winners) winners_.emplace_back(scene, face, tolerance);
+
+    std::sort(pairs.begin(), pairs.end(), [&](const Decided& a, const Decided& b) {
+        return std::tie(a.loser, rank[a.winner]) < std::tie(b.loser, rank[b.winner]);
+    });
+    for (const auto [loser, winner] : pairs) {
+        if (losers_.empty() || losers_.back() != loser) {
+            losers_.push_back(loser);
+            first_.push_back(stand_ins_.size());
+            contested_[loser] = true;
+        }
+        Imath::Box3f box;
+        for (const V3f& corner : corners(scene, scene.patches[winner])) box.extendBy(corner);
+        box.min -= V3f(2 * tolerance);
+        box.max += V3f(2 * tolerance);
+        const auto index = std::lower_bound(winners.begin(), winners.end(), winner, by_rank) - winners.begin();
+        stand_ins_.push_back({box, static_cast<std::uint32_t>(index)});
+    }
+    first_.push_back(stand_ins_.size());
+    for (std::size_t i = 0; i < losers_.size(); ++i)
+        arrange_box_tree(std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]));
+}
+
+const CoincidentFaces::Winner* CoincidentFaces::stand_in(std::uint32_t face, const V3f& x, const V3f& direction) const {
+    const auto i = static_cast<std::size_t>(std::lower_bound(losers_.begin(), losers_.end(), face) - losers_.begin());
+    std::uint32_t best = none;
+    visit_box_tree(
+        std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]),
+        [&](const Imath::Box3f& box) { return box.intersects(x); },
+        [&](std::uint32_t winner) {
+            if (winner < best && winners_[winner].answers(x, direction)) best = winner;
+        });
+    return best == none ? nullptr : &winners_[best];
+}
+
+std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction) const {
+    std::uint32_t answer = none;
+    // That which coincides with what coincides with `face` may lie a little too far off to coincide with it: go on.
+    while (contested_[face]) {
+        const Winner* winner = stand_in(face, x, direction);
+        if (!winner) break;
+        answer = winner->side_towards(direction);
+        face = winner->front;
+    }
+    return answer;
+}
+
+std::size_t CoincidentFaces::memory() const {
+    return (hidden_.capacity() + contested_.capacity()) / 8 + winners_.capacity() * sizeof(Winner) +
+           losers_.capacity() * sizeof(std::uint32_t) + first_.capacity() * sizeof(std::size_t) +
+           stand_ins_.capacity() * sizeof(Boxed);
+}
+
+}  // namespace interflect

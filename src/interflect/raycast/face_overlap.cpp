@@ -1,0 +1,162 @@
+#include "interflect/raycast/face_overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "interflect/base/parallel.h"
+#include "interflect/raycast/box_tree.h"
+
+namespace interflect {
+
+namespace {
+
+using V3d = Imath::V3d;
+
+/// Cosine of the angle between normals above which two faces can be said to lie in one plane at all: what stands
+/// upright on a face and is lower than the tolerance does not coincide with it. Generous, for small faces' normals are
+/// noisy.
+constexpr double same_plane_cosine = 0.7;
+
+/// Faces of one task of the search.
+constexpr std::size_t search_grain = 1024;
+
+/// A convex polygon of three or four corners; what clipping it leaves has up to four more.
+struct Polygon {
+    std::array<V3d, 8> corners;
+    std::size_t count = 0;
+
+    void add(const V3d& corner) { corners[count++] = corner; }
+};
+
+Polygon polygon_of(const Scene& scene, const Patch& patch) {
+    Polygon polygon;
+    for (int i = 0; i < patch.vertex_count(); ++i)
+        polygon.add(V3d(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]));
+    return polygon;
+}
+
+/// Twice the area, along the normal.
+V3d area_vector(const Polygon& p) {
+    return p.count == 3 ? (p.corners[1] - p.corners[0]).cross(p.corners[2] - p.corners[0])
+                        : (p.corners[2] - p.corners[0]).cross(p.corners[3] - p.corners[1]);
+}
+
+Imath::Box3f box_of(const Scene& scene, const Patch& patch, float margin) {
+    Imath::Box3f box;
+    for (int i = 0; i < patch.vertex_count(); ++i)
+        box.extendBy(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]);
+    box.min -= V3f(margin);
+    box.max += V3f(margin);
+    return box;
+}
+
+/// {x: normal . x >= offset}, of unit normal; offset - normal . x is how far x lies outside.
+struct HalfSpace {
+    V3d normal;
+    double offset = 0;
+
+    double height(const V3d& x) const { return normal.dot(x) - offset; }
+};
+
+bool lies_outside(const Polygon& polygon, const HalfSpace& half_space) {
+    return std::none_of(polygon.corners.begin(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(polygon.count),
+                        [&](const V3d& corner) { return half_space.height(corner) >= 0; });
+}
+
+Polygon clipped(const Polygon& polygon, const HalfSpace& half_space) {
+    Polygon result;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const V3d &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
+        const double height_a = half_space.height(a), height_b = half_space.height(b);
+        if (height_a >= 0) result.add(a);
+        if ((height_a >= 0) != (height_b >= 0)) result.add(a + (b - a) * (height_a / (height_a - height_b)));
+    }
+    return result;
+}
+
+/// A face as the larger one of possible pairs: its plane, and the half spaces through its edges whose intersection is
+/// the prism over its polygon, narrower by the tolerance on each side.
+class LargerFace {
+  public:
+    LargerFace(const Scene& scene, std::uint32_t face, double tolerance)
+        : scene_(scene), face_(face), tolerance_(tolerance), polygon_(polygon_of(scene, scene.patches[face])) {
+        const V3d area = area_vector(polygon_);
+        area_ = area.length();
+        plane_.normal = area / area_;
+        for (std::size_t i = 0; i < polygon_.count; ++i)
+            plane_.offset += plane_.normal.dot(polygon_.corners[i]) / static_cast<double>(polygon_.count);
+        for (std::size_t i = 0; i < polygon_.count; ++i) {
+            const V3d &a = polygon_.corners[i], &b = polygon_.corners[(i + 1) % polygon_.count];
+            const V3d inward = plane_.normal.cross(b - a).normalized();
+            inside_[i] = {inward, inward.dot(a) + tolerance};
+        }
+    }
+
+    bool plane_meets(const Imath::Box3f& box) const {
+        const V3d centre = (V3d(box.min) + V3d(box.max)) * 0.5, half = V3d(box.max) - centre;
+        const V3d& n = plane_.normal;
+        const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
+        return std::abs(plane_.height(centre)) <= reach + tolerance_;
+    }
+
+    bool is_overlapped_by(std::uint32_t face) const {
+        if (face == face_) return false;
+        Polygon shared = polygon_of(scene_, scene_.patches[face]);
+        for (std::size_t i = 0; i < polygon_.count; ++i)
+            if (lies_outside(shared, inside_[i])) return false;  // as most neighbours do
+        const V3d area = area_vector(shared);
+        const double facing = area.dot(plane_.normal);
+        if (!is_smaller(face, area.length()) || std::abs(facing) < same_plane_cosine * area.length()) return false;
+        if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
+        for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i) shared = clipped(shared, inside_[i]);
+        const auto end = shared.corners.begin() + static_cast<std::ptrdiff_t>(shared.count);
+        return shared.count > 0 && std::all_of(shared.corners.begin(), end,
+                                               [&](const V3d& x) { return std::abs(plane_.height(x)) <= tolerance_; });
+    }
+
+  private:
+    bool is_one_sided(std::uint32_t face) const { return scene_.patches[face].other_side == none; }
+    bool is_smaller(std::uint32_t face, double area) const { return area < area_ || (area == area_ && face < face_); }
+
+    const Scene& scene_;
+    std::uint32_t face_;
+    double tolerance_;
+    Polygon polygon_;
+    double area_;  // twice
+    HalfSpace plane_;
+    std::array<HalfSpace, 4> inside_;
+};
+
+std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& left_out) {
+    std::vector<Boxed> tree;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (scene.patches[i].other_side >= i && !left_out[i]) tree.push_back({box_of(scene, scene.patches[i], 0), i});
+    arrange_box_tree(tree);
+    return tree;
+}
+
+}  // namespace
+
+std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& left_out, float tolerance) {
+    const std::vector<Boxed> tree = tree_of_faces(scene, left_out);
+    std::vector<std::vector<FacePair>> found((scene.patches.size() + search_grain - 1) / search_grain);
+    parallel_for_ranges(scene.patches.size(), search_grain, [&](std::size_t begin, std::size_t end) {
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            if (scene.patches[i].other_side < i || left_out[i]) continue;
+            const LargerFace larger(scene, i, tolerance);
+            const Imath::Box3f box = box_of(scene, scene.patches[i], tolerance);
+            visit_box_tree(
+                std::span<const Boxed>(tree),
+                [&](const Imath::Box3f& b) { return b.intersects(box) && larger.plane_meets(b); },
+                [&](std::uint32_t j) {
+                    if (larger.is_overlapped_by(j)) found[begin / search_grain].push_back({i, j});
+                });
+        }
+    });
+    std::vector<FacePair> pairs;
+    for (const std::vector<FacePair>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+    return pairs;
+}
+
+}  // namespace interflect

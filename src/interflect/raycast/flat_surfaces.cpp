@@ -1,0 +1,105 @@
+#include "interflect/raycast/flat_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+namespace {
+
+/// Cosine of the angle (0.8 degrees) up to which neighbours count as one plane: above the rounding of the normals of
+/// small patches, below the creases that people model.
+constexpr float same_plane_cosine = 0.9999f;
+
+/// Faces beyond this that meet in one edge are compared with the last ones only, so that no file makes this quadratic.
+constexpr std::size_t most_faces_at_edge = 8;
+
+struct Edge {
+    std::uint64_t vertices;  // the lower index in the upper half
+    std::uint32_t patch;
+};
+
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
+
+/// The edges of all faces, those of the same two vertices together, in order of their patches.
+std::vector<Edge> sorted_edges(const Scene& scene) {
+    std::vector<Edge> edges;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        if (is_back(scene, i)) continue;
+        const Patch& patch = scene.patches[i];
+        const auto count = static_cast<std::size_t>(patch.vertex_count());
+        for (std::size_t v = 0; v < count; ++v)
+            edges.push_back({edge_key(patch.vertices[v], patch.vertices[(v + 1) % count]), i});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+        return std::tie(a.vertices, a.patch) < std::tie(b.vertices, b.patch);
+    });
+    return edges;
+}
+
+/// Disjoint sets of patches; the representative of a set is its lowest patch.
+class PatchSets {
+  public:
+    explicit PatchSets(std::size_t patches) : parent_(patches) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+    std::uint32_t representative(std::uint32_t patch) {
+        while (parent_[patch] != patch) patch = parent_[patch] = parent_[parent_[patch]];
+        return patch;
+    }
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = representative(a), b = representative(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
+    const auto count = static_cast<std::uint32_t>(scene.patches.size());
+    std::vector<V3f> normal(count);
+    std::vector<double> area(count, 0.0);  // of each patch, then of the surface that it represents
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (is_back(scene, i)) continue;
+        const PatchGeometry geometry(scene, scene.patches[i]);
+        normal[i] = geometry.normal();
+        area[i] = geometry.area();
+    }
+    const auto continues = [&](std::uint32_t a, std::uint32_t b) {
+        const Patch &p = scene.patches[a], &q = scene.patches[b];
+        return p.material == q.material && p.object == q.object &&
+               std::abs(normal[a].dot(normal[b])) > same_plane_cosine;
+    };
+
+    PatchSets surfaces(count);
+    const std::vector<Edge> edges = sorted_edges(scene);
+    for (std::size_t i = 1; i < edges.size(); ++i)
+        for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
+            if (continues(edges[i].patch, edges[j].patch)) surfaces.join(edges[i].patch, edges[j].patch);
+
+    std::vector<std::uint32_t> surface(count);  // its lowest patch; of both sides
+    for (std::uint32_t i = 0; i < count; ++i) {
+        surface[i] = surfaces.representative(is_back(scene, i) ? scene.patches[i].other_side : i);
+        if (surface[i] != i) area[surface[i]] += area[i];
+    }
+
+    std::vector<std::uint32_t> order(count), rank(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(area[surface[a]], surface[a], a) < std::tie(area[surface[b]], surface[b], b);
+    });
+    for (std::uint32_t i = 0; i < count; ++i) rank[order[i]] = i;
+    return rank;
+}
+
+}  // namespace interflect

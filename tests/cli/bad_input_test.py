@@ -1,0 +1,221 @@
+"""Bad input: exit code 3 at once, a message that names file and line, nothing written."""
+
+import json
+import unittest
+
+from command import BAD_INPUT, DONE, LAMP, PAINT, CommandTest, room, vertices
+
+TRIANGLE = vertices((0, 0, 0), (1, 0, 0), (1, 1, 0))  # six lines
+AT_ONCE = 20  # [s]: far less than the solve would take, far more than any machine needs to refuse it
+
+
+class BadInput(CommandTest):
+    def assert_refused(self, *words, scene="bad.mgf", options=(), output="out.h5"):
+        """Each subcommand that reads a scene refuses it, with these words."""
+        before = self.files()
+        for arguments in (
+            ("info", scene),
+            ("solve", scene, "-o", output, "--rays", "10G", "--stats", "stats.json"),
+            ("render", scene, "-o", "out.png", "--rays", "10G"),
+        ):
+            with self.subTest(arguments=arguments):
+                result = self.interflect(*arguments, *options, exit_code=BAD_INPUT, timeout=AT_ONCE)
+                for word in ("error: ", *words):
+                    self.assertIn(word, result.stderr)
+                self.assertEqual(result.stdout, "")
+                self.assertEqual(self.files(), before)
+
+    def assert_bad_scene(self, text, *words, options=()):
+        self.write("bad.mgf", text)
+        self.assert_refused(*words, options=options)
+
+
+class BadScene(BadInput):
+    def test_missing_file(self):
+        self.assert_refused("bad.mgf: there is no such file")
+
+    def test_folder(self):
+        (self.folder / "bad.mgf").mkdir()
+        self.assert_refused("bad.mgf: this is a folder")
+
+    def test_another_format(self):
+        self.write("bad.txt", room())
+        self.assert_refused("bad.txt", "'.txt'", ".mgf", scene="bad.txt")
+
+    def test_binary_junk(self):
+        (self.folder / "bad.mgf").write_bytes(bytes(range(256)) * 64)
+        self.assert_refused("bad.mgf:1: this is not a text file")
+
+    def test_truncated_file(self):
+        text = room()
+        self.assert_bad_scene(text[: text.index("p 1.5 1") + 5], "bad.mgf:")  # "p 1.5": two numbers are gone
+        self.assert_bad_scene(TRIANGLE + "xf -t 1 0", "bad.mgf:7: ", "-t")
+
+    def test_faces(self):
+        self.assert_bad_scene(TRIANGLE + "f v0 v1 nowhere\n", "bad.mgf:7: ", "'nowhere' is not defined")
+        self.assert_bad_scene(TRIANGLE + "f v0 v1\n", "bad.mgf:7: ", "f vertex1 vertex2 vertex3")
+        self.assert_bad_scene(TRIANGLE + "f v0 v1 v1 v0\n", "bad.mgf:7: ", "three different vertices")
+
+    def test_numbers(self):
+        for number in ("nan", "inf", "-inf", "1e39", "one"):
+            self.assert_bad_scene(f"v v0 =\n\tp 0 {number} 0\n", f"bad.mgf:2: '{number}' is not a finite number")
+
+    def test_negative_emission(self):
+        self.assert_bad_scene("m lamp =\n\ted -5\n", "bad.mgf:2: '-5' must not be negative")
+
+    def test_missing_include(self):
+        self.assert_bad_scene("\ni nowhere.mgf\n", "bad.mgf:2: ", "nowhere.mgf", "no such file")
+
+    def test_fault_in_an_included_file(self):
+        self.write("parts/lamp.mgf", "m lamp =\n\ted -5\n")
+        self.assert_bad_scene("i parts/lamp.mgf\n", "parts/lamp.mgf:2: ")
+
+    def test_include_of_itself(self):
+        self.assert_bad_scene("i bad.mgf\n", "bad.mgf:1: ", "includes itself")
+        self.write("other.mgf", "# and back\ni bad.mgf\n")
+        self.assert_bad_scene("i other.mgf\n", "other.mgf:2: ")
+
+    def test_array_of_a_billion_copies(self):
+        scene = TRIANGLE + "xf -a 1000000000 -t 1 0 0\nf v0 v1 v2\nxf\n"
+        self.assert_bad_scene(scene, "bad.mgf:7: ", "1000000000 copies", "--max-patches")
+
+    def test_no_usable_face_is_left(self):
+        self.assert_bad_scene("", "bad.mgf: no usable face is left")
+        self.assert_bad_scene(vertices((0, 0, 0), (1, 0, 0), (2, 0, 0)) + "f v0 v1 v2\n", "no usable face is left")
+
+
+class Limits(CommandTest):
+    def test_an_option_raises_the_limit_on_patches(self):
+        self.write("row.mgf", TRIANGLE + "xf -a 1000 -t 1 0 0\nf v0 v1 v2\nxf\n")
+        result = self.interflect("info", "row.mgf", "--max-patches", "1999", exit_code=BAD_INPUT)
+        self.assertIn("--max-patches", result.stderr)
+        self.assertEqual(self.json("info", "row.mgf", "--max-patches", "2k")["patches"], 2000)
+
+    def test_a_mesh_that_is_too_fine_is_refused_at_once(self):
+        self.write("room.mgf", room())
+        for size in ("1e-6", "1e-45"):
+            result = self.interflect(
+                "solve", "room.mgf", "-o", "out.h5", "--mesh-size", size, exit_code=BAD_INPUT, timeout=AT_ONCE
+            )
+            self.assertIn("--mesh-size", result.stderr)
+        self.assertEqual(self.files(), ["room.mgf"])
+
+
+class Clamped(CommandTest):
+    def test_reflectance_above_one(self):
+        """Real files have it: it is reduced, with a warning, and the light stays finite."""
+        self.write("white.mgf", room().replace("rd .6", "rd 1.5"))
+        report = self.json("info", "white.mgf")
+        self.assertTrue(any("0.99" in warning["message"] for warning in report["warnings"]), report["warnings"])
+        solved = self.interflect("solve", "white.mgf", "-o", "out.h5", "--rays", "20k", "--mesh-size", "none")
+        self.assertIn("warning: ", solved.stderr)
+        self.assertNotIn("finite", solved.stderr)
+
+
+class BadOutput(BadInput):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def test_is_found_before_the_solve(self):
+        (self.folder / "folder.h5").mkdir()
+        (self.folder / "folder.png").mkdir()
+        for path, words in {
+            "nowhere/out": "there is no folder 'nowhere'",
+            "/proc/out": "cannot write '/proc/out",  # where not even root can write
+            "folder": "names a folder",
+        }.items():
+            for arguments in (
+                ("solve", "room.mgf", "-o", path + ".h5", "--rays", "10G"),
+                ("render", "room.mgf", "-o", path + ".png", "--rays", "10G"),
+                ("solve", "room.mgf", "-o", "out.h5", "--rays", "10G", "--stats", path + ".h5"),
+            ):
+                with self.subTest(arguments=arguments):
+                    result = self.interflect(*arguments, exit_code=BAD_INPUT, timeout=AT_ONCE)
+                    self.assertIn(words, result.stderr)
+                    self.assertEqual(self.files(), ["room.mgf"])
+
+    def test_names_of_another_kind(self):
+        for arguments, expected in (
+            (("solve", "room.mgf", "-o", "out.png"), ".h5"),
+            (("render", "room.mgf", "-o", "out.gif"), ".png .jpg .jpeg .exr .hdr"),
+            (("render", "room.mgf", "-o", "out"), ".png"),
+        ):
+            result = self.interflect(*arguments, "--rays", "10G", exit_code=BAD_INPUT, timeout=AT_ONCE)
+            self.assertIn(expected, result.stderr)
+        self.assertEqual(self.files(), ["room.mgf"])
+
+
+class BadView(BadInput):
+    """Found before the solve, too."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def assert_view_refused(self, options, *words):
+        for output in ("out.h5", "out.png"):
+            subcommand = "solve" if output == "out.h5" else "render"
+            arguments = (subcommand, "room.mgf", "-o", output, "--rays", "10G", *options)
+            result = self.interflect(*arguments, exit_code=BAD_INPUT, timeout=AT_ONCE)
+            for word in words:
+                self.assertIn(word, result.stderr)
+        self.assertEqual([name for name in self.files() if name.startswith(("out", "."))], [])
+
+    def test_of_no_direction(self):
+        self.assert_view_refused(("--eye", "1,1,1", "--look-at", "1,1,1"), "same point")
+        self.assert_view_refused(("--eye", "1,1,1", "--look-at", "1,1,2"), "up", "parallel")
+
+    def test_of_an_unknown_name(self):
+        self.assert_view_refused(("--view", "desk"), "there is no view 'desk'", "--eye")
+        views = [{"name": name, "eye": [1, 1, 1], "look_at": [1, 2, 1]} for name in ("door", "lamp")]
+        self.write("room.views.json", json.dumps({"views": views}))
+        self.assert_view_refused(("--view", "desk"), "there is no view 'desk'", "door, lamp")
+
+    def test_files(self):
+        self.assert_view_refused(("--view-file", "view.vf"), "view.vf: there is no such file")
+        self.write("view.vf", "rvu -vtv -vp 1 1\n")
+        self.assert_view_refused(("--view-file", "view.vf"), "view.vf:1: ")
+        self.write("room.views.json", '{"views": [{"name": 7}]}')
+        self.assert_view_refused((), "room.views.json")
+
+    def test_two_views_are_no_picture(self):
+        self.write("a.vf", "rvu -vp 1 1 1 -vd 0 1 0 -vu 0 0 1\n")
+        options = ("--view-file", "a.vf", "--eye", "1,1,1", "--look-at", "1,2,1")
+        result = self.interflect(
+            "render", "room.mgf", "-o", "out.png", "--rays", "10G", *options, exit_code=BAD_INPUT, timeout=AT_ONCE
+        )
+        self.assertIn("one view", result.stderr)
+
+
+class BadPictureOrSolution(CommandTest):
+    def test_solution(self):
+        self.write("room.mgf", room())
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "10k", "--mesh-size", "none")
+        whole = self.bytes("room.h5")
+        (self.folder / "cut.h5").write_bytes(whole[: len(whole) // 2])
+        (self.folder / "junk.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(1000))
+        before = self.files()
+        for name in ("cut.h5", "junk.h5", "missing.h5"):
+            result = self.interflect("render", name, "-o", "out.png", exit_code=BAD_INPUT, timeout=AT_ONCE)
+            self.assertIn(name, result.stderr)
+        self.assertEqual(self.files(), before)
+
+    def test_picture(self):
+        self.write("text.exr", "no picture")
+        for name in ("missing.exr", "text.exr", "room.txt"):
+            for pair in ((name, "text.exr"), ("text.exr", name)):
+                self.interflect("compare", *pair, exit_code=BAD_INPUT, timeout=AT_ONCE)
+        self.assertIn("missing.exr: there is no such file", self.interflect(
+            "compare", "missing.exr", "text.exr", exit_code=BAD_INPUT).stderr)
+
+
+class GoodScene(CommandTest):
+    def test_the_pieces_of_the_bad_ones_are_sound(self):
+        """So that each scene above is refused for its fault, not for what is around it."""
+        self.write("good.mgf", TRIANGLE + PAINT + LAMP + "xf -a 10 -t 1 0 0\nf v0 v1 v2\nxf\n")
+        self.interflect("info", "good.mgf", exit_code=DONE)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,71 @@
+"""What the tests of the command share: a folder of their own, small scenes, and runs with an expected exit code."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+COMMAND = os.environ["INTERFLECT_COMMAND"]
+DONE, FAILED, WRONG_USAGE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3, 130
+
+PAINT = "m paint =\n\tc grey =\n\t\tcxy .36 .34\n\trd .6\n"
+LAMP = "m lamp =\n\tc\n\tsides 1\n\ted 1000\n"
+
+
+def vertices(*points):
+    return "".join(f"v v{k} =\n\tp {x} {y} {z}\n" for k, (x, y, z) in enumerate(points))
+
+
+def room(lamp=LAMP):
+    """A closed room of 2 x 3 x 2.5 m with a lamp under its ceiling."""
+    corners = [(x, y, z) for z in (0, 2.5) for y in (0, 3) for x in (0, 2)]
+    walls = "f v0 v1 v3 v2\nf v4 v6 v7 v5\nf v0 v2 v6 v4\nf v1 v5 v7 v3\nf v0 v4 v5 v1\nf v2 v3 v7 v6\n"
+    lamp_corners = vertices((0.5, 1, 2.4), (0.5, 2, 2.4), (1.5, 2, 2.4), (1.5, 1, 2.4))
+    return vertices(*corners) + PAINT + walls + lamp_corners + lamp + "f v0 v1 v2 v3\n"
+
+
+VIEW = ("--eye", "0.3,0.2,1.6", "--look-at", "1.2,3,1")
+VIEWS = {
+    "views": [
+        {"name": "door", "eye": [0.3, 0.2, 1.6], "look_at": [1.2, 3, 1], "up": [0, 0, 1], "fov": 45},
+        {"name": "floor", "eye": [1, 0.1, 2.2], "look_at": [1, 2, 0], "up": [0, 0, 1], "fov": 60},
+    ]
+}
+SMALL = ("--size", "32x18", "--samples", "4")
+LARGE = ("--size", "96x54", "--samples", "4")
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def interflect(self, *arguments, exit_code=DONE, timeout=60):
+        """Runs the command in the test's folder; a hang is a failure, and so is another exit code."""
+        result = subprocess.run(
+            [COMMAND, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=timeout
+        )
+        self.assertEqual(result.returncode, exit_code, f"interflect {' '.join(map(str, arguments))}\n{result.stderr}")
+        return result
+
+    def json(self, *arguments):
+        return json.loads(self.interflect(*arguments, "--json").stdout)
+
+    def bytes(self, name):
+        content = (self.folder / name).read_bytes()
+        self.assertGreater(len(content), 0, name)
+        return content
+
+    def files(self):
+        """Everything in the test's folder, hidden files included."""
+        return sorted(path.relative_to(self.folder).as_posix() for path in self.folder.rglob("*") if path.is_file())

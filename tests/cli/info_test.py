@@ -1,0 +1,75 @@
+"""What `info` tells, for people and for programs."""
+
+import json
+import math
+import unittest
+
+from command import ROOT, VIEWS, CommandTest, room
+
+
+class Info(CommandTest):
+    def test_json_has_the_keys_that_programs_read(self):
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+        report = self.json("info", "room.mgf")
+        for key in ("patches", "area", "emitted_power", "emitters", "views", "warnings"):
+            self.assertIn(key, report)
+        self.assertEqual(report["patches"], 6 * 2 + 1)  # walls have two sides, the lamp one
+        self.assertAlmostEqual(report["area"], 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1, places=4)
+        self.assertEqual(report["bounds"], {"min": [0, 0, 0], "max": [2, 3, 2.5]})
+        for channel in report["emitted_power"]:
+            self.assertAlmostEqual(channel, 1000, places=2)  # [lm]: 1 m2 of 1000 lm/m2
+        self.assertEqual([emitter["material"] for emitter in report["emitters"]], ["lamp"])
+        view, expected = report["views"][1], VIEWS["views"][1]
+        self.assertEqual(list(view), list(expected))
+        self.assertEqual((view["name"], view["fov"]), (expected["name"], expected["fov"]))
+        for key in ("eye", "look_at", "up"):
+            for found, wanted in zip(view[key], expected[key], strict=True):
+                self.assertAlmostEqual(found, wanted, places=5)
+        self.assertEqual(report["warnings"], [])
+
+    def test_text_tells_the_same(self):
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+        text = self.interflect("info", "room.mgf").stdout
+        for words in ("13 ", "x 0 to 2, y 0 to 3, z 0 to 2.5 m", "75 m2", "1000 lm", "lamp", "door", "floor"):
+            self.assertIn(words, text)
+
+    def test_a_file_outside_the_folder_is_reported(self):
+        self.write("parts/paint.mgf", "# nothing but a comment\n")
+        self.write("rooms/room.mgf", "i ../parts/paint.mgf\ni lamps/lamp.mgf\n" + room())
+        self.write("rooms/lamps/lamp.mgf", "# nothing either\n")
+        report = self.json("info", "rooms/room.mgf")
+        self.assertEqual(len(report["files"]), 3)
+        self.assertEqual(report["files_outside"], ["rooms/../parts/paint.mgf"])
+        self.assertIn("rooms/../parts/paint.mgf", self.interflect("info", "rooms/room.mgf").stdout)
+
+    def test_what_is_left_out_is_reported_once_a_kind_with_file_and_line(self):
+        self.write("room.mgf", room() + "m shiny =\n\trs .2 0\n\trd .3\nf v0 v1 v2\nglow a\nglow b\n")
+        result = self.interflect("info", "room.mgf", "--json")
+        warnings = {warning["kind"]: warning for warning in json.loads(result.stdout)["warnings"]}
+        self.assertEqual(len(warnings), 2, warnings)
+        for warning in warnings.values():
+            self.assertRegex(warning["where"], r"^room\.mgf:\d+$")
+        self.assertEqual(result.stderr.count("warning: "), 2, result.stderr)
+        self.assertIn("(2 times)", result.stderr)
+
+    def test_curves_are_divided_as_asked(self):
+        self.write("ball.mgf", "v centre =\n\tp 0 0 0\nm paint =\n\trd .5\n\tsides 1\nsph centre 1\n")
+        area = {n: self.json("info", "ball.mgf", "--curve-divisions", n)["area"] for n in (2, 16)}
+        self.assertLess(area[2], area[16])
+        self.assertLess(abs(area[16] / (4 * math.pi) - 1), 0.01)
+
+
+class Office(CommandTest):
+    def test_is_a_furnished_room_with_luminaires_and_views(self):
+        report = self.json("info", ROOT / "scenes" / "office.mgf")
+        self.assertGreater(report["patches"], 1000)
+        self.assertGreaterEqual(len(report["emitters"]), 2)
+        self.assertIn("desk", [view["name"] for view in report["views"]])
+        self.assertEqual(report["warnings"], [])
+        self.assertEqual(report["files_outside"], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,148 @@
+"""Pictures: reproducible, of the view that was asked for, and labelled with how they came to be."""
+
+import json
+import struct
+import unittest
+
+from command import LARGE, SMALL, VIEW, VIEWS, CommandTest, room
+
+SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
+
+
+def exr_attributes(content):
+    """The header of a single-part OpenEXR file: name -> (type, bytes)."""
+    magic, version = struct.unpack_from("<ii", content)
+    assert (magic, version) == (20000630, 2), "not a plain OpenEXR file"
+
+    def text(start):
+        end = content.index(b"\0", start)
+        return content[start:end].decode(), end + 1
+
+    attributes, position = {}, 8
+    while content[position] != 0:
+        name, position = text(position)
+        kind, position = text(position)
+        (size,) = struct.unpack_from("<i", content, position)
+        position += 4
+        attributes[name] = (kind, content[position : position + size])
+        position += size
+    return attributes
+
+
+class RenderTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+
+    def render(self, name, *options, source="room.mgf", size=SMALL):
+        solver = SOLVED if source.endswith(".mgf") else ()
+        self.interflect("render", source, "-o", name, *size, *solver, *options)
+        return self.bytes(name)
+
+    def solve(self, *options):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", *SOLVED, *options)
+
+
+class Reproducibility(RenderTest):
+    def test_same_bytes_on_any_number_of_threads(self):
+        for kind in ("png", "exr", "hdr", "jpg"):
+            one = self.render(f"one.{kind}", "--threads", "1")
+            self.assertEqual(self.render(f"two.{kind}", "--threads", "2"), one, kind)
+
+    def test_another_seed_other_bytes(self):
+        self.assertNotEqual(self.render("one.hdr"), self.render("two.hdr", "--seed", "2"))
+
+    def test_of_a_solution_and_of_its_scene_are_the_same(self):
+        self.solve()
+        for kind in ("png", "exr"):
+            from_scene = self.render(f"scene.{kind}")
+            self.assertEqual(self.render(f"solution.{kind}", source="room.h5"), from_scene, kind)
+
+
+class Views(RenderTest):
+    def picture(self, *options, source="room.mgf"):
+        return self.render("picture.hdr", *options, source=source)
+
+    def test_all_ways_to_name_a_view_agree(self):
+        self.write("door.vf", "rvu -vtv -vp .3 .2 1.6 -vd .9 2.8 -.6 -vu 0 0 1 -vh 73.7 -vv 45\n")
+        by_name = self.picture("--view", "door")
+        self.assertEqual(self.picture(), by_name)  # the first one is the default
+        self.assertEqual(self.picture(*VIEW), by_name)
+        self.assertEqual(self.picture(*VIEW, "--fov", "45", "--up", "0,0,2"), by_name)
+        # A view file gives a direction in place of a point: the same picture but for rounding.
+        self.render("eye.exr", "--view", "door")
+        self.render("file.exr", "--view-file", "door.vf")
+        self.assertLess(self.json("compare", "file.exr", "eye.exr")["blocks"][1]["relative_rmse"], 0.02)
+
+    def test_other_views_are_other_pictures(self):
+        pictures = [
+            self.picture("--view", "door"),
+            self.picture("--view", "floor"),
+            self.picture(*VIEW, "--fov", "60"),
+            self.picture(*VIEW, "--up", "1,0,0"),
+        ]
+        self.assertEqual(len(set(pictures)), len(pictures))
+
+    def test_a_solution_remembers_the_view_that_was_asked_for(self):
+        self.solve("--view", "floor")
+        floor = self.picture("--view", "floor", source="room.h5")
+        self.assertEqual(self.picture(source="room.h5"), floor)
+        self.assertNotEqual(self.picture("--view", "door", source="room.h5"), floor)
+
+    def test_without_any_view_there_is_an_overview_and_a_warning(self):
+        (self.folder / "room.views.json").unlink()
+        result = self.interflect("render", "room.mgf", "-o", "out.png", *SMALL, *SOLVED)
+        self.assertIn("warning: room.mgf names no view", result.stderr)
+        self.assertIn("--eye", result.stderr)
+
+
+class Pictures(RenderTest):
+    def test_exr_tells_how_it_came_to_be(self):
+        content = self.render("out.exr", "--view", "floor", "--seed", "7")
+        attributes = exr_attributes(content)
+        expected = {
+            "interflect.view": "floor",
+            "interflect.seed": "7",
+            "interflect.quantity": "luminance [cd/m^2]",
+            "interflect.scene": "room.mgf",
+            "interflect.version": self.interflect("--version").stdout.split()[1],
+        }
+        for name, value in expected.items():
+            self.assertEqual(attributes[name], ("string", value.encode()), name)
+        for name, vector in (("eye", (1, 0.1, 2.2)), ("look_at", (1, 2, 0)), ("up", (0, 0, 1))):
+            self.assertEqual(attributes["interflect." + name], ("v3f", struct.pack("<3f", *vector)))
+        self.assertEqual(attributes["interflect.fov"], ("float", struct.pack("<f", 60)))
+        self.assertEqual(attributes["dataWindow"], ("box2i", struct.pack("<4i", 0, 0, 31, 17)))
+
+    def test_png_has_the_size_that_was_asked_for(self):
+        content = self.render("out.png", size=LARGE)
+        self.assertEqual(content[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(struct.unpack_from(">II", content, 16), (96, 54))
+
+    def test_exposure_is_in_stops(self):
+        for stops in (-9, -8):
+            self.render(f"{stops + 9}.png", "--tonemap", "linear", "--exposure", stops)
+        # PNG is read back as linear values: one stop more is twice as bright, but for 8 bits.
+        self.assertAlmostEqual(self.json("compare", "1.png", "0.png")["ratio_of_means"], 2, delta=0.05)
+
+    def test_exposure_does_not_touch_linear_pictures(self):
+        self.assertEqual(self.render("a.hdr"), self.render("b.hdr", "--exposure", "3"))
+
+    def test_shading(self):
+        self.assertNotEqual(self.render("flat.hdr", "--shading", "flat"), self.render("smooth.hdr"))
+
+    def test_without_light_it_is_black(self):
+        self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
+        self.render("dark.exr", *VIEW, source="dark.mgf")
+        self.render("dark.png", *VIEW, source="dark.mgf")
+        self.render("lit.exr", *VIEW)
+        self.render("lit.png", *VIEW)
+        for kind in ("exr", "png"):
+            difference = self.json("compare", f"dark.{kind}", f"lit.{kind}")
+            self.assertEqual(difference["ratio_of_means"], 0)
+            self.assertEqual(difference["non_finite_pixels"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,125 @@
+"""What a script relies on when it calls `solve`: reproducibility, limits, statistics."""
+
+import json
+import time
+import unittest
+
+from command import LAMP, CommandTest, room
+
+COARSE = ("--mesh-size", "0.5")
+
+
+class Reproducibility(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def solve(self, name, *options):
+        self.interflect("solve", "room.mgf", "-o", name, "--rays", "200k", *COARSE, *options)
+        return self.bytes(name)
+
+    def test_same_seed_same_bytes_on_any_number_of_threads(self):
+        one = self.solve("one.h5", "--threads", "1")
+        self.assertEqual(self.solve("two.h5", "--threads", "2"), one)
+        self.assertEqual(self.solve("all.h5"), one)
+        self.assertEqual(self.solve("seed.h5", "--seed", "1"), one)
+
+    def test_another_seed_other_bytes(self):
+        self.assertNotEqual(self.solve("one.h5"), self.solve("other.h5", "--seed", "2"))
+
+    def test_pseudo_random_points_are_reproducible_too(self):
+        one = self.solve("one.h5", "--points", "random", "--threads", "1")
+        self.assertEqual(self.solve("two.h5", "--points", "random", "--threads", "2"), one)
+        self.assertNotEqual(self.solve("sobol.h5"), one)
+
+
+class Dark(CommandTest):
+    def test_a_scene_without_light_is_solved_with_one_warning(self):
+        self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
+        result = self.interflect("solve", "dark.mgf", "-o", "dark.h5", "--stats", "stats", *COARSE)
+        self.assertEqual(result.stderr.count("warning: "), 1, result.stderr)
+        self.assertIn("emits light", result.stderr)
+        self.bytes("dark.h5")
+        (header,) = (self.folder / "stats").read_text().splitlines()
+        self.assertEqual(json.loads(header)["emitted_power"], [0, 0, 0])
+
+
+class Statistics(CommandTest):
+    def solve(self, *options, timeout=60):
+        self.write("room.mgf", room())
+        self.interflect("solve", "room.mgf", "-o", "out.h5", "--stats", "stats", *COARSE, *options, timeout=timeout)
+        header, *iterations = map(json.loads, (self.folder / "stats").read_text().splitlines())
+        self.assertGreater(len(iterations), 1)
+        return header, iterations
+
+    def test_header(self):
+        header, _ = self.solve("--rays", "100k", "--seed", "18446744073709551615", "--threads", "2")
+        keys = ["scene", "method", "options", "seed", "threads", "version", "patches", "area", "emitted_power"]
+        self.assertEqual(list(header), keys)
+        self.assertEqual((header["method"], header["seed"], header["threads"]), ("srr", 2**64 - 1, 2))
+        self.assertEqual(header["options"]["rays"], 100_000)
+        for channel in header["emitted_power"]:
+            self.assertAlmostEqual(channel, 1000, places=2)
+
+    def test_iterations(self):
+        _, iterations = self.solve("--rays", "300k")
+        for line in iterations:
+            self.assertEqual(
+                list(line),
+                ["iteration", "seconds", "rays", "power_rays", "importance_rays", "elements", "leaves"]
+                + ["total_power", "escaped_power", "error_estimate"],
+            )
+            self.assertEqual(line["power_rays"] + line["importance_rays"], line["rays"])
+            self.assertEqual(line["escaped_power"], [0, 0, 0])  # the room is closed
+        rays = [line["rays"] for line in iterations]
+        self.assertEqual(rays, sorted(set(rays)))
+        self.assertEqual([line["iteration"] for line in iterations], list(range(len(iterations))))
+        seconds = [line["seconds"] for line in iterations]
+        self.assertEqual(seconds, sorted(seconds))
+
+    def test_rays_are_traced_exactly(self):
+        for count in (1, 1000, 123_457):
+            with self.subTest(count=count):
+                self.write("room.mgf", room())
+                self.interflect(
+                    "solve", "room.mgf", "-o", "out.h5", "--stats", "stats", *COARSE, "--rays", count
+                )
+                last = (self.folder / "stats").read_text().splitlines()[-1]
+                self.assertEqual(json.loads(last)["rays"], count)
+
+    def test_until_an_error(self):
+        _, iterations = self.solve("--until", "5%")
+        self.assertLessEqual(iterations[-1]["error_estimate"], 0.05)
+        for line in iterations[:-1]:
+            self.assertTrue(line["error_estimate"] is None or line["error_estimate"] > 0.05, line)
+
+    def test_until_an_error_or_a_number_of_rays(self):
+        _, iterations = self.solve("--until", "0.01%", "--rays", "100k")
+        self.assertEqual(iterations[-1]["rays"], 100_000)
+        self.assertGreater(iterations[-1]["error_estimate"], 0.0001)
+
+    def test_time(self):
+        asked = 1.0  # [s]
+        start = time.monotonic()
+        _, iterations = self.solve("--time", asked)
+        took = time.monotonic() - start
+        # Iterations are sized by the speed so far. The margins allow for a machine whose speed changes meanwhile.
+        self.assertGreater(iterations[-1]["seconds"], 0.8 * asked)
+        self.assertLess(iterations[-1]["seconds"], 2 * asked)
+        self.assertLess(took, 4 * asked)
+
+
+class Light(CommandTest):
+    def test_a_closed_grey_room_reflects_what_the_geometric_series_says(self):
+        """Each lumen arrives somewhere, and a share rho of it leaves again: in all Phi (1 + rho + rho^2 + ...)."""
+        rho, emitted = 0.6, 1000  # 1, [lm]
+        grey = room(LAMP + f"\trd {rho}\n").replace("cxy .36 .34", "")
+        self.write("room.mgf", grey)
+        self.interflect("solve", "room.mgf", "-o", "out.h5", "--stats", "stats", "--rays", "400k", *COARSE)
+        last = json.loads((self.folder / "stats").read_text().splitlines()[-1])
+        for channel in last["total_power"]:
+            self.assertAlmostEqual(channel / (emitted / (1 - rho)), 1, delta=0.005)
+
+
+if __name__ == "__main__":
+    unittest.main()

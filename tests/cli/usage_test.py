@@ -1,0 +1,101 @@
+"""Wrong usage: exit code 2, a sentence that names the option, nothing written. And the help that prevents it."""
+
+import unittest
+
+from command import WRONG_USAGE, CommandTest, room
+
+SUBCOMMANDS = ("info", "solve", "render", "compare", "bench")
+SOLVE = ("solve", "room.mgf", "-o", "out.h5")
+RENDER = ("render", "room.mgf", "-o", "out.png")
+
+
+class WrongUsage(CommandTest):
+    def assert_wrong(self, arguments, *words):
+        with self.subTest(arguments=arguments):
+            result = self.interflect(*arguments, exit_code=WRONG_USAGE, timeout=20)
+            for word in ("error: ", "--help", *words):
+                self.assertIn(word, result.stderr)
+            self.assertEqual(result.stdout, "")
+            self.assertEqual(self.files(), ["room.mgf"])
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def test_subcommands(self):
+        self.assert_wrong([], "expected one of", *SUBCOMMANDS)
+        self.assert_wrong(["paint"], "'paint' is no subcommand", *SUBCOMMANDS)
+        self.assert_wrong(["--loud"], "--loud")
+
+    def test_unknown_and_missing_arguments(self):
+        self.assert_wrong([*SOLVE, "--loud"], "--loud", "interflect solve --help")
+        self.assert_wrong([*SOLVE, "another.mgf"], "another.mgf")
+        self.assert_wrong(["solve", "room.mgf"], "--output")
+        self.assert_wrong(["solve", "-o", "out.h5"], "SCENE")
+        self.assert_wrong([*SOLVE, "--rays"], "--rays")
+        self.assert_wrong([*SOLVE, "--threads", "1", "--threads", "2"], "--threads")
+
+    def test_numbers(self):
+        for option, values in {
+            "--rays": ("0", "-1", "many", "5X", "1e30", "nan", ""),
+            "--rays-per-iteration": ("0",),
+            "--max-patches": ("-1",),
+            "--seed": ("-1", "1.5", "18446744073709551616"),
+            "--time": ("0", "-1", "nan", "inf", "soon"),
+            "--until": ("0", "-1%", "100%", "2", "nan"),
+            "--threads": ("-1", "x", "100000"),
+            "--mesh-size": ("0", "-1", "nan", "inf", "fine"),
+            "--curve-divisions": ("0", "x"),
+            "--warm-up": ("-1",),
+        }.items():
+            for value in values:
+                self.assert_wrong([*SOLVE, f"{option}={value}"], option)
+
+    def test_words(self):
+        self.assert_wrong([*SOLVE, "--method", "guess"], "--method", "srr")
+        self.assert_wrong([*SOLVE, "--points", "grid"], "--points", "sobol", "random")
+        self.assert_wrong([*RENDER, "--shading", "phong"], "--shading", "flat", "smooth")
+        self.assert_wrong([*RENDER, "--tonemap", "1"], "--tonemap", "filmic", "reinhard", "linear")
+
+    def test_pictures(self):
+        for option, values in {
+            "--size": ("64", "0x9", "9x-1", "1.5x9", "99999x9", "64x36x3"),
+            "--samples": ("0",),
+            "--exposure": ("nan", "inf", "1000"),
+            "--fov": ("0", "180", "nan"),
+            "--up": ("1,2", "x,y,z", "0,0,nan"),
+        }.items():
+            for value in values:
+                self.assert_wrong([*RENDER, f"{option}={value}"], option)
+
+    def test_an_eye_needs_something_to_look_at(self):
+        self.assert_wrong([*RENDER, "--eye", "1,1,1"], "--eye", "--look-at")
+        self.assert_wrong([*RENDER, "--look-at", "1,1,1"], "--eye", "--look-at")
+
+
+class Help(CommandTest):
+    def test_names_every_subcommand(self):
+        text = self.interflect("--help").stdout
+        for word in (*SUBCOMMANDS, "--version", "Exit codes"):
+            self.assertIn(word, text)
+
+    def test_of_each_subcommand_tells_units_and_defaults(self):
+        expected = {
+            "info": ("SCENE", "--json"),
+            "solve": ("--rays COUNT", "20M", "--time SECONDS", "--seed NUMBER=1", "--threads", "--stats FILE", "[m]"),
+            "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "smooth|flat=smooth", "STOPS"),
+            "compare": ("IMAGE", "REFERENCE", "--scale"),
+            "bench": ("--rays COUNT=4M", "--rounds"),
+        }
+        self.assertEqual(tuple(expected), SUBCOMMANDS)
+        for subcommand, words in expected.items():
+            text = self.interflect(subcommand, "--help").stdout
+            for word in words:
+                self.assertIn(word, text, subcommand)
+
+    def test_version(self):
+        self.assertRegex(self.interflect("--version").stdout, r"^interflect \d+\.\d+\.\d+\n$")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,365 @@
+// Faces that lie in one place: whatever a ray's direction, the same one must answer. Embree alone does not do that:
+// with the resolution switched off (contested_ left empty, nothing hidden) every test here fails but those of
+// neighbours and of faces that are apart; a decal then answers 0 to 100% of the rays towards it, depending on its place
+// in the scene.
+
+#include "interflect/raycast/coincident.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/split.h"
+#include "interflect/solver/solve.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr int rays_per_scene = 10'000;
+
+Patch rotated(Patch patch, std::ptrdiff_t by) {
+    const auto first = patch.vertices.begin();
+    std::rotate(first, first + by, first + patch.vertex_count());
+    return patch;
+}
+
+Patch reversed(Patch patch) {
+    std::reverse(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count());
+    return patch;
+}
+
+/// Adds a face of these corners; returns its patch, of a two-sided one the first.
+std::uint32_t add_face(Scene& scene, Patch front, bool two_sided) {
+    const auto index = static_cast<std::uint32_t>(scene.patches.size());
+    front.other_side = two_sided ? index + 1 : none;
+    scene.patches.push_back(front);
+    if (!two_sided) return index;
+    Patch back = reversed(front);
+    back.other_side = index;
+    scene.patches.push_back(back);
+    return index;
+}
+
+/// Room for faces over the unit square, whose front is up.
+Scene empty_scene() {
+    Scene scene;
+    add_material(scene, Rgb(0.5f), Rgb(1));
+    scene.objects.emplace_back();
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    return scene;
+}
+
+constexpr Patch unit_square{{0, 1, 2, 3}};
+
+/// A parallelogram to aim at, and a frame to look at it from.
+struct Target {
+    V3f corner, u, v;
+
+    V3f normal() const { return u.cross(v).normalized(); }
+    /// At (a, b) of [0, 1]^2, but no closer to the border than 0.1% of the edge.
+    V3f inner_point(float a, float b) const { return corner + (0.001f + 0.998f * a) * u + (0.001f + 0.998f * b) * v; }
+};
+
+/// How many of the rays from all over one side of `target`, towards points within it, are not answered by `expected`.
+/// Directions are uniform over the hemisphere but for the last degree; eyes 0.1 to 5 m away.
+int wrong_answers(const Scene& scene, const Target& target, float side, std::uint32_t expected,
+                  int rays = rays_per_scene) {
+    const RayCaster ray_caster(scene);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    const V3f n = side * target.normal(), u = target.u.normalized(), v = n.cross(u);
+    int wrong = 0;
+    for (int i = 0; i < rays; ++i) {
+        const V3f point = target.inner_point(uniform(random), uniform(random));
+        const float height = 0.02f + 0.98f * uniform(random), phi = 6.2831853f * uniform(random);
+        const float radius = std::sqrt(1 - height * height);
+        const V3f away = height * n + radius * (std::cos(phi) * u + std::sin(phi) * v);
+        const Ray ray{point + (0.1f + 4.9f * uniform(random)) * away, -away};
+        Hit hit;
+        ray_caster.trace({&ray, 1}, {&hit, 1});
+        wrong += hit.patch != expected;
+    }
+    return wrong;
+}
+
+constexpr Target square{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+constexpr float above = 1, below = -1;
+
+TEST(Duplicates, TheFirstOfTwoSidedOnesAnswersOnBothSides) {
+    for (const Patch& copy : {unit_square, rotated(unit_square, 1), rotated(unit_square, 2), reversed(unit_square),
+                              rotated(reversed(unit_square), 3)}) {
+        Scene scene = empty_scene();
+        const std::uint32_t first = add_face(scene, unit_square, true), second = add_face(scene, copy, true);
+        EXPECT_EQ(wrong_answers(scene, square, above, first), 0);
+        EXPECT_EQ(wrong_answers(scene, square, below, first + 1), 0);
+        EXPECT_TRUE(CoincidentFaces(scene, 1e-5f).is_hidden(second));
+    }
+}
+
+TEST(Duplicates, AreFoundByPositionNotByIndex) {
+    Scene scene = empty_scene();
+    const std::vector<V3f> copies = scene.vertices;
+    scene.vertices.insert(scene.vertices.end(), copies.begin(), copies.end());
+    add_face(scene, unit_square, true);
+    const std::uint32_t copy = add_face(scene, {{6, 7, 4, 5}}, true);
+    EXPECT_TRUE(CoincidentFaces(scene, 1e-5f).is_hidden(copy));
+}
+
+TEST(Duplicates, TheFirstOfOneSidedOnesAnswersOnItsFront) {
+    Scene scene = empty_scene();
+    const std::uint32_t first = add_face(scene, unit_square, false);
+    add_face(scene, rotated(unit_square, 1), false);
+    EXPECT_EQ(wrong_answers(scene, square, above, first), 0);
+    EXPECT_EQ(wrong_answers(scene, square, below, none), 0);
+}
+
+TEST(Duplicates, OneSidedOnesThatFaceOppositeWaysAnswerEachOnItsFront) {
+    Scene scene = empty_scene();
+    const std::uint32_t up = add_face(scene, unit_square, false), down = add_face(scene, reversed(unit_square), false);
+    EXPECT_EQ(wrong_answers(scene, square, above, up), 0);
+    EXPECT_EQ(wrong_answers(scene, square, below, down), 0);
+    EXPECT_EQ(CoincidentFaces(scene, 1e-5f).hidden_count(), 0u);
+}
+
+TEST(Duplicates, ATwoSidedOneAnswersWhereAOneSidedOneBeforeItDoesNot) {
+    Scene scene = empty_scene();
+    const std::uint32_t down = add_face(scene, reversed(unit_square), false);
+    const std::uint32_t both = add_face(scene, unit_square, true);
+    EXPECT_EQ(wrong_answers(scene, square, below, down), 0);
+    EXPECT_EQ(wrong_answers(scene, square, above, both), 0);
+}
+
+TEST(Duplicates, OfWarpedQuadrilateralsAreFound) {
+    Scene scene = empty_scene();
+    scene.vertices[2].z = 0.009f;  // as far off the plane as a reader lets pass
+    const std::uint32_t first = add_face(scene, unit_square, true);
+    add_face(scene, rotated(unit_square, 1), true);
+    const Target middle{{0.4f, 0.4f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}};  // the flattest rays would miss the border
+    EXPECT_EQ(wrong_answers(scene, middle, above, first), 0);
+}
+
+TEST(Duplicates, AHundredThousandOfOneFaceTakeNoQuadraticTime) {
+    Scene scene = empty_scene();
+    for (int i = 0; i < 100'000; ++i) add_face(scene, unit_square, true);
+    EXPECT_EQ(CoincidentFaces(scene, 1e-5f).hidden_count(), 99'999u);
+}
+
+/// A table top and a decal in its plane, or a little off it, in any position in space.
+struct DecalOnTable {
+    Scene scene;
+    Target table, decal;
+    std::uint32_t table_face = 0, decal_face = 0;
+
+    /// @param offset  Of the decal above the table, in lifts.
+    DecalOnTable(unsigned position, float offset, bool decal_first) {
+        std::mt19937 random(position);
+        std::uniform_real_distribution<float> uniform(-1, 1);
+        const auto direction = [&] { return V3f(uniform(random), uniform(random), uniform(random)).normalized(); };
+        const V3f u = direction(), n = u.cross(direction()).normalized(), v = n.cross(u);
+        table = {8.0f * V3f(uniform(random), uniform(random), uniform(random)), 2.0f * u, 1.25f * v};
+        // Turned in the table's plane, reaching from its middle towards its corner.
+        const V3f decal_u = 0.25f * u + 0.125f * v, decal_v = -0.0625f * u + 0.25f * v;
+        decal = {table.corner + 0.75f * u + 0.5f * v, decal_u, decal_v};
+
+        const std::uint32_t paint = add_material(scene, Rgb(0.5f), Rgb(1)), paper = add_material(scene, Rgb(0.8f), {});
+        if (decal_first) decal_face = add_rectangle(scene, decal.corner, decal.u, decal.v, paper, 1, 1, true);
+        table_face = add_rectangle(scene, table.corner, table.u, table.v, paint, 1, 1, true);
+        const float lift = RayCaster(scene).lift();
+        decal.corner += offset * lift * n;
+        if (decal_first)
+            for (int i : {0, 1, 2, 3}) scene.vertices[static_cast<std::size_t>(i)] += offset * lift * n;
+        else
+            decal_face = add_rectangle(scene, decal.corner, decal.u, decal.v, paper, 1, 1, true);
+    }
+};
+
+class Decal : public testing::TestWithParam<float> {};  // offset, in lifts
+INSTANTIATE_TEST_SUITE_P(OffsetInLifts, Decal, testing::Values(0.0f, 0.1f, -0.1f, 0.2f, -0.2f));
+
+TEST_P(Decal, AnswersEveryRayThatMeetsTheTableWithinIt) {
+    int wrong = 0;
+    for (unsigned position = 1; position <= 5; ++position)
+        for (const bool decal_first : {false, true}) {
+            const DecalOnTable d(position, GetParam(), decal_first);
+            wrong += wrong_answers(d.scene, d.decal, above, d.decal_face);
+            wrong += wrong_answers(d.scene, d.decal, below, d.decal_face + 1);
+        }
+    EXPECT_EQ(wrong, 0) << "of " << 20 * rays_per_scene;
+}
+
+TEST_P(Decal, LeavesTheRestOfTheTableAlone) {
+    const DecalOnTable d(1, GetParam(), false);
+    Target beside = d.table;  // the quarter by its first edge, where no decal is
+    beside.v *= 0.25f;
+    EXPECT_EQ(wrong_answers(d.scene, beside, above, d.table_face), 0);
+}
+
+TEST(Decal, WinsOverTheCellsOfADividedTable) {
+    DecalOnTable d(1, 0, false);
+    const Scene divided = split_patches(d.scene, 0.28f, 1'000'000);  // cells of 0.25 x 0.25 m, less than the decal
+    const RayCaster ray_caster(divided);
+    const V3f n = d.decal.normal();
+    int wrong = 0;
+    for (float a = 0.01f; a < 1; a += 0.02f)
+        for (float b = 0.01f; b < 1; b += 0.02f)
+            for (const V3f& away : {n, -n, (n + d.decal.u).normalized(), (d.decal.v - n).normalized()}) {
+                const Ray ray{d.decal.inner_point(a, b) + away, -away};
+                Hit hit;
+                ray_caster.trace({&ray, 1}, {&hit, 1});
+                wrong += hit.patch == none || divided.patches[hit.patch].material != 1;
+            }
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST(Decal, OnTheFrontOnlyLeavesTheTablesBack) {
+    Scene scene = empty_scene();
+    const std::uint32_t table = add_face(scene, unit_square, true);
+    const Target paper{{0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}};
+    const std::uint32_t decal = add_rectangle(scene, paper.corner, paper.u, paper.v, 0);
+    EXPECT_EQ(wrong_answers(scene, paper, above, decal), 0);
+    EXPECT_EQ(wrong_answers(scene, paper, below, table + 1), 0);
+}
+
+TEST(Decal, OfAStackTheSmallestAnswers) {
+    Scene scene = empty_scene();
+    const std::uint32_t table = add_face(scene, unit_square, true);
+    const Target sheet{{0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}},
+        note{{0.5f, 0.5f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
+    const std::uint32_t note_face = add_rectangle(scene, note.corner, note.u, note.v, 0, 1, 1, true);
+    const std::uint32_t sheet_face = add_rectangle(scene, sheet.corner, sheet.u, sheet.v, 0, 1, 1, true);
+    EXPECT_EQ(wrong_answers(scene, note, above, note_face), 0);
+    EXPECT_EQ(wrong_answers(scene, {sheet.corner, sheet.u, 0.4f * sheet.v}, below, sheet_face + 1), 0);
+    EXPECT_EQ(wrong_answers(scene, {{0, 0, 0}, {1, 0, 0}, {0, 0.25f, 0}}, above, table), 0);
+}
+
+TEST(Decal, SeenFromItsBackGivesWayToTheNextOfTheStack) {
+    Scene scene = empty_scene();
+    add_face(scene, unit_square, true);
+    const Target note{{0.5f, 0.5f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
+    const std::uint32_t sheet = add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
+    const std::uint32_t one_sided_note = add_rectangle(scene, note.corner, note.u, note.v, 0);
+    EXPECT_EQ(wrong_answers(scene, note, above, one_sided_note), 0);
+    EXPECT_EQ(wrong_answers(scene, note, below, sheet + 1), 0);
+}
+
+TEST(Decal, ThatIsATriangleAnswersWithinIt) {
+    Scene scene = empty_scene();
+    const std::uint32_t table = add_face(scene, unit_square, true);
+    scene.vertices.insert(scene.vertices.end(), {{0.25f, 0.25f, 0}, {0.75f, 0.25f, 0}, {0.25f, 0.75f, 0}});
+    const std::uint32_t triangle = add_face(scene, {{4, 5, 6, none}}, true);
+    EXPECT_EQ(wrong_answers(scene, {{0.25f, 0.25f, 0}, {0.25f, 0, 0}, {0, 0.25f, 0}}, above, triangle), 0);
+    EXPECT_EQ(wrong_answers(scene, {{0.75f, 0.75f, 0}, {-0.24f, 0, 0}, {0.24f, -0.24f, 0}}, above, table), 0);
+}
+
+TEST(Decal, OfAThousandOnOneFloorEachAnswers) {
+    Scene scene = empty_scene();
+    add_face(scene, unit_square, true);
+    for (float x = 0; x < 0.99f; x += 1 / 32.0f)
+        for (float y = 0; y < 0.99f; y += 1 / 32.0f) add_rectangle(scene, {x, y, 0}, {0.02f, 0, 0}, {0, 0.02f, 0}, 0);
+    EXPECT_EQ(CoincidentFaces(scene, 1e-6f).pair_count(), 1024u);
+    for (std::uint32_t decal = 2; decal < scene.patches.size(); decal += 93) {
+        const V3f corner = scene.vertices[scene.patches[decal].vertices[0]];
+        EXPECT_EQ(wrong_answers(scene, {corner, {0.02f, 0, 0}, {0, 0.02f, 0}}, above, decal, 1000), 0);
+    }
+}
+
+/// The five visible sides of a box that stands at `corner`.
+std::uint32_t add_box(Scene& scene, V3f corner, V3f s) {
+    const V3f x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
+    const std::uint32_t front = add_rectangle(scene, corner, x, z, 0, 1, 1, true);
+    add_rectangle(scene, corner + y, z, x, 0, 1, 1, true);
+    add_rectangle(scene, corner, z, y, 0, 1, 1, true);
+    add_rectangle(scene, corner + x, y, z, 0, 1, 1, true);
+    add_rectangle(scene, corner + z, x, y, 0, 1, 1, true);
+    return front;
+}
+
+TEST(Boxes, WithACommonSideAnswerByTheSmallerOneWhereTheyOverlap) {
+    Scene scene = empty_scene();
+    const std::uint32_t large = add_box(scene, {0, 0, 0}, {2, 1, 1});
+    const std::uint32_t small = add_box(scene, {1.5f, 0, 0.25f}, {1, 0.5f, 0.5f});  // half of it inside the other
+    EXPECT_EQ(wrong_answers(scene, {{1.5f, 0, 0.25f}, {1, 0, 0}, {0, 0, 0.5f}}, above, small), 0);
+    EXPECT_EQ(wrong_answers(scene, {{0, 0, 0}, {1.5f, 0, 0}, {0, 0, 1}}, above, large), 0);
+    EXPECT_EQ(CoincidentFaces(scene, 1e-5f).pair_count(), 1u);
+}
+
+TEST(Neighbours, ThatShareEdgesOnlyAreNotContested) {
+    Scene scene;
+    add_material(scene, Rgb(0.5f), Rgb(1));
+    add_rectangle(scene, {3, -2, 1}, {6, 0, 8}, {-0.8f, 10, 0.6f}, 0, 300, 300);  // rounding moves every corner
+    const CoincidentFaces faces(scene, 0.25f * RayCaster(scene).lift());
+    EXPECT_EQ(faces.pair_count(), 0u);
+    EXPECT_EQ(faces.hidden_count(), 0u);
+    EXPECT_LE(faces.memory(), scene.patches.size() / 4 + 64);
+}
+
+TEST(Neighbours, ThatAreApartOrStandUprightAreNotContested) {
+    Scene scene = empty_scene();
+    add_face(scene, unit_square, true);
+    add_rectangle(scene, {0.25f, 0.25f, 2e-5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0);       // above, by twice the tolerance
+    add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}, 0);           // upright
+    add_rectangle(scene, {0.25f, 0.25f, -1e-3f}, {0.5f, 0, 2e-3f}, {0, 0.5f, 0}, 0);  // through it, at 0.2 degrees
+    add_rectangle(scene, {1, 0, 0}, {1, 0, 0}, {0, 2, 0}, 0);                         // beside
+    EXPECT_EQ(CoincidentFaces(scene, 1e-5f).pair_count(), 0u);
+}
+
+// A furnace: exitance M and reflectance rho everywhere, so B = M / (1 - rho).
+constexpr float exitance = 2, rho = 0.5f;
+const Material wall{"wall", Rgb(rho), Rgb(exitance)};
+
+SolveOptions furnace_options(std::uint64_t seed) {
+    SolveOptions options;
+    options.rays = 200'000;
+    options.seed = seed;
+    return options;
+}
+
+float radiosity(const Solution& solution, std::uint32_t patch) { return exitance + rho * solution.irradiance[patch].x; }
+
+// The room's floor is the middle of a larger black slab. Every ray that the slab answered would be lost.
+TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
+    Scene scene;
+    const std::uint32_t black = add_material(scene, Rgb(0), Rgb(0));
+    add_rectangle(scene, {-1, -1, 0}, {4, 0, 0}, {0, 5, 0}, black);
+    const std::uint32_t paint = add_material(scene, wall.reflectance, wall.exitance);
+    const V3f x(1, 0, 0), y(0, 2, 0), z(0, 0, 3), o(0, 0, 0);
+    const std::uint32_t floor = add_rectangle(scene, o, x, y, paint, 3, 3);
+    add_rectangle(scene, o, y, z, paint), add_rectangle(scene, x, z, y, paint), add_rectangle(scene, o, z, x, paint);
+    add_rectangle(scene, y, x, z, paint), add_rectangle(scene, z, y, x, paint);
+
+    std::vector<std::vector<double>> samples(9);
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+        const Solution solution = solve(scene, RayCaster(scene), furnace_options(seed));
+        EXPECT_EQ(solution.irradiance[0], Rgb(0));
+        EXPECT_EQ(solution.iterations.back().escaped_rays, 0);
+        for (std::uint32_t i = 0; i < 9; ++i) samples[i].push_back(radiosity(solution, floor + i));
+    }
+    std::vector<double> p_values, p_values_of_one_percent;
+    for (const std::vector<double>& sample : samples) {
+        p_values.push_back(t_test(sample, exitance / (1 - rho)));
+        p_values_of_one_percent.push_back(t_test(sample, 1.01 * exitance / (1 - rho)));
+    }
+    EXPECT_GT(bonferroni(p_values), false_alarm);
+    EXPECT_LT(bonferroni(p_values_of_one_percent), false_alarm);
+}
+
+// What is under the decal still emits, which adds the decal's share of the surface, 0.05%, to the light in the room.
+TEST(CoincidentFurnace, DecalOnAFloorGetsItsLight) {
+    Scene scene = closed_box({1, 2, 3}, 1, {wall});
+    const std::uint32_t decal = add_rectangle(scene, {0.4f, 0.9f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 0);
+    std::vector<double> sample;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed)
+        sample.push_back(radiosity(solve(scene, RayCaster(scene), furnace_options(seed)), decal));
+    EXPECT_GT(t_test(sample, exitance / (1 - rho)), false_alarm);
+    EXPECT_LT(t_test(sample, 1.05 * exitance / (1 - rho)), false_alarm);
+    EXPECT_LT(t_test(sample, 0.95 * exitance / (1 - rho)), false_alarm);
+}
+
+}  // namespace
+}  // namespace interflect
