@@ -1,7 +1,8 @@
-// Faces that lie in one place: whatever a ray's direction, the same one must answer. Embree alone does not do that:
-// with the resolution switched off (contested_ left empty, nothing hidden) every test here fails but those of
-// neighbours and of faces that are apart; a decal then answers 0 to 100% of the rays towards it, depending on its place
-// in the scene.
+// Faces that lie in one place: whatever a ray's direction, the same one must answer. Embree alone does not do that.
+// With RayCaster's use of is_contested and is_hidden taken out, 18 of these tests fail (not those that ask
+// CoincidentFaces alone, nor those where Embree has no choice): half of the rays towards a decal get the table, and the
+// furnace's black slab swallows light. Each part of the resolution (sidedness, surfaces of many patches, tolerances in
+// the plane and off it, inside or not) was broken once too, and a test failed each time.
 
 #include "interflect/raycast/coincident.h"
 
