@@ -29,13 +29,8 @@ constexpr const char* footer =
     "Lengths are in metres, powers in lumens. Results go to stdout, messages to stderr.\n"
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 bad input, 130 interrupted, keeping what there is.";
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
     using namespace interflect::command;
-    spdlog::set_default_logger(spdlog::stderr_color_st("interflect"));
-    spdlog::set_pattern("%^%l%$: %v");
-
     CLI::App app("Interflect: diffuse global illumination that goes where the eye looks", "interflect");
     app.set_version_flag("--version", "interflect " INTERFLECT_VERSION);
     app.require_subcommand(1);
@@ -53,12 +48,20 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? done : wrong_usage;
-    } catch (const interflect::InputError& e) {
-        spdlog::error("{}", e.what());
-        return bad_input;
-    } catch (const std::exception& e) {
-        spdlog::error("{}", e.what());
-        return failed;
     }
     return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    spdlog::set_default_logger(spdlog::stderr_color_st("interflect"));
+    spdlog::set_pattern("%^%l%$: %v");
+    return run(argc, argv);
+} catch (const interflect::InputError& e) {
+    spdlog::error("{}", e.what());
+    return interflect::command::bad_input;
+} catch (const std::exception& e) {
+    spdlog::error("{}", e.what());
+    return interflect::command::failed;
 }

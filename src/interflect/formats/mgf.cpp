@@ -106,7 +106,7 @@ class Reader {
     void read_lines();
     void read_line(Words words);
     void close_all();
-    const SourceFile& add_source(const fs::path& path, std::string text);
+    const SourceFile& add_source(const fs::path& path, std::string&& text);
     const SourceFile& included(std::string_view name);
     void refuse_recursion(const SourceFile& source) const;
     Location here() const { return {&file_->source.path, file_->lines.line()}; }
@@ -290,7 +290,7 @@ void Reader::close_all() {
     close_objects(file_->outer_objects);
 }
 
-const SourceFile& Reader::add_source(const fs::path& path, std::string text) {
+const SourceFile& Reader::add_source(const fs::path& path, std::string&& text) {
     std::error_code ignored;  // what has no canonical path gets an empty one
     const auto [source, is_new] = sources_.try_emplace(fs::weakly_canonical(path, ignored), path, std::move(text));
     if (is_new) scene_.add_file(path);
@@ -314,7 +314,7 @@ void Reader::refuse_recursion(const SourceFile& source) const {
     bool recursion = false;
     for (const OpenFile* open = file_; open && !recursion; open = open->includer) {
         recursion = &open->source == &source;
-        chain = open->source.path.string() + " -> " + chain;
+        chain.insert(0, open->source.path.string() + " -> ");
     }
     if (recursion) throw Fault("a file includes itself: " + chain);
 }
@@ -376,7 +376,7 @@ void Reader::material(Words words) {
 }
 
 void Reader::sides(Words words) {
-    const auto count = parse_integer(words[0]);
+    const int count = parse_integer(words[0]).value_or(0);
     if (count != 1 && count != 2) throw Fault(fmt::format("sides must be 1 or 2, not '{}'", words[0]));
     changed_material().two_sided = count == 2;
 }

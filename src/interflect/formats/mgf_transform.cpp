@@ -118,19 +118,19 @@ M44d power(M44d base, int exponent) {
 
 }  // namespace
 
-TransformSequence::TransformSequence(std::span<const std::string_view> words) {
+TransformSequence::TransformSequence(std::span<const std::string_view> arguments) {
     segments_.emplace_back();
-    for (Arguments arguments(words); !arguments.empty();) {
-        const std::string_view option = arguments.option();
+    for (Arguments rest(arguments); !rest.empty();) {
+        const std::string_view option = rest.option();
         if (option == "-i") {
-            segments_.push_back({M44d(), arguments.count(), false});
+            segments_.push_back({M44d(), rest.count(), false});
         } else if (option == "-a") {
-            const int copies = arguments.count();
+            const int copies = rest.count();
             if (copies == 0) throw std::invalid_argument("-a needs at least one copy");
             array_sizes_.push_back(copies);
             segments_.push_back({M44d(), 0, true});
         } else {
-            segments_.back().step = segments_.back().step * elementary(option, arguments);
+            segments_.back().step = segments_.back().step * elementary(option, rest);
         }
     }
 }

@@ -1,6 +1,6 @@
 #include "interflect/formats/vertex_weld.h"
 
-#include <cstring>
+#include <bit>
 
 #include "interflect/base/random.h"
 
@@ -9,9 +9,8 @@ namespace interflect {
 namespace {
 
 std::uint64_t hash(const V3f& position) {
-    std::uint32_t bits[3];
-    std::memcpy(bits, &position, sizeof bits);
-    return mix(bits[0] | std::uint64_t{bits[1]} << 32, bits[2]);
+    const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x)}; };
+    return mix(bits(position.x) | bits(position.y) << 32, bits(position.z));
 }
 
 }  // namespace

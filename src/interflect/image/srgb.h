@@ -18,7 +18,7 @@ inline float srgb_decode(float encoded) {
 
 /// Clamps to [0, 1], encodes and rounds to 8 bits. Not for values that are not a number.
 inline std::uint8_t srgb_byte(float linear) {
-    return static_cast<std::uint8_t>(255 * srgb_encode(std::clamp(linear, 0.0f, 1.0f)) + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(255 * srgb_encode(std::clamp(linear, 0.0f, 1.0f))));
 }
 
 }  // namespace interflect

@@ -19,6 +19,7 @@ bool is_face(const Scene& scene, std::uint32_t patch) { return scene.patches[pat
 
 std::vector<V3f> corners(const Scene& scene, const Patch& patch) {
     std::vector<V3f> result;
+    result.reserve(4);
     for (int i = 0; i < patch.vertex_count(); ++i)
         result.push_back(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]);
     return result;

@@ -97,9 +97,9 @@ void PreparedRays::trace_group(const RayCaster& ray_caster, std::size_t group) {
 }
 
 std::size_t PreparedRays::hit_count() const {
-    return layout_->singles.size() > 0    ? count_hits(layout_->singles, layout_->rays, 1)
-           : layout_->packets8.size() > 0 ? count_hits(layout_->packets8, layout_->rays, 8)
-                                          : count_hits(layout_->packets16, layout_->rays, 16);
+    return !layout_->singles.empty()    ? count_hits(layout_->singles, layout_->rays, 1)
+           : !layout_->packets8.empty() ? count_hits(layout_->packets8, layout_->rays, 8)
+                                        : count_hits(layout_->packets16, layout_->rays, 16);
 }
 
 }  // namespace interflect
