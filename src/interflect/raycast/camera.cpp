@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "interflect/base/error.h"
+#include "interflect/base/image_size.h"
 
 namespace interflect {
 
