@@ -10,10 +10,10 @@
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/exports/solution_file.h"
-#include "interflect/image/camera.h"
 #include "interflect/image/image_files.h"
 #include "interflect/image/render.h"
 #include "interflect/image/tone_map.h"
+#include "interflect/raycast/camera.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {
@@ -67,16 +67,21 @@ void run(Options& options, int& exit_code) {
     if (solved_before)
         solved = read_solution(options.scene.path);
     else
-        solved.scene = options.mesh.divide(options.scene.load(), options.scene.read);
+        solved.scene = options.scene.load();
     const View view = view_to_draw(solved.scene, options.view);
     Camera(view, options.size.width, options.size.height);  // refuses what defines no picture
+    const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
+    const SolveOptions solve_options = options.solver.resolved({view}, aspect);
+    if (!solved_before)
+        solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(solved.scene);
-    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, options.solver);
+    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver);
 
     options.render.width = options.size.width;
     options.render.height = options.size.height;
     options.render.seed = solved.solution.options.seed;
-    const Rendering rendering = render(solved.scene, ray_caster, view, solved.solution.irradiance, options.render);
+    const Rendering rendering =
+        render(solved.scene, *solved.solution.forest, ray_caster, view, solved.solution.irradiance, options.render);
     write_picture(output, rendering, view, solved, options);
     if (!solved_before && solved.solution.interrupted) exit_code = interrupted;
 }
@@ -99,7 +104,7 @@ void add_render(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 65536));
     add_choice<Shading>(command, "--shading", options->render.shading,
                         {{"smooth", Shading::smooth}, {"flat", Shading::flat}},
-                        "smooth: interpolated over each surface; flat: one value a patch")
+                        "smooth: interpolated over each surface; flat: one value an element")
         ->default_str("smooth");
     command
         .add_option("--exposure", options->exposure,

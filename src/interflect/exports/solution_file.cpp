@@ -132,7 +132,7 @@ Json describe(const Scene& scene, const Solution& solution) {
             {{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
     const std::int64_t rays = solution.iterations.empty() ? 0 : solution.iterations.back().rays;
     return {{"scene", scene.name},
-            {"method", solution.method},
+            {"method", solution.options.method.name},
             {"seed", solution.options.seed},
             {"rays", rays},
             {"emitted_power", json_of(solution.emitted_power)},
@@ -146,7 +146,7 @@ Json describe(const Scene& scene, const Solution& solution) {
 void read_description(const Json& j, SolvedScene& solved) {
     Scene& scene = solved.scene;
     scene.name = j.at("scene").get<std::string>();
-    solved.solution.method = j.at("method").get<std::string>();
+    solved.solution.options.method = find_method(j.at("method").get<std::string>());
     solved.solution.options.seed = j.at("seed").get<std::uint64_t>();
     solved.solution.options.rays = j.at("rays").get<std::int64_t>();
     solved.solution.emitted_power = vector_of<RgbD>(j.at("emitted_power"));

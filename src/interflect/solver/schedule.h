@@ -53,6 +53,7 @@ class ErrorEstimate {
              std::span<const double> received, std::int64_t rays);
     /// Relative to the weighted mean of the last call; infinite before the first.
     double relative(std::int64_t averaged_rays) const;
+    int terms() const { return terms_; }  ///< Calls of add().
 
   private:
     double variance_sum_ = 0;  // of S^2 [irradiance^2]

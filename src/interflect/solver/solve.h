@@ -25,19 +25,32 @@ enum class ImportanceUse {
     full,    ///< What the view shows and what lights that: V and all its bounces (Eq. 7).
 };
 
-/// A method is data: what steers it and whether it refines. The engine is the same.
+/// What becomes of the rays.
+enum class Scheme {
+    averaged,          ///< Each iteration estimates all irradiance anew; their mean is kept (Eq. 6).
+    well_distributed,  ///< Every ray is kept: all carry one quantum, and an iteration shoots what the leaves lack.
+    random_walk,       ///< Particles start at the lights and are scored wherever they hit, until they are absorbed.
+    links,             ///< Deterministic: elements are linked, and gather over their links.
+};
+
+/// A method is data: how rays are used, what steers them, whether the mesh is refined.
 struct Method {
     const char* name;
-    bool refines;              ///< Hierarchical: the oracle decides for every ray (Eq. 14, or Eq. 15 with importance).
+    Scheme scheme;
+    bool refines;              ///< Hierarchical: the oracle decides (Eq. 14, or Eq. 15 with importance).
     ImportanceUse importance;  ///< Taken as `off` where there is no view.
     const char* source;
 };
 
-inline constexpr std::array<Method, 4> methods = {
-    {{"srr", false, ImportanceUse::off, "stochastic ray radiosity, flat: Neumann et al. 1995"},
-     {"isrr", false, ImportanceUse::full, "importance-driven, flat: Neumann et al. 1996"},
-     {"hsrr", true, ImportanceUse::off, "hierarchical, without importance: Bekaert et al. 1998"},
-     {"ihsrr", true, ImportanceUse::full, "importance-driven and hierarchical: Prikryl et al. 2000"}}};
+inline constexpr std::array<Method, 8> methods = {
+    {{"srr", Scheme::averaged, false, ImportanceUse::off, "Neumann et al. 1995"},
+     {"isrr", Scheme::averaged, false, ImportanceUse::full, "Neumann et al. 1996"},
+     {"wdrs", Scheme::well_distributed, false, ImportanceUse::off, "Neumann, Neumann and Bekaert 1997"},
+     {"hwdrs", Scheme::well_distributed, true, ImportanceUse::off, "Bekaert et al. 1998"},
+     {"hsrr", Scheme::averaged, true, ImportanceUse::off, "srr on the hierarchy of Bekaert et al. 1998"},
+     {"ihsrr", Scheme::averaged, true, ImportanceUse::full, "Prikryl et al. 2000"},
+     {"random-walk", Scheme::random_walk, false, ImportanceUse::off, "Pattanaik and Mudur 1992, 1995"},
+     {"hr", Scheme::links, true, ImportanceUse::off, "Hanrahan et al. 1991, Smits et al. 1992"}}};
 
 /// The method of that name. @throws InputError that lists the methods there are.
 const Method& find_method(const std::string& name);
@@ -102,7 +115,8 @@ struct Solution {
     std::vector<Rgb> irradiance;             ///< H [lm/m^2 or W/m^2].
     std::vector<float> view_importance;      ///< v; empty where there is no view.
     std::vector<float> indirect_importance;  ///< psi - v; likewise.
-    std::string method = "srr";
+    std::vector<float> standard_error;       ///< Estimated, of the luminance of H [as H].
+    std::vector<float> rays;                 ///< How many started on it.
     SolveOptions options;
     std::vector<IterationReport> iterations;
     RgbD emitted_power{0, 0, 0};  ///< Sum of W [lm or W].

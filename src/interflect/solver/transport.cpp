@@ -169,30 +169,36 @@ std::uint32_t find_receiver(const Descent& descent, const Oracle& oracle, std::s
     return receiver.element;
 }
 
-/// What one ray of each leaf stands for, A_s / (N q_s) [m^2], and what all rays carry together.
-struct Weights {
-    std::vector<double> area;
-    RgbD shot{0, 0, 0};
-    double importance = 0;
+/// What one ray of each leaf carries, and all of them together.
+struct Carried {
+    std::vector<RgbD> power;         // [lm or W]; empty: none
+    std::vector<double> importance;  // likewise
+    RgbD all_power{0, 0, 0};
+    double all_importance = 0;
 };
 
-Weights make_weights(const Surfaces& surfaces, const ElementForest& forest, const TransportStep& step,
+Carried make_carried(const Surfaces& surfaces, const ElementForest& forest, const TransportStep& step,
                      const RayPlan& plan) {
     double q_sum = 0;
     for (const double w : step.q) q_sum += w;
-    Weights weights;
-    weights.area.resize(step.leaves.size(), 0.0);
+    Carried carried;
+    if (!step.radiosity.empty()) carried.power.resize(step.leaves.size(), RgbD(0));
+    if (step.carries_importance) carried.importance.resize(step.leaves.size(), 0.0);
     for (std::size_t s = 0; s < step.leaves.size(); ++s) {
-        const std::uint32_t leaf = step.leaves[s];
         if (plan.count(s) == 0) continue;
-        const double area = forest.area(leaf) * (q_sum / static_cast<double>(step.rays) / step.q[s]);
-        const double rays_area = area * static_cast<double>(plan.count(s));
-        weights.area[s] = area;
-        if (!step.radiosity.empty()) weights.shot += RgbD(step.radiosity[leaf]) * rays_area;
-        if (step.carries_importance)
-            weights.importance += surfaces.mean_reflectance(forest.patch(leaf)) * step.importance[leaf] * rays_area;
+        const std::uint32_t leaf = step.leaves[s];
+        const double area = forest.area(leaf) * (q_sum / static_cast<double>(step.rays) / step.q[s]);  // A_s / (N q_s)
+        const auto count = static_cast<double>(plan.count(s));
+        if (!carried.power.empty()) {
+            carried.power[s] = step.quanta.empty() ? RgbD(step.radiosity[leaf]) * area : RgbD(step.quanta[s]);
+            carried.all_power += carried.power[s] * count;
+        }
+        if (!carried.importance.empty()) {
+            carried.importance[s] = surfaces.mean_reflectance(forest.patch(leaf)) * step.importance[leaf] * area;
+            carried.all_importance += carried.importance[s] * count;
+        }
     }
-    return weights;
+    return carried;
 }
 
 /// What arrives, as integers, so that the order of arrival does not matter.
@@ -203,11 +209,11 @@ struct Sums {
     FixedPoint::Value escaped{};
     std::int64_t escaped_rays = 0;
 
-    Sums(const Weights& weights, std::size_t power_capacity, std::size_t importance_capacity)
-        : power_unit(channel_sum(weights.shot)),
-          importance_unit(weights.importance),
-          power(power_capacity),
-          importance(importance_capacity) {}
+    Sums(const Carried& carried, std::size_t capacity)
+        : power_unit(channel_sum(carried.all_power)),
+          importance_unit(carried.all_importance),
+          power(carried.power.empty() ? 0 : capacity),
+          importance(carried.importance.empty() ? 0 : capacity) {}
 };
 
 /// A tally of one task, added to the common sums at its end.
@@ -225,20 +231,17 @@ struct Receiving {
     const Surfaces& surfaces;
     const Descent& descent;
     const TransportStep& step;
+    const Carried& carried;
     Sums& sums;
 
-    /// Hands what the rays of one leaf bring to where they arrive.
-    void operator()(std::uint32_t leaf, double area, std::span<const Ray> rays, std::span<const Parameters> origins,
+    /// Hands what the rays of leaf number s bring to where they arrive.
+    void operator()(std::size_t s, std::span<const Ray> rays, std::span<const Parameters> origins,
                     std::span<const Hit> hits, std::vector<Visit>& way, Tally& tally) const {
         const ElementForest& forest = descent.forest();
-        const bool carries_power = !step.radiosity.empty();
-        if (step.oracle.refines) find_way_to_leaf(descent, leaf, way);
-        const FixedPoint::Value power =
-            carries_power ? sums.power_unit.from(RgbD(step.radiosity[leaf]) * area) : FixedPoint::Value{};
-        const std::int64_t importance = step.carries_importance
-                                            ? sums.importance_unit.from(surfaces.mean_reflectance(forest.patch(leaf)) *
-                                                                        step.importance[leaf] * area)
-                                            : 0;
+        const bool carries_power = !carried.power.empty(), carries_importance = !carried.importance.empty();
+        if (step.oracle.refines) find_way_to_leaf(descent, step.leaves[s], way);
+        const FixedPoint::Value power = carries_power ? sums.power_unit.from(carried.power[s]) : FixedPoint::Value{};
+        const std::int64_t importance = carries_importance ? sums.importance_unit.from(carried.importance[s]) : 0;
         for (std::size_t r = 0; r < rays.size(); ++r) {
             const std::uint32_t patch = hits[r].patch;
             if (patch == none) {
@@ -256,7 +259,7 @@ struct Receiving {
                         : descent.old_leaf_at(patch, y);
                 add_concurrently(sums.power[receiver], power);
             }
-            if (step.carries_importance)
+            if (carries_importance)
                 add_concurrently(sums.importance[step.importance_at_patches ? patch : descent.old_leaf_at(patch, y)],
                                  importance);
         }
@@ -306,10 +309,10 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     if (std::all_of(step.q.begin(), step.q.end(), [](double w) { return w == 0; })) return received;
 
     const RayPlan plan(forest, ray_caster, step, streams);
-    const Weights weights = make_weights(surfaces, forest, step, plan);
-    Sums sums(weights, carries_power ? forest.capacity() : 0, step.carries_importance ? forest.capacity() : 0);
+    const Carried carried = make_carried(surfaces, forest, step, plan);
+    Sums sums(carried, forest.capacity());
     const Descent descent(forest, step);
-    const Receiving receive{surfaces, descent, step, sums};
+    const Receiving receive{surfaces, descent, step, carried, sums};
     tbb::enumerable_thread_specific<Batch> batches;
     parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, [&](std::size_t begin, std::size_t end) {
         Batch& batch = batches.local();
@@ -323,8 +326,8 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
         Tally tally;
         plan.for_each_source(first, last, [&](std::size_t s, std::int64_t from, std::int64_t to) {
             const auto offset = static_cast<std::size_t>(from - first), length = static_cast<std::size_t>(to - from);
-            receive(step.leaves[s], weights.area[s], rays.subspan(offset, length), origins.subspan(offset, length),
-                    hits.subspan(offset, length), batch.way, tally);
+            receive(s, rays.subspan(offset, length), origins.subspan(offset, length), hits.subspan(offset, length),
+                    batch.way, tally);
         });
         add_concurrently(sums.escaped, tally.escaped);
         add_concurrently(sums.escaped_rays, tally.escaped_rays);
@@ -343,7 +346,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
             received.irradiance[e] = Rgb(sums.power_unit.to_colour(sums.power[e])) / forest.area(e);
         push(forest, received.irradiance);
         pull(forest, received.irradiance);
-        received.shot_power = weights.shot;
+        received.shot_power = carried.all_power;
         received.escaped_power = sums.power_unit.to_colour(sums.escaped);
     }
     if (step.carries_importance) {

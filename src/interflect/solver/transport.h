@@ -37,6 +37,9 @@ struct TransportStep {
     std::int64_t rays = 0;              ///< N > 0.
     /// B of every element [lm/m^2 or W/m^2], finite: rays carry power. Empty: they carry none.
     std::vector<Rgb> radiosity;
+    /// What one ray of each leaf carries, same size as leaves; empty: B_s A_s / (N q_s), which makes the estimate
+    /// unbiased.
+    std::vector<Rgb> quanta;
     /// psi of every element, as the oracle weighs receivers and as it is shot on; empty where neither is asked for.
     std::vector<float> importance;
     bool carries_importance = false;

@@ -55,12 +55,4 @@ std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at
     return v;
 }
 
-double ViewImportance::seen_area(const ElementForest& forest) const {
-    std::vector<bool> seen(forest.patch_count(), false);
-    for (const Point& p : points_) seen[p.patch] = true;
-    double area = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) area += seen[i] ? forest.area(i) : 0;
-    return area;
-}
-
 }  // namespace interflect

@@ -30,8 +30,6 @@ class ViewImportance {
     /// weighted over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
     /// @param at_patches  Spread each patch's V evenly over it.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches) const;
-    /// Total area of the patches that are seen [m^2].
-    double seen_area(const ElementForest& forest) const;
 
   private:
     struct Point {
