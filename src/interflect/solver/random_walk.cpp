@@ -290,51 +290,53 @@ Cargo importance_from_the_eyes(const Run& run) {
     return cargo;
 }
 
-/// What importance lacks of its share alpha, where so many rays are planned in all.
-std::int64_t rays_for_importance(const Run& run, std::int64_t planned) {
-    if (importance_use(run.solution) != ImportanceUse::full) return 0;
-    return std::max<std::int64_t>(0,
-                                  std::llround(run.options.alpha * static_cast<double>(planned)) - run.importance_rays);
-}
-
 }  // namespace
 
 RandomWalks::RandomWalks(Run& run)
     : light_{sub_key(run.options.seed, Purpose::light)}, importance_{sub_key(run.options.seed, Purpose::importance)} {
-    walk_importance(run, std::min(run.schedule.start_rays(), rays_for_importance(run, run.options.rays)));
+    walk_importance(run, std::min(run.schedule.start_rays(), lacking_importance(run, run.options.rays)));
     run.schedule.began_with(0, run.importance_rays);
+}
+
+/// What importance lacks of its share alpha of the rays, where so many are planned in all.
+std::int64_t RandomWalks::lacking_importance(const Run& run, std::int64_t planned) const {
+    if (importance_use(run.solution) != ImportanceUse::full) return 0;
+    const std::int64_t share = std::llround(run.options.alpha * static_cast<double>(planned));
+    return std::max<std::int64_t>(0, share - importance_history_);
 }
 
 void RandomWalks::walk_importance(Run& run, std::int64_t rays) {
     if (rays <= 0) return;
     const Arrived arrived = walk(run, importance_from_the_eyes(run), rays, importance_);
     run.importance_rays += arrived.rays;
-    const auto n = static_cast<float>(rays);
-    importance_history_ += n;
+    importance_history_ += rays;
+    const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(importance_history_));
     std::vector<float>& psi = run.solution.indirect_importance;
-    for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += n / importance_history_ * (arrived.irradiance[i].x - psi[i]);
+    for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (arrived.irradiance[i].x - psi[i]);
+}
+
+void RandomWalks::walk_light(Run& run, std::int64_t rays, const IterationPlan& plan) {
+    if (rays <= 0) return;
+    const Arrived arrived = walk(run, light(run), rays, light_);
+    run.power_rays += arrived.rays;
+    const bool tells_of_error = plan.rays >= run.schedule.start_rays();  // a remainder of the rays tells too little
+    if (run.schedule.averaged_rays() > 0 && tells_of_error) estimate_error(run, arrived.irradiance, plan.rays);
+    const double before = run.history[0], now = before + static_cast<double>(plan.rays);
+    const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
+    for (std::uint32_t i = 0; i < run.forest->size(); ++i)
+        run.solution.irradiance[i] += static_cast<float>(tau) * (arrived.irradiance[i] - run.solution.irradiance[i]);
+    escaped_ += tau * (arrived.escaped - escaped_);
+    std::fill(run.history.begin(), run.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
 RgbD RandomWalks::iterate(Run& run, IterationPlan& plan) {
-    const std::int64_t for_importance = std::min(plan.rays, rays_for_importance(run, run.schedule.rays() + plan.rays));
     const std::int64_t rays_before = run.power_rays + run.importance_rays;
+    const std::int64_t for_importance = std::min(plan.rays, lacking_importance(run, run.schedule.rays() + plan.rays));
     walk_importance(run, for_importance);
-    RgbD escaped(0, 0, 0);
-    if (plan.rays > for_importance) {
-        const Arrived arrived = walk(run, light(run), plan.rays - for_importance, light_);
-        run.power_rays += arrived.rays;
-        escaped = arrived.escaped;
-        const bool tells_of_error = plan.rays >= run.schedule.start_rays();  // a remainder of the rays tells too little
-        if (run.schedule.averaged_rays() > 0 && tells_of_error) estimate_error(run, arrived.irradiance, plan.rays);
-        const auto n = static_cast<float>(plan.rays);
-        for (std::uint32_t i = 0; i < run.forest->size(); ++i) {
-            const float tau = plan.warms_up ? 1.0f : n / (run.history[i] + n);
-            run.history[i] = plan.warms_up ? 0.0f : run.history[i] + n;
-            run.solution.irradiance[i] += tau * (arrived.irradiance[i] - run.solution.irradiance[i]);
-        }
-    }
-    plan.rays = run.power_rays + run.importance_rays - rays_before;
-    return escaped;
+    walk_light(run, plan.rays - for_importance, plan);
+    const std::int64_t traced = run.power_rays + run.importance_rays - rays_before;
+    if (traced > 0) plan.rays = traced;  // else no eye sees what reflects, and the plan is used up
+    return escaped_;
 }
 
 }  // namespace interflect

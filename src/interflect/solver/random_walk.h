@@ -34,14 +34,17 @@ class RandomWalks {
     /// Follows paths that take about plan.rays rays, and merges what they bring with the past (Eq. 6). The weights of
     /// batches are the rays planned for them, lest short paths, which bring little, count as much as long ones.
     /// @param plan  Its rays become those that were traced.
-    /// @return The power that left the scene.
+    /// @return The power that leaves the scene, by all batches so far.
     RgbD iterate(Run& run, IterationPlan& plan);
 
   private:
+    std::int64_t lacking_importance(const Run& run, std::int64_t planned) const;
     void walk_importance(Run& run, std::int64_t rays);
+    void walk_light(Run& run, std::int64_t rays, const IterationPlan& plan);
 
     PathSeries light_, importance_;
-    float importance_history_ = 0;  // rays that psi stands for
+    RgbD escaped_{0, 0, 0};                // power, mean of all batches
+    std::int64_t importance_history_ = 0;  // rays planned for the batches that psi is the mean of
 };
 
 }  // namespace interflect
