@@ -202,6 +202,19 @@ std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<s
     return forest;
 }
 
+/// What every element has one number of.
+struct ElementNumbers {
+    const char* dataset;
+    const char* name;
+    std::vector<float> Solution::*values;
+    bool needs_view;
+};
+constexpr std::array<ElementNumbers, 4> element_numbers = {
+    {{"/solution/standard_error", "standard error", &Solution::standard_error, false},
+     {"/solution/rays", "number of rays", &Solution::rays, false},
+     {"/solution/view_importance", "view importance", &Solution::view_importance, true},
+     {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true}}};
+
 void require_per_element(std::size_t size, const ElementForest& forest, const char* what) {
     if (size != forest.size()) throw std::runtime_error(fmt::format("{} and elements differ in number", what));
 }
@@ -232,12 +245,12 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     require_quantities(irradiance, 3, "irradiance");
     solution.irradiance = grouped<Rgb>(irradiance);
     require_per_element(solution.irradiance.size(), *solution.forest, "irradiance");
-    if (!description.at("has_importance").get<bool>()) return solved;
-    solution.view_importance = read_array<float>(file, "/solution/view_importance", 1);
-    solution.indirect_importance = read_array<float>(file, "/solution/indirect_importance", 1);
-    for (const auto* importance : {&solution.view_importance, &solution.indirect_importance}) {
-        require_per_element(importance->size(), *solution.forest, "importance");
-        require_quantities(*importance, 1, "importance");
+    const bool has_importance = description.at("has_importance").get<bool>();
+    for (const auto& [dataset, name, values, needs_view] : element_numbers) {
+        if (needs_view && !has_importance) continue;
+        solution.*values = read_array<float>(file, dataset, 1);
+        require_per_element((solution.*values).size(), *solution.forest, name);
+        require_quantities(solution.*values, 1, name);
     }
     return solved;
 }
@@ -256,10 +269,9 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
     write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);
     write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);
-    if (solution.view_importance.empty()) return;
-    write_array(file, "/solution/view_importance", solution.view_importance.data(), solution.view_importance.size(), 1);
-    write_array(file, "/solution/indirect_importance", solution.indirect_importance.data(),
-                solution.indirect_importance.size(), 1);
+    for (const auto& [dataset, name, values, needs_view] : element_numbers)
+        if (!needs_view || !solution.view_importance.empty())
+            write_array(file, dataset, (solution.*values).data(), (solution.*values).size(), 1);
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
