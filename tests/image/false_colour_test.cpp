@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -29,6 +30,27 @@ TEST(FalseColour, LightnessRisesEvenly) {
     EXPECT_GT(whole, 70);
     for (int i = 0; i < steps; ++i)
         EXPECT_NEAR(lightness(colour_at(i + 1)) - lightness(colour_at(i)), whole / steps, 0.4f * whole / steps) << i;
+}
+
+/// The reverse of what makes the map: Oklab (Ottosson 2020), where distances are about as large as they look.
+V3f oklab(const Rgb& c) {
+    const float l = std::cbrt(0.4122214708f * c.x + 0.5363325363f * c.y + 0.0514459929f * c.z);
+    const float m = std::cbrt(0.2119034982f * c.x + 0.6806995451f * c.y + 0.1073969566f * c.z);
+    const float s = std::cbrt(0.0883024619f * c.x + 0.2817188376f * c.y + 0.6299787005f * c.z);
+    return {0.2104542553f * l + 0.7936177850f * m - 0.0040720468f * s,
+            1.9779984951f * l - 2.4285922050f * m + 0.4505937099f * s,
+            0.0259040371f * l + 0.7827717662f * m - 0.8086757660f * s};
+}
+
+TEST(FalseColour, EqualStepsLookAboutEqual) {
+    float least = 1, most = 0;
+    for (int i = 0; i < steps; ++i) {
+        const float distance = (oklab(colour_at(i + 1)) - oklab(colour_at(i))).length();
+        least = std::min(least, distance);
+        most = std::max(most, distance);
+    }
+    EXPECT_LT(most / least, 1.3f);
+    EXPECT_GT(least * steps, 0.6f) << "and are as large as the gamut allows";
 }
 
 TEST(FalseColour, GoesFromVioletOverTealToYellow) {
