@@ -263,13 +263,13 @@ double variance_of(const std::vector<Picture>& pictures) {
     return sum;
 }
 
-// The view is of one room of nine, lit from several. The ratio of the variances is about 0.39; twice as many seeds show
-// that its standard error is 0.04 here, so that correct code exceeds 0.7 with a chance below `false_alarm`.
+// The view is of one room of nine. Six samples of as many seeds gave ratios of the variances from 0.33 to 0.42, 0.38 in
+// the mean with a standard deviation of 0.035: correct code exceeds 0.6 with a chance far below `false_alarm`.
 TEST(RandomWalk, IsLessNoisyWhereTheViewLooksIfImportanceLeadsItAndNoLessRight) {
     const Scene scene = make_maze({});
     const std::vector<Picture> led = pictures_of(scene, ImportanceUse::full);
     const std::vector<Picture> free = pictures_of(scene, ImportanceUse::off);
-    EXPECT_LT(variance_of(led) / variance_of(free), 0.7);
+    EXPECT_LT(variance_of(led) / variance_of(free), 0.6);
 
     std::vector<double> led_means, free_means;
     for (const Picture& p : led) led_means.push_back(p.mean());
