@@ -20,8 +20,8 @@ const Rgb paper(0.01f, 0.01f, 0.01f), ink(0.8f, 0.8f, 0.8f);
 /// The places of a legend's parts, in dots of the font, from the legend's top.
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               bottom = 43;
-/// Room for a number with the space to the next one, likewise.
-constexpr int number_width = 48;
+/// Room for a number with the space to the next one, likewise, and the least such space.
+constexpr int number_width = 64, number_gap = 8;
 
 /// Pixels a dot.
 int dot_size(int picture_width) {
@@ -92,6 +92,33 @@ std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vect
     return values;
 }
 
+/// Pixels from the strip's left end to its right one; the left one is a margin from the picture's.
+int strip_length(const Image& image, int dot) { return std::max(1, image.width - 2 * margin * dot); }
+
+void draw_strip(Image& image, int top, int dot) {
+    const int left = margin * dot, length = strip_length(image, dot);
+    for (int x = 0; x < length; ++x)
+        fill(image, left + x, top + strip_top * dot, left + x + 1, top + strip_bottom * dot,
+             false_colour((static_cast<float>(x) + 0.5f) / static_cast<float>(length)));
+}
+
+/// A tick at each round value; a number that would run into the last one is left out.
+void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
+    Pen pen(image, dot);
+    const int left = margin * dot, length = strip_length(image, dot);
+    int free_from = left;
+    for (const float value : round_values(scale, std::max(3, length / (number_width * dot)))) {
+        const int x = left + static_cast<int>(scale.position(value) * static_cast<float>(length - dot));
+        fill(image, x, top + strip_bottom * dot, x + dot, top + tick_bottom * dot, ink);
+        const std::string number = fmt::format("{:.6g}", value);
+        const int width = pen.width(number),
+                  begin = std::clamp(x - width / 2, left, left + std::max(0, length - width));
+        if (begin < free_from) continue;
+        pen.write(begin, top + numbers_top * dot, number);
+        free_from = begin + width + number_gap * dot;
+    }
+}
+
 }  // namespace
 
 std::vector<float> round_values(const ColourScale& scale, int most) {
@@ -118,19 +145,9 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
     Image image(picture.width, static_cast<int>(height), paper);
     std::copy(picture.pixels.begin(), picture.pixels.end(), image.pixels.begin());
 
-    Pen pen(image, dot);
-    pen.write(margin * dot, top + title_top * dot, title);
-    const int left = margin * dot, length = std::max(1, picture.width - 2 * left);
-    for (int x = 0; x < length; ++x)
-        fill(image, left + x, top + strip_top * dot, left + x + 1, top + strip_bottom * dot,
-             false_colour((static_cast<float>(x) + 0.5f) / static_cast<float>(length)));
-    for (const float value : round_values(scale, std::max(3, length / (number_width * dot)))) {
-        const int x = left + static_cast<int>(scale.position(value) * static_cast<float>(length - dot));
-        fill(image, x, top + strip_bottom * dot, x + dot, top + tick_bottom * dot, ink);
-        const std::string number = fmt::format("{:.6g}", value);
-        const int last = picture.width - left - pen.width(number);
-        pen.write(std::max(left, std::min(x - pen.width(number) / 2, last)), top + numbers_top * dot, number);
-    }
+    Pen(image, dot).write(margin * dot, top + title_top * dot, title);
+    draw_strip(image, top, dot);
+    draw_numbers(image, top, dot, scale);
     return image;
 }
 
