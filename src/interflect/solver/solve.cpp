@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <functional>
 
 #include "interflect/base/error.h"
+#include "interflect/solver/link_radiosity.h"
 #include "interflect/solver/random_walk.h"
 #include "interflect/solver/run.h"
 #include "interflect/solver/steps.h"
@@ -60,7 +61,7 @@ void remember(Run& run, const IterationPlan& plan) {
 
 /// One iteration: what is received in one bounce of the present estimate, merged with the past.
 /// @return The power that left the scene.
-RgbD iterate(Run& run, const IterationPlan& plan) {
+RgbD iterate(Run& run, IterationPlan& plan) {
     Solution& solution = run.solution;
     const bool with_importance = importance_use(solution) == ImportanceUse::full;
     const bool combined = with_importance && !run.options.separate_iterations;
@@ -103,25 +104,34 @@ void describe_elements(Run& run) {
     solution.rays.assign(run.streams.used.begin(), run.streams.used.end());
 }
 
+/// One iteration of so many rays; it may change their number. @return The power that left the scene.
+using Iteration = std::function<RgbD(Run&, IterationPlan&)>;
+
+Iteration iteration_of(Run& run) {
+    switch (run.options.method.scheme) {
+        case Scheme::well_distributed:
+            return [rays = WellDistributedRays(run)](Run& r, IterationPlan& plan) mutable {
+                return rays.iterate(r, plan);
+            };
+        case Scheme::random_walk:
+            return [walks = RandomWalks(run)](Run& r, IterationPlan& plan) mutable { return walks.iterate(r, plan); };
+        default:
+            return iterate;
+    }
+}
+
 Solution iterate_until_done(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
                             const Monitor& monitor) {
     Run run(scene, ray_caster, options, monitor);
-    std::optional<WellDistributedRays> kept;
-    if (options.method.scheme == Scheme::well_distributed) kept.emplace(run);
     if (channel_sum(run.solution.emitted_power) > 0) {  // else it is dark, and exactly so
-        std::optional<RandomWalks> walks;
-        if (options.method.scheme == Scheme::random_walk)
-            walks.emplace(run);
-        else if (options.incremental_start)
-            start_incrementally(run);
+        if (options.incremental_start && options.method.scheme != Scheme::random_walk) start_incrementally(run);
+        const Iteration iterate_once = iteration_of(run);
         for (int iteration = 1; !reached(run, options.until); ++iteration) {
             IterationPlan plan = run.schedule.next(run.seconds());
             if (plan.rays == 0) break;
             run.solution.interrupted = run.stop_is_asked_for();
             if (run.solution.interrupted) break;
-            const RgbD escaped_power = kept    ? kept->iterate(run, plan)
-                                       : walks ? walks->iterate(run, plan)
-                                               : iterate(run, plan);
+            const RgbD escaped_power = iterate_once(run, plan);
             run.schedule.done(plan);
             report(run, iteration, escaped_power);
         }
@@ -143,6 +153,7 @@ const Method& find_method(const std::string& name) {
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     require_valid(scene, options);
+    if (options.method.scheme == Scheme::links) return solve_by_links(scene, ray_caster, options, monitor);
     return iterate_until_done(scene, ray_caster, options, monitor);
 }
 
