@@ -13,7 +13,7 @@ namespace {
 
 /// A convex polygon of at most `capacity` corners.
 struct Polygon {
-    static constexpr std::size_t capacity = 8;  // a quadrilateral, and one more for a cut
+    static constexpr std::size_t capacity = 8;  // a cut at the horizon adds one
 
     std::array<V3d, capacity> corner;
     std::size_t count = 0;

@@ -17,7 +17,8 @@ using V3d = Imath::V3d;
 /// The form factor from a small piece of surface at x to a convex polygon that nothing hides: Lambert's sum over the
 /// edges (1760; Baum et al. 1989) of the part above the surface's horizon.
 /// @param normal   Of the surface, unit length.
-/// @param polygon  At least three corners [m], counter-clockwise seen from its lit side. x in front of its plane.
+/// @param polygon  Three to seven corners [m], counter-clockwise seen from its lit side.
+/// @return         In [0, 1]; 0 where x is behind the polygon's plane.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
 
 /// Two elements that may exchange light.

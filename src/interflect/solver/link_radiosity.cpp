@@ -19,9 +19,9 @@ namespace {
 
 /// Light has settled enough to refine by, and for good, when a sweep changes no more than this share of it.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
-/// What is in doubt of what a link would carry if nothing were hidden. Partly hidden: the edge of a shadow is to be
-/// found. All lines blocked: of so many that were tried, the next may be free.
-constexpr double doubt_if_partly_hidden = 1, doubt_if_blocked = 1.0 / 16;
+/// Where all lines of sight were blocked, what a link would carry if nothing were hidden is in doubt to this share: of
+/// as many as were tried, the next may be free.
+constexpr double doubt_if_blocked = 1.0 / 16;
 /// Most rays for the four links that replace one.
 constexpr std::int64_t rays_per_division = 4 * 2 * 16;
 /// Of one task.
@@ -40,11 +40,11 @@ struct Prospect {
     Effort effort;
 };
 
-/// A link that carries too much, by this factor.
+/// A link on which too much power may go astray, and which of its elements is to be divided.
 struct Overload {
     std::size_t link;
-    std::uint32_t divided;  // which of its elements
-    double factor;
+    std::uint32_t divided;
+    double factor;  // over the threshold
 };
 
 struct Sphere {
@@ -112,7 +112,7 @@ class LinkedElements {
     void gather_importance();
     /// Of the last bounce.
     double change() const { return std::max(light_change_, importance_change_); }
-    /// Divides links that carry too much. @return whether any was.
+    /// Divides links on which too much may go astray. @return whether any was.
     bool refine();
 
     std::int64_t rays() const { return rays_; }
@@ -222,10 +222,10 @@ void LinkedElements::gather_importance() {
 }
 
 /// The largest and the smallest radiosity of each element's parts.
-struct Range {
+struct RadiosityRange {
     std::vector<Rgb> least, most;
 
-    Range(const ElementForest& forest, const std::vector<Rgb>& b) : least(b), most(b) {
+    RadiosityRange(const ElementForest& forest, const std::vector<Rgb>& b) : least(b), most(b) {
         for (std::uint32_t e = forest.size(); e-- > forest.patch_count();) {
             Rgb &low = least[forest.parent(e)], &high = most[forest.parent(e)];
             for (int c = 0; c < 3; ++c) {
@@ -236,11 +236,10 @@ struct Range {
     }
 };
 
-/// How much of what a link carries is in doubt [m^2]: as the form factor varies over the element; all of it where part
-/// is hidden.
+/// How much of what a link carries is in doubt [m^2]: what the form factor varies by; all of it where part is hidden.
 double doubt(const Exchange& exchange, float spread) {
     if (exchange.visibility == 0) return exchange.area * doubt_if_blocked;
-    return exchange.visibility < 1 ? exchange.area * doubt_if_partly_hidden : spread;
+    return exchange.visibility < 1 ? exchange.area : spread;
 }
 
 /// What the links carry wrongly at most, after Smits et al. 1992: what element i receives from j is taken as the same
@@ -250,7 +249,7 @@ double doubt(const Exchange& exchange, float spread) {
 std::vector<Overload> LinkedElements::overloaded_links() const {
     const Solution& solution = run_.solution;
     const std::vector<Rgb> b = radiosity(run_.surfaces, forest_, solution.irradiance);
-    const Range range(forest_, b);
+    const RadiosityRange range(forest_, b);
     const ImportanceUse use = importance_use(solution);
     const std::vector<float> psi =
         use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
@@ -279,7 +278,7 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
     return forest_.area(element) >= 4 * run_.smallest_element;
 }
 
-/// Where not all can be divided, keeps those that carry most.
+/// Where not all can be divided, keeps the worst.
 void LinkedElements::keep_what_rays_allow(std::vector<Overload>& overloads) const {
     const std::int64_t rays = std::max<std::int64_t>(0, run_.options.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
