@@ -18,6 +18,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 #include "interflect/base/error.h"
 #include "interflect/solver/exchange.h"
@@ -83,7 +84,7 @@ struct Squares {
     double quadrature_error;
 };
 
-void PrintTo(const Squares& squares, std::ostream* out) { *out << squares.name; }
+std::ostream& operator<<(std::ostream& out, const Squares& squares) { return out << squares.name; }
 
 class UnitSquares : public testing::TestWithParam<Squares> {};
 INSTANTIATE_TEST_SUITE_P(
