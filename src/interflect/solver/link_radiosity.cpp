@@ -23,7 +23,7 @@ constexpr double settled = 1e-2, negligible_change = 1e-6;
 /// as many as were tried, the next may be free.
 constexpr double doubt_if_blocked = 1.0 / 16;
 /// Most rays for the four links that replace one.
-constexpr std::int64_t rays_per_division = 4 * 2 * std::int64_t{16};
+constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
 /// Of one task.
 constexpr std::size_t pairs_per_task = 256, patches_per_task = 8;
 
