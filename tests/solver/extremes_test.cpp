@@ -1,7 +1,6 @@
 // Options at the ends of their ranges do what theory says. That alpha, beta and the rest leave the mean where it is,
 // also at their ends, is tested in dense_test.cpp.
-// Seen to fail when elements below new elements trust in full what these inherit, when beta takes its share of all rays
-// rather than of those for power, and when the start's rays count in the warm-up.
+// Seen to fail when elements below new elements trust in full what these inherit, when alpha or beta is ignored.
 
 #include <gtest/gtest.h>
 

@@ -39,11 +39,11 @@ Scene scene_of(const Pair& pair) {
     return scene;
 }
 
-class UnitSquares : public testing::TestWithParam<Pair> {};
-INSTANTIATE_TEST_SUITE_P(All, UnitSquares, testing::Values(parallel_squares, perpendicular_squares),
+class TwoSquares : public testing::TestWithParam<Pair> {};
+INSTANTIATE_TEST_SUITE_P(All, TwoSquares, testing::Values(parallel_squares, perpendicular_squares),
                          [](const auto& test) { return test.param.name; });
 
-TEST_P(UnitSquares, ClosedFormIsTheCataloguesFigure) {
+TEST_P(TwoSquares, ClosedFormIsTheCataloguesFigure) {
     const auto& [name, from, to, expected] = GetParam();
     EXPECT_NEAR(form_factor(from, to), expected, 5e-7);
     EXPECT_NEAR(form_factor(to, from), expected, 5e-7);
@@ -62,7 +62,7 @@ double received_share(const Pair& pair, PointSet set, std::uint64_t seed, std::i
     return transport(Surfaces(scene), forest, RayCaster(scene), step, streams).irradiance[1].x;
 }
 
-TEST_P(UnitSquares, RandomRaysHitWithTheFormFactorsProbability) {
+TEST_P(TwoSquares, RandomRaysHitWithTheFormFactorsProbability) {
     constexpr std::int64_t rays = 2'000'000;
     const double exact = form_factor(GetParam().from, GetParam().to);
     const double share = received_share(GetParam(), PointSet::random, 1, rays);
@@ -72,7 +72,7 @@ TEST_P(UnitSquares, RandomRaysHitWithTheFormFactorsProbability) {
     EXPECT_LT(binomial_test(hits, rays, 1.01 * exact), false_alarm) << "would notice one percent";
 }
 
-TEST_P(UnitSquares, SobolRaysAreUnbiasedAndFarLessNoisy) {
+TEST_P(TwoSquares, SobolRaysAreUnbiasedAndFarLessNoisy) {
     constexpr std::int64_t rays = 1 << 14;
     const double exact = form_factor(GetParam().from, GetParam().to);
     std::vector<double> shares;

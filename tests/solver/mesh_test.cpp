@@ -2,8 +2,8 @@
 // asks that it does not change with the unit of length, with how finely a lamp happens to be divided, or with lights
 // that matter nothing to the view. And what it leaves coarse must stay bounded.
 //
-// Seen to fail when the reference power is the emitted power (lights elsewhere), the radiosity seen without the area
-// (unit of length), or the power of the brightest patch (divided lamps), and when Eq. 15 forgets psi.
+// Seen to fail when the reference power is the emitted power (lights elsewhere), lacks the area that is seen (unit of
+// length), or is the power of the brightest patch (divided lamps, lights elsewhere).
 
 #include <gtest/gtest.h>
 

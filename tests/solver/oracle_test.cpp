@@ -1,5 +1,5 @@
 // What the oracle is told about two elements, and what it says (Eq. 14, 15, Prikryl et al. 2000).
-// Seen to fail when the estimate takes the receiver's area for the shooter's, or a cosine is not held up.
+// Seen to fail when the estimate takes the receiver's area for the shooter's, or the cosines may fall to nothing.
 
 #include "interflect/solver/oracle.h"
 

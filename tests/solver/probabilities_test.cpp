@@ -1,5 +1,5 @@
 // The weights that rays are handed out by, Eq. 3 and 8-11 of Prikryl et al. 2000, on figures that can be checked by
-// hand. Seen to fail when an area is missing, rho is missing in Eq. 8, or Eq. 10 takes all of the importance.
+// hand. Seen to fail when an area is missing, or rho in Eq. 8.
 
 #include "interflect/solver/probabilities.h"
 
