@@ -31,8 +31,8 @@ class RandomWalks {
     /// @param run  On a forest of one element a patch; some patch emits.
     explicit RandomWalks(Run& run);
 
-    /// Follows paths that take about plan.rays rays, and merges what they bring with the past (Eq. 6). The weights of
-    /// batches are the rays planned for them, lest short paths, which bring little, count as much as long ones.
+    /// Follows paths that take about plan.rays rays, and merges what they bring with the past (Eq. 6). A batch counts
+    /// by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a bias.
     /// @param plan  Its rays become those that were traced.
     /// @return The power that leaves the scene, by all batches so far.
     RgbD iterate(Run& run, IterationPlan& plan);
