@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "interflect/solver/solve.h"
@@ -80,21 +81,33 @@ TEST(AlphaOne, LeavesLightAsTheStartFoundIt) {
     EXPECT_NE(end.indirect_importance, start.indirect_importance);
 }
 
-TEST(NoInheritedTrust, LetsANewElementHoldWhatItReceived) {
-    // All rays carry the same and everything is divided in the first iteration after the start: if the leaves forget
-    // what their walls had, the power of each is a whole number of rays.
+/// Two iterations after the start, few enough rays that some leaves are missed. All is divided in the first.
+Solution two_iterations_trusting(double inherited_trust) {
     SolveOptions options = options_of("hsrr");
     options.views.clear();
-    options.inherited_trust = 0;
+    options.rays_per_iteration = 1000;
+    options.inherited_trust = inherited_trust;
     divide_everything(options, 0.03);  // m^2; the walls have 2, 3 and 6: three levels
-    const Solution s = solve_until(1, furnace(1), options);
-    ASSERT_EQ(s.forest->size(), 6u * (1 + 4 + 16 + 64));
-    const auto rays = static_cast<double>(s.iterations[1].rays - s.iterations[0].rays);
-    const double power_of_a_ray = s.iterations[0].total_power.x / rays;
-    for (const std::uint32_t leaf : s.forest->leaves()) {
-        const double hits = static_cast<double>(s.irradiance[leaf].x) * s.forest->area(leaf) / power_of_a_ray;
-        ASSERT_NEAR(hits, std::round(hits), 1e-3) << leaf;
-    }
+    return solve_until(2, furnace(1), options);
+}
+
+std::ptrdiff_t dark_leaves(const Solution& s) {
+    const std::vector<std::uint32_t> leaves = s.forest->leaves();
+    return std::count_if(leaves.begin(), leaves.end(), [&](std::uint32_t e) { return s.irradiance[e] == Rgb(0); });
+}
+
+TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
+    const Solution forgets = two_iterations_trusting(0), remembers = two_iterations_trusting(1);
+    ASSERT_EQ(forgets.forest->size(), 6u * (1 + 4 + 16 + 64));
+    EXPECT_GT(dark_leaves(forgets), 0);
+    EXPECT_EQ(dark_leaves(remembers), 0);
+}
+
+// Seen to fail with siblings left as merged: what young elements forgot was missing, 0.2% here.
+TEST(InheritedTrust, NeitherLosesNorMakesLight) {
+    const double all = two_iterations_trusting(1).iterations.back().total_power.x;
+    for (const double trust : {0.0, 0.1, 0.5})
+        EXPECT_NEAR(two_iterations_trusting(trust).iterations.back().total_power.x / all, 1, 1e-5) << trust;
 }
 
 TEST(OneIteration, FromDarknessIsOneBounce) {

@@ -142,8 +142,6 @@ Received run_step(Run& run, const TransportStep& step) {
     inherit(*run.forest, before, run.solution.irradiance);
     inherit(*run.forest, before, run.variance);
     inherit(*run.forest, before, run.history);
-    for (std::uint32_t e = before; e < run.forest->size(); ++e)
-        if (run.forest->parent(e) < before) run.history[e] *= static_cast<float>(run.options.inherited_trust);
     if (run.view.empty()) return received;
     inherit(*run.forest, before, run.solution.indirect_importance);
     run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);

@@ -43,26 +43,54 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     throw InputError(message);
 }
 
-/// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. Where no
-/// element is new, that is the same tau for all.
-template <class T>
-void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received, const IterationPlan& plan) {
-    const auto rays = static_cast<float>(plan.rays);
-    for (std::size_t e = 0; e < mean.size(); ++e) {
-        const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
-        mean[e] += tau * (received[e] - mean[e]);
-    }
-    pull(*run.forest, mean);
+/// What scales children to their parent's mean; where all of them are 0 there is nothing to scale.
+float scaled(float child, float children_mean, float parent_mean) {
+    return children_mean > 0 ? child * (parent_mean / children_mean) : parent_mean;
+}
+Rgb scaled(const Rgb& child, const Rgb& children_mean, const Rgb& parent_mean) {
+    return Rgb(scaled(child.x, children_mean.x, parent_mean.x), scaled(child.y, children_mean.y, parent_mean.y),
+               scaled(child.z, children_mean.z, parent_mean.z));
 }
 
-void remember(Run& run, const IterationPlan& plan) {
+/// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. A patch has
+/// the same tau as all others. Children made later have a larger one, but only for how they share what their parent
+/// has: so none of the light is forgotten, and none counts twice. Where no element is younger than others this is
+/// Eq. 6 as it is.
+template <class T>
+void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received, const IterationPlan& plan) {
+    const ElementForest& forest = *run.forest;
+    const auto rays = static_cast<float>(plan.rays);
+    const auto merge_one = [&](std::uint32_t e) {
+        const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
+        mean[e] += tau * (received[e] - mean[e]);
+    };
+    for (std::uint32_t e = 0; e < forest.patch_count(); ++e) merge_one(e);
+    for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
+        T sum(0);
+        float area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            merge_one(e);
+            sum += mean[e] * forest.area(e);
+            area += forest.area(e);
+        }
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = scaled(mean[e], sum / area, mean[forest.parent(e)]);
+    }
+    pull(forest, mean);
+}
+
+/// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
+/// inherited a mean that is too smooth, less of them count.
+void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new) {
     for (float& rays : run.history) rays = plan.warms_up ? 0.0f : rays + static_cast<float>(plan.rays);
+    for (std::uint32_t e = first_new; e < run.forest->size(); ++e)
+        run.history[e] *= static_cast<float>(run.options.inherited_trust);
 }
 
 /// One iteration: what is received in one bounce of the present estimate, merged with the past.
 /// @return The power that left the scene.
 RgbD iterate(Run& run, IterationPlan& plan) {
     Solution& solution = run.solution;
+    const std::uint32_t elements_before = run.forest->size();
     const bool with_importance = importance_use(solution) == ImportanceUse::full;
     const bool combined = with_importance && !run.options.separate_iterations;
     const std::int64_t for_importance =
@@ -86,7 +114,7 @@ RgbD iterate(Run& run, IterationPlan& plan) {
         if (combined) merge(run, solution.indirect_importance, received.importance, plan);
         escaped_power = received.escaped_power;
     }
-    remember(run, plan);
+    remember(run, plan, elements_before);
     return escaped_power;
 }
 

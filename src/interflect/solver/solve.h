@@ -75,10 +75,10 @@ struct SolveOptions {
     /// Rays of each iteration; 0: begins small and grows with the rays already averaged. >= 0.
     std::int64_t rays_per_iteration = 0;
 
-    double epsilon = 2e-6;     ///< Threshold of the oracle, relative to the reference power (see reference_power); > 0.
+    double epsilon = 5e-7;     ///< Threshold of the oracle, relative to the reference power (see reference_power); > 0.
     double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
     std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there.
-    /// How much the past of its parent counts for a new element, which inherits a mean that is too smooth; in [0, 1].
+    /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
     /// At 1 all elements are averaged alike, as in the paper.
     double inherited_trust = 0.1;
     bool defer_refinement = false;  ///< No refinement before averaging begins ('dr').
