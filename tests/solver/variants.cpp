@@ -56,12 +56,16 @@ std::vector<Variant> stochastic_variants() {
     return variants;
 }
 
+std::vector<Variant> variants_that_keep_every_ray() { return {plain("wdrs"), plain("hwdrs")}; }
+
 std::vector<Variant> variants_with_importance() {
     return those([](const Method& method) { return method.importance != ImportanceUse::off; });
 }
 
 std::vector<Variant> variants_that_refine() {
-    return those([](const Method& method) { return method.refines; });
+    std::vector<Variant> variants = those([](const Method& method) { return method.refines; });
+    variants.push_back(plain("hwdrs"));
+    return variants;
 }
 
 std::vector<Variant> extreme_variants() {
@@ -93,7 +97,8 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     SolveOptions options = variant.options;
     options.views = {{into_the_corner}};
     options.seed = seed;
-    options.incremental_start = false;
+    // A kept ray has the colour that it was shot with, before any warm-up.
+    options.incremental_start = options.method.scheme == Scheme::well_distributed;
     options.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
     options.iterations = 4;
     options.rays_per_iteration = 10'000;

@@ -16,7 +16,9 @@ struct Variant {
 };
 std::ostream& operator<<(std::ostream& out, const Variant& variant);
 
-/// Every stochastic method and all its variants: what is said of the mean over many seeds holds for each.
+/// Those that keep every ray, wdrs and hwdrs.
+std::vector<Variant> variants_that_keep_every_ray();
+/// Every method that averages iterations and all its variants: what is said of the mean over many seeds holds for each.
 std::vector<Variant> stochastic_variants();
 /// Those that importance drives.
 std::vector<Variant> variants_with_importance();

@@ -28,17 +28,17 @@ WellDistributedRays::WellDistributedRays(const Run& run)
     : shot_(run.forest->size(), 0.0), arrived_(run.forest->size(), Rgb(0)) {}
 
 RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
-    asked_for_ += plan.rays;
     // power_step's weights are the powers of the leaves here, since these methods know no importance.
     TransportStep step = power_step(run.surfaces, run.solution, present_radiosity(run), false, plan.rays);
     const double all_power = std::accumulate(step.q.begin(), step.q.end(), 0.0);
     double lacking = 0;
     for (std::size_t s = 0; s < step.leaves.size(); ++s) {
-        const double share = static_cast<double>(asked_for_) * step.q[s] / all_power;
+        const double share = static_cast<double>(total_ + plan.rays) * step.q[s] / all_power;
         step.q[s] = std::max(0.0, share - shot_[step.leaves[s]]);
         lacking += step.q[s];
     }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
+    total_ += step.rays;
     step.quanta = quanta(step);
     if (run.options.method.refines) step.oracle = make_oracle(run.solution, step, run.smallest_element);
 
@@ -53,7 +53,7 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
         shot_[e] = shot_[run.forest->parent(e)] * run.forest->area(e) / run.forest->area(run.forest->parent(e));
     inherit(*run.forest, elements_before, arrived_);
 
-    const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(asked_for_));
+    const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(total_));
     std::vector<Rgb> fresh(arrived_.size());
     for (std::size_t e = 0; e < arrived_.size(); ++e) {
         fresh[e] = static_cast<float>(all_power / static_cast<double>(step.rays)) * received.irradiance[e];
@@ -62,11 +62,11 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     pull(*run.forest, arrived_);
     if (run.schedule.averaged_rays() > 0) estimate_error(run, fresh, step.rays);
     for (std::size_t e = 0; e < arrived_.size(); ++e) run.solution.irradiance[e] = power_per_ray * arrived_[e];
-    run.history.assign(run.forest->size(), static_cast<float>(asked_for_));
+    run.history.assign(run.forest->size(), static_cast<float>(total_));
     run.power_rays += step.rays;
     plan.rays = step.rays;
     escaped_ += received.escaped_power;
-    return escaped_ * (all_power / static_cast<double>(asked_for_));
+    return escaped_ * (all_power / static_cast<double>(total_));
 }
 
 }  // namespace interflect

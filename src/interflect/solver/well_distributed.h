@@ -10,7 +10,8 @@ namespace interflect {
 /// well-distributed ray set (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot
 /// n_i = N P_i / sum P rays, each of which carries the quantum sum P / N; when the estimate of P changes, or N grows,
 /// an iteration shoots what each leaf lacks, and old hits count on with the new quantum. A leaf that has shot more than
-/// its share shoots again when N has grown enough. The colour of a ray stays what it was when it was shot.
+/// its share shoots again when N has grown enough; until then N is a little larger than was planned, so that all rays
+/// together carry sum P. The colour of a ray stays what it was when it was shot.
 class WellDistributedRays {
   public:
     explicit WellDistributedRays(const Run& run);
@@ -21,10 +22,10 @@ class WellDistributedRays {
     RgbD iterate(Run& run, IterationPlan& plan);
 
   private:
-    std::vector<double> shot_;    // rays of each leaf
-    std::vector<Rgb> arrived_;    // quanta per area at each element, split to colours [1/m^2]
-    RgbD escaped_{0, 0, 0};       // quanta that left the scene
-    std::int64_t asked_for_ = 0;  // N
+    std::vector<double> shot_;  // rays of each leaf
+    std::vector<Rgb> arrived_;  // quanta per area at each element, split to colours [1/m^2]
+    RgbD escaped_{0, 0, 0};     // quanta that left the scene
+    std::int64_t total_ = 0;    // N: rays of all leaves
 };
 
 }  // namespace interflect
