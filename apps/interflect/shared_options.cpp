@@ -94,6 +94,7 @@ constexpr const char* importance_group = "Importance";
 
 void add_method(CLI::App& app, std::optional<Method>& method) {
     std::vector<std::pair<std::string, Method>> choices;
+    choices.reserve(methods.size());
     for (const Method& m : methods) choices.emplace_back(m.name, m);
     add_choice<Method>(app, "--method", method, choices,
                        "How to solve; docs/method.md tells them apart (default: ihsrr with a view, hsrr without)")

@@ -91,7 +91,7 @@ std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
         const TransportStep step = power_step(run.surfaces, solution, std::move(unshot), false, budget.next(left));
         const Received received = run_step(run, step);
         escaped_power += received.escaped_power;
-        unshot.resize(run.forest->size());
+        unshot = std::vector<Rgb>(run.forest->size());
         for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
             solution.irradiance[e] += received.irradiance[e];
             unshot[e] = run.surfaces.reflectance(run.forest->patch(e)) * received.irradiance[e];
