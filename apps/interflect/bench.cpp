@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 #include "apps/interflect/commands.h"
@@ -17,6 +18,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/solve.h"
+#include "interflect/solver/steps.h"
 #include "interflect/solver/transport.h"
 
 namespace interflect::command {
@@ -29,6 +31,8 @@ using Clock = std::chrono::steady_clock;
 struct Options {
     SceneOptions scene;
     MeshOptions mesh;
+    ViewOptions view;
+    std::optional<Method> method;
     std::int64_t rays = 4'000'000;
     int rounds = 5, threads = 0;
     bool json = false;
@@ -52,23 +56,23 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// What the solver traces when the light has already spread through the scene.
+/// What the solver traces when the light has already spread through the scene and the mesh is there.
 struct Workload {
     Surfaces surfaces;
-    std::vector<double> q;
+    Solution solution;
+    TransportStep step;
     SampleStreams streams;
     std::vector<Ray> rays;
 };
 
-Workload typical_workload(const Scene& scene, const RayCaster& ray_caster, std::int64_t count) {
-    SolveOptions options;
-    options.rays = std::min<std::int64_t>(count, 1'000'000);
-    const Solution solution = solve(scene, ray_caster, options);
-    if (!(channel_sum(solution.emitted_power) > 0))
+Workload typical_workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options) {
+    Workload work{Surfaces(scene), solve(scene, ray_caster, options), {}, {options.points, options.seed}, {}};
+    if (!(channel_sum(work.solution.emitted_power) > 0))
         throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
-    Workload work{Surfaces(scene), {}, {options.points, options.seed, scene.patches.size()}, {}};
-    work.q = power_weights(radiated_power(work.surfaces, solution.irradiance));
-    work.rays = transport_rays(work.surfaces, ray_caster, work.q, count, work.streams);
+    work.step = power_step(work.surfaces, work.solution,
+                           radiosity(work.surfaces, *work.solution.forest, work.solution.irradiance),
+                           importance_use(work.solution) == ImportanceUse::full, options.rays);
+    work.rays = transport_rays(*work.solution.forest, ray_caster, work.step, work.streams);
     return work;
 }
 
@@ -88,7 +92,7 @@ void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
 }
 
 /// Everything in one run, one after the other, since the speed of a machine changes with its load.
-Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workload& work, const Options& options) {
+Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workload& work) {
     Measurement m;
     const auto count = static_cast<double>(work.rays.size());
     for (std::size_t i = 0; i < interfaces.size(); ++i) {
@@ -100,28 +104,31 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
                       });
     }
     m.ceiling = *std::max_element(m.embree.begin(), m.embree.end());
-    SolveOptions solve_options;
-    solve_options.rays = options.rays;
     Solution solution;
-    const double seconds = seconds_for([&] { solution = solve(scene, ray_caster, solve_options); });
+    const double seconds = seconds_for([&] { solution = solve(scene, ray_caster, work.solution.options); });
     m.solver = static_cast<double>(solution.iterations.back().rays) / seconds;
     const auto share = [&](double seconds_for_count) { return seconds_for_count / count * m.solver; };
     m.making_rays =
-        share(seconds_for([&] { transport_rays(work.surfaces, ray_caster, work.q, options.rays, work.streams); }));
+        share(seconds_for([&] { transport_rays(*work.solution.forest, ray_caster, work.step, work.streams); }));
     m.tracing = share(seconds_for([&] { trace_in_batches(ray_caster, work.rays); }));
     return m;
 }
 
 void run(const Options& options) {
     const ThreadLimit limit(options.threads);
-    const Scene scene = options.mesh.divide(options.scene.load(), options.scene.read);
+    Scene scene = options.scene.load();
+    SolveOptions solve_options;
+    solve_options.rays = options.rays;
+    for (const View& view : options.view.views(scene)) solve_options.views.push_back({view});
+    solve_options.method = options.method.value_or(find_method(solve_options.views.empty() ? "hsrr" : "ihsrr"));
+    scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
-    const Workload work = typical_workload(scene, ray_caster, options.rays);
+    const Workload work = typical_workload(scene, ray_caster, solve_options);
 
     std::vector<double> ratios, ceilings, solvers, making_rays, tracing;
     std::array<std::vector<double>, interfaces.size()> embree;
     for (int round = 0; round < options.rounds; ++round) {
-        const Measurement m = measure(scene, ray_caster, work, options);
+        const Measurement m = measure(scene, ray_caster, work);
         ratios.push_back(m.solver / m.ceiling);
         ceilings.push_back(m.ceiling);
         solvers.push_back(m.solver);
@@ -139,6 +146,8 @@ void run(const Options& options) {
         const Json shares{{"making_rays", making_share}, {"tracing", tracing_share}, {"rest", rest}};
         const Json result{{"scene", scene.name},
                           {"patches", scene.patches.size()},
+                          {"method", solve_options.method.name},
+                          {"elements", work.solution.forest->size()},
                           {"threads", threads},
                           {"rays", options.rays},
                           {"rounds", options.rounds},
@@ -151,8 +160,8 @@ void run(const Options& options) {
         std::cout << result.dump(2) << '\n';
         return;
     }
-    fmt::print("{}: {} patches, {} threads, medians of {} rounds\n", scene.name, scene.patches.size(), threads,
-               options.rounds);
+    fmt::print("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds\n", scene.name,
+               solve_options.method.name, scene.patches.size(), work.solution.forest->size(), threads, options.rounds);
     for (std::size_t i = 0; i < interfaces.size(); ++i)
         fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, median(embree[i]) / 1e6);
     fmt::print("  whole solver          {:8.2f} M rays/s\n", median(solvers) / 1e6);
@@ -168,6 +177,8 @@ void add_bench(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("bench", "Measure the solver's rays a second beside the ray tracer's own");
     options->scene.add_to(command);
     options->mesh.add_to(command);
+    options->view.add_to(command);
+    add_method(command, options->method);
     add_parsed(command, "--rays", options->rays, parse_count, "Rays of each measurement")
         ->type_name("COUNT")
         ->default_str("4M");

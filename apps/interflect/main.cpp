@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     add_render(app, exit_code);
     add_compare(app);
     add_bench(app);
+    add_make_scene(app);
     app.footer(footer);  // after the subcommands, which would inherit it
 
     try {

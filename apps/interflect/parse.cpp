@@ -43,6 +43,12 @@ std::int64_t parse_count(const std::string& text) {
     return std::llround(number);
 }
 
+std::size_t parse_element_count(const std::string& text) {
+    const std::int64_t count = parse_count(text);
+    if (count > 4'000'000'000) refuse(text, "a number of at most 4G");
+    return static_cast<std::size_t>(count);
+}
+
 std::uint64_t parse_seed(const std::string& text) {
     std::uint64_t seed = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

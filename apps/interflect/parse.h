@@ -16,6 +16,8 @@ namespace interflect::command {
 
 /// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand.
 std::int64_t parse_count(const std::string& text);
+/// The same, of what a machine can hold.
+std::size_t parse_element_count(const std::string& text);
 /// "42" -> 42: a whole number of 64 bits, >= 0.
 std::uint64_t parse_seed(const std::string& text);
 /// "2%" or "0.02" -> 0.02, above 0 and below 1.
@@ -48,9 +50,10 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Pa
     return app.add_option_function<std::string>(name, set, help);
 }
 
-/// Adds an option that takes one of a few words; the help lists them.
-template <class Value>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
+/// Adds an option that takes one of a few words and sets the Target, a Value or std::optional<Value>; the help lists
+/// them.
+template <class Value, class Target>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& value,
                         const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
     std::string words;
     for (const auto& [word, ignored] : choices) words += (words.empty() ? "" : "|") + word;

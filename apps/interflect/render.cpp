@@ -6,14 +6,16 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_solve.h"
+#include "apps/interflect/show.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/exports/solution_file.h"
-#include "interflect/image/camera.h"
 #include "interflect/image/image_files.h"
+#include "interflect/image/outlines.h"
 #include "interflect/image/render.h"
 #include "interflect/image/tone_map.h"
+#include "interflect/raycast/camera.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {
@@ -30,6 +32,7 @@ struct Options {
     RenderOptions render;
     std::optional<float> exposure;
     Tonemap tonemap = Tonemap::filmic;
+    Shown shown = Shown::light;
 };
 
 /// The one view to draw: as asked for, else the scene's first, else an overview.
@@ -43,18 +46,47 @@ View view_to_draw(const Scene& scene, const ViewOptions& options) {
     return overview(scene);
 }
 
-void write_picture(PendingFile& output, const Rendering& rendering, const View& view, const SolvedScene& solved,
-                   const Options& options) {
-    const float exposure = options.exposure.value_or(automatic_exposure(rendering.image));
-    const ImageMetadata metadata{
-        view, "luminance [cd/m^2]", solved.scene.name, INTERFLECT_VERSION, solved.solution.options.seed, exposure};
+/// What goes to the file, and what is said of it.
+struct Picture {
+    Image image;
+    std::string quantity = "luminance [cd/m^2]";
+    float exposure = 0;
+    std::int64_t non_finite_pixels = 0;
+};
+
+Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view, const Options& options) {
+    Rendering rendering =
+        render(solved.scene, *solved.solution.forest, ray_caster, view, solved.solution.irradiance, options.render);
+    Picture picture;
+    picture.exposure = options.exposure.value_or(automatic_exposure(rendering.image));
+    picture.non_finite_pixels = rendering.non_finite_pixels;
     const bool tone_mapped = needs_tone_mapping(require_image_format(options.output));
-    write_image(output.temporary_path(),
-                tone_mapped ? tone_map(rendering.image, exposure, options.tonemap) : rendering.image, metadata);
+    picture.image = tone_mapped ? tone_map(rendering.image, picture.exposure, options.tonemap) : rendering.image;
+    if (options.shown == Shown::mesh)
+        picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
+                                      options.render.samples, options.render.seed);
+    return picture;
+}
+
+/// In false colours for people, as numbers in formats to measure with.
+Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                      const Options& options) {
+    const EyeSampling sampling{options.size.width, options.size.height, options.render.samples, options.render.seed};
+    QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling);
+    const bool for_people = needs_tone_mapping(require_image_format(options.output));
+    return {for_people ? std::move(drawn.shown) : std::move(drawn.values), label_of(options.shown), 0,
+            drawn.non_finite_pixels};
+}
+
+void write_picture(PendingFile& output, const Picture& picture, const View& view, const SolvedScene& solved,
+                   const Options& options) {
+    write_image(output.temporary_path(), picture.image,
+                {view, picture.quantity, solved.scene.name, INTERFLECT_VERSION, solved.solution.options.seed,
+                 picture.exposure});
     output.commit();
-    if (rendering.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", rendering.non_finite_pixels);
-    spdlog::info("{}: {} x {}, view '{}', exposure {:+.2f}", options.output.string(), rendering.image.width,
-                 rendering.image.height, view.name, exposure);
+    if (picture.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", picture.non_finite_pixels);
+    spdlog::info("{}: {} x {}, view '{}', {}, exposure {:+.2f}", options.output.string(), picture.image.width,
+                 picture.image.height, view.name, picture.quantity, picture.exposure);
 }
 
 /// Everything that can be refused is refused before the first ray.
@@ -67,17 +99,23 @@ void run(Options& options, int& exit_code) {
     if (solved_before)
         solved = read_solution(options.scene.path);
     else
-        solved.scene = options.mesh.divide(options.scene.load(), options.scene.read);
+        solved.scene = options.scene.load();
     const View view = view_to_draw(solved.scene, options.view);
     Camera(view, options.size.width, options.size.height);  // refuses what defines no picture
+    if (options.shown == Shown::mesh && !needs_tone_mapping(require_image_format(options.output)))
+        throw InputError(options.output, 0, "outlines of the mesh are for pictures to look at: expected .png or .jpg");
+    const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
+    const SolveOptions solve_options = options.solver.resolved({view}, aspect);
+    if (!solved_before)
+        solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(solved.scene);
-    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, options.solver);
+    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver);
 
     options.render.width = options.size.width;
     options.render.height = options.size.height;
-    options.render.seed = solved.solution.options.seed;
-    const Rendering rendering = render(solved.scene, ray_caster, view, solved.solution.irradiance, options.render);
-    write_picture(output, rendering, view, solved, options);
+    const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                                                       : draw_light(solved, ray_caster, view, options);
+    write_picture(output, picture, view, solved, options);
     if (!solved_before && solved.solution.interrupted) exit_code = interrupted;
 }
 
@@ -99,7 +137,7 @@ void add_render(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 65536));
     add_choice<Shading>(command, "--shading", options->render.shading,
                         {{"smooth", Shading::smooth}, {"flat", Shading::flat}},
-                        "smooth: interpolated over each surface; flat: one value a patch")
+                        "smooth: interpolated over each surface; flat: one value an element")
         ->default_str("smooth");
     command
         .add_option("--exposure", options->exposure,
@@ -110,6 +148,7 @@ void add_render(CLI::App& app, int& exit_code) {
                         {{"filmic", Tonemap::filmic}, {"reinhard", Tonemap::reinhard}, {"linear", Tonemap::linear}},
                         "Curve of .png and .jpg")
         ->default_str("filmic");
+    add_show(command, options->shown);
     options->solver.add_to(command);
     options->mesh.add_to(command);
     command.callback([options, &exit_code] { run(*options, exit_code); });

@@ -20,9 +20,15 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const RgbD& c) { return Json::array({c.x, c.y, c.z}); }
 
+const char* name_of(ImportanceUse use) {
+    return use == ImportanceUse::off ? "none" : use == ImportanceUse::direct ? "direct" : "full";
+}
+
 Json header_of(const Scene& scene, const SolverOptions& command, const SolveOptions& o, const RgbD& emitted_power) {
     double area = 0;
     for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
+    Json views = Json::array();
+    for (const WeightedView& v : o.views) views.push_back(v.view.name);
     const auto limit = [](bool given, auto value) { return given ? Json(value) : Json(nullptr); };
     const Json options{{"rays", limit(o.rays < std::numeric_limits<std::int64_t>::max(), o.rays)},
                        {"seconds", limit(std::isfinite(o.seconds), o.seconds)},
@@ -31,9 +37,20 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
                        {"incremental_start", o.incremental_start},
                        {"warm_up", o.warm_up},
                        {"iterations", o.iterations},
-                       {"rays_per_iteration", o.rays_per_iteration}};
+                       {"rays_per_iteration", o.rays_per_iteration},
+                       {"epsilon", o.epsilon},
+                       {"min_area", o.smallest_area},
+                       {"inherited_trust", o.inherited_trust},
+                       {"defer_refinement", o.defer_refinement},
+                       {"importance", name_of(o.method.importance)},
+                       {"iteration", o.separate_iterations ? "separate" : "combined"},
+                       {"importance_storage", o.importance_at_elements ? "element" : "patch"},
+                       {"importance_sampling", o.total_importance ? "total" : "indirect"},
+                       {"alpha", o.alpha},
+                       {"beta", o.beta},
+                       {"views", views}};
     return {{"scene", scene.name},
-            {"method", command.method},
+            {"method", o.method.name},
             {"options", options},
             {"seed", o.seed},
             {"threads", command.threads > 0 ? command.threads : tbb::info::default_concurrency()},
@@ -43,14 +60,14 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
             {"emitted_power", json_of(emitted_power)}};
 }
 
-Json line_of(const IterationReport& r, std::size_t patches) {
+Json line_of(const IterationReport& r) {
     return {{"iteration", r.iteration},
             {"seconds", r.seconds},
             {"rays", r.rays},
-            {"power_rays", r.rays},
-            {"importance_rays", 0},
-            {"elements", patches},
-            {"leaves", patches},
+            {"power_rays", r.power_rays},
+            {"importance_rays", r.importance_rays},
+            {"elements", r.elements},
+            {"leaves", r.leaves},
             {"total_power", json_of(r.total_power)},
             {"escaped_power", json_of(r.escaped_power)},
             {"error_estimate", std::isfinite(r.error_estimate) ? Json(r.error_estimate) : Json(nullptr)}};
@@ -59,7 +76,7 @@ Json line_of(const IterationReport& r, std::size_t patches) {
 void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& command, const Solution& solution) {
     std::ofstream out(file.temporary_path());
     out << header_of(scene, command, solution.options, solution.emitted_power).dump() << '\n';
-    for (const IterationReport& r : solution.iterations) out << line_of(r, scene.patches.size()).dump() << '\n';
+    for (const IterationReport& r : solution.iterations) out << line_of(r).dump() << '\n';
     if (!out.flush()) throw std::runtime_error("cannot write " + file.final_path().string());
     file.commit();
 }
@@ -70,7 +87,8 @@ void log_outcome(const Solution& solution) {
                      solution.non_finite);
     if (solution.iterations.empty()) return;
     const IterationReport& last = solution.iterations.back();
-    spdlog::info("{} rays in {}{}{}", magnitude(static_cast<double>(last.rays)), duration(last.seconds),
+    spdlog::info("{}: {} rays in {}, {} elements{}{}", solution.options.method.name,
+                 magnitude(static_cast<double>(last.rays)), duration(last.seconds), last.elements,
                  std::isfinite(last.error_estimate)
                      ? fmt::format(", estimated relative error {:.2g}%", 100 * last.error_estimate)
                      : "",
@@ -82,10 +100,10 @@ void log_outcome(const Solution& solution) {
 
 }  // namespace
 
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolverOptions& command) {
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
+                   const SolverOptions& command) {
     std::optional<PendingFile> stats;
     if (!command.stats.empty()) stats.emplace(command.stats);
-    const SolveOptions options = command.resolved();
     Solution solution;
     {
         const StopOnInterrupt stop_on_interrupt;

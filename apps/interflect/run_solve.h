@@ -7,6 +7,8 @@
 namespace interflect::command {
 
 /// Solves with progress on stderr, Ctrl-C heeded and statistics written: what `solve` and `render` share.
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolverOptions& command);
+/// @param options  command.resolved().
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
+                   const SolverOptions& command);
 
 }  // namespace interflect::command

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "interflect/image/camera.h"
+#include "interflect/raycast/camera.h"
 #include "interflect/scene/split.h"
 #include "interflect/scene/view.h"
 
@@ -36,14 +36,15 @@ void log_warnings(const Warnings& warnings) {
 
 void MeshOptions::add_to(CLI::App& app) {
     add_parsed(app, "--mesh-size", size, parse_mesh_size,
-               "Longest edge of the mesh [m]; auto: from the scene's size; none: as in the file")
+               "Divide patches to this longest edge [m] before solving; auto: by the scene's size for methods that do "
+               "not refine; none: as in the file")
         ->type_name("METRES|auto|none")
         ->default_str("auto")
         ->group("Solver");
 }
 
-Scene MeshOptions::divide(Scene scene, const ReadOptions& read) const {
-    if (size == whole_patches) return scene;
+Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) const {
+    if (size == whole_patches || (size == automatic_mesh_size && refines)) return scene;
     const float edge = size == automatic_mesh_size ? default_mesh_size(scene) : size;
     return split_patches(scene, edge, read.max_patches);
 }
@@ -83,46 +84,129 @@ void add_threads(CLI::App& app, int& threads) {
         ->check(CLI::Range(0, 4096));
 }
 
+namespace {
+
+constexpr const char* solver_group = "Solver";
+constexpr const char* refinement_group = "Refinement";
+constexpr const char* importance_group = "Importance";
+
+}  // namespace
+
+void add_method(CLI::App& app, std::optional<Method>& method) {
+    std::vector<std::pair<std::string, Method>> choices;
+    choices.reserve(methods.size());
+    for (const Method& m : methods) choices.emplace_back(m.name, m);
+    add_choice<Method>(app, "--method", method, choices,
+                       "How to solve; docs/method.md tells them apart (default: ihsrr with a view, hsrr without)")
+        ->group(solver_group);
+}
+
 void SolverOptions::add_to(CLI::App& app) {
-    const auto group = [](CLI::Option* option) {
-        option->group("Solver");
-        return option;
-    };
-    group(add_choice<std::string>(app, "--method", method, {{"srr", "srr"}}, "srr: stochastic ray radiosity, flat")
-              ->default_str("srr"));
-    rays_ = group(add_parsed(app, "--rays", solve.rays, parse_count,
-                             "Most rays to trace, such as 20M (default 20M, unless --time or --until is given)")
-                      ->type_name("COUNT"));
-    group(app.add_option("--time", solve.seconds, "Most seconds to take")
-              ->type_name("SECONDS")
-              ->check(number_between(1e-3, 1e9)));
-    group(add_parsed(app, "--until", solve.until, parse_share, "Stop at this estimated relative error, such as 2%")
-              ->type_name("SHARE"));
-    group(add_parsed(app, "--seed", solve.seed, parse_seed, "Same seed, same bits")
-              ->type_name("NUMBER")
-              ->default_str("1"));
-    group(add_choice<PointSet>(app, "--points", solve.points,
-                               {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
-                               "Sample points: scrambled Sobol' or pseudo-random")
-              ->default_str("sobol"));
-    group(app.add_option("--warm-up", solve.warm_up, "Iterations that are not averaged, after the first estimate")
-              ->capture_default_str()
-              ->check(CLI::Range(0, 1'000'000)));
-    group(app.add_option("--iterations", solve.iterations, "Averaged iterations; 0: as many as the limits allow")
-              ->capture_default_str()
-              ->check(CLI::Range(0, 1'000'000'000)));
-    group(add_parsed(app, "--rays-per-iteration", solve.rays_per_iteration, parse_count,
-                     "Rays of each iteration; default: small at first, then growing")
-              ->type_name("COUNT"));
-    group(app.add_flag("--incremental-start,!--no-incremental-start", solve.incremental_start,
-                       "First estimate by following the light bounce by bounce (default), or from darkness"));
-    group(app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
-              ->type_name("FILE"));
+    add_method(app, method_);
+    add_limits(app);
+    add_sampling(app);
+    add_refinement(app);
+    add_importance(app);
+    app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
+        ->type_name("FILE")
+        ->group(solver_group);
     add_threads(app, threads);
 }
 
-SolveOptions SolverOptions::resolved() const {
-    SolveOptions options = solve;
+void SolverOptions::add_limits(CLI::App& app) {
+    rays_ = add_parsed(app, "--rays", solve_.rays, parse_count,
+                       "Most rays to trace, such as 20M (default 20M, unless --time or --until is given)")
+                ->type_name("COUNT")
+                ->group(solver_group);
+    app.add_option("--time", solve_.seconds, "Most seconds to take")
+        ->type_name("SECONDS")
+        ->check(number_between(1e-3, 1e9))
+        ->group(solver_group);
+    add_parsed(app, "--until", solve_.until, parse_share,
+               "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
+        ->type_name("SHARE")
+        ->group(solver_group);
+}
+
+void SolverOptions::add_sampling(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(solver_group); };
+    group(add_parsed(app, "--seed", solve_.seed, parse_seed, "Same seed, same bits")
+              ->type_name("NUMBER")
+              ->default_str("1"));
+    group(add_choice<PointSet>(app, "--points", solve_.points,
+                               {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
+                               "Sample points: scrambled Sobol' or pseudo-random")
+              ->default_str("sobol"));
+    group(app.add_option("--warm-up", solve_.warm_up, "Iterations that are not averaged, after the first estimate")
+              ->capture_default_str()
+              ->check(CLI::Range(0, 1'000'000)));
+    group(app.add_option("--iterations", solve_.iterations, "Averaged iterations; 0: as many as the limits allow")
+              ->capture_default_str()
+              ->check(CLI::Range(0, 1'000'000'000)));
+    group(add_parsed(app, "--rays-per-iteration", solve_.rays_per_iteration, parse_count,
+                     "Rays of each iteration; default: small at first, then growing")
+              ->type_name("COUNT"));
+    group(app.add_flag("--incremental-start,!--no-incremental-start", solve_.incremental_start,
+                       "First estimate by following the light bounce by bounce (default), or from darkness"));
+}
+
+void SolverOptions::add_refinement(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(refinement_group); };
+    group(app.add_option("--epsilon", solve_.epsilon,
+                         "Power that may pass between two elements undivided, relative to what is seen (or emitted)")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(1e-15, 1e15)));
+    group(
+        app.add_option("--min-area", solve_.smallest_area, "No element smaller than this [m2]; 0: by the scene's size")
+            ->type_name("AREA")
+            ->capture_default_str()
+            ->check(number_between(0, 1e9)));
+    group(add_parsed(app, "--max-elements", solve_.most_elements, parse_element_count, "Refinement ends there")
+              ->type_name("COUNT")
+              ->default_str("67M"));
+    group(app.add_flag("--defer-refinement", solve_.defer_refinement, "No refinement during the warm-up ('dr')"));
+    group(app.add_option("--inherited-trust", solve_.inherited_trust,
+                         "How much its parent's past counts for a new element; 1: as in the paper")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+}
+
+void SolverOptions::add_importance(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(importance_group); };
+    group(add_choice<ImportanceUse>(
+        app, "--importance", importance_,
+        {{"none", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
+        "What a view steers by: nothing, what it shows, or that and all that lights it (default: the method's)"));
+    group(add_choice<bool>(app, "--iteration", solve_.separate_iterations, {{"separate", true}, {"combined", false}},
+                           "Importance and power in steps of their own ('si'), or in one ('ci')")
+              ->default_str("combined"));
+    group(add_choice<bool>(app, "--importance-storage", solve_.importance_at_elements,
+                           {{"patch", false}, {"element", true}}, "Keep importance by patches, or by elements ('hi')")
+              ->default_str("element"));
+    group(add_choice<bool>(app, "--importance-sampling", solve_.total_importance,
+                           {{"indirect", false}, {"total", true}},
+                           "Rays start by indirect (Eq. 10) or total importance")
+              ->default_str("indirect"));
+    group(app.add_option("--alpha", solve_.alpha, "Share of the rays for importance")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(app.add_option("--beta", solve_.beta, "Share of the other rays that start by power alone")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(app.add_option("--eye-rays", solve_.eye_rays, "Rays that find what a view shows, per view")
+              ->capture_default_str()
+              ->check(CLI::Range(1, 1 << 28)));
+}
+
+SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect) const {
+    SolveOptions options = solve_;
+    options.method = method_.value_or(find_method(views.empty() ? "hsrr" : "ihsrr"));
+    options.method.importance = importance_.value_or(options.method.importance);
+    for (const View& view : views) options.views.push_back({view, 1, aspect});
     const bool other_limit = std::isfinite(options.seconds) || options.until > 0;
     if (other_limit && rays_->count() == 0) options.rays = std::numeric_limits<std::int64_t>::max();
     return options;

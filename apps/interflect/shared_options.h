@@ -18,17 +18,18 @@ struct SceneOptions {
     std::filesystem::path path;
     ReadOptions read;
 
-    void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf)");
+    void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf), or maze:ROOMS[:furniture]");
     /// Loads it and logs its warnings.
     Scene load() const;
 };
 
-/// How finely a scene is divided before a method that does not refine by itself.
+/// How finely a scene is divided before it is solved.
 struct MeshOptions {
     float size = automatic_mesh_size;  ///< [m], or one of the two words of parse_mesh_size.
 
     void add_to(CLI::App& app);
-    Scene divide(Scene scene, const ReadOptions& read) const;
+    /// @param refines  Whether the method divides patches itself: then `auto` leaves them whole.
+    Scene divide(Scene scene, const ReadOptions& read, bool refines) const;
 };
 
 /// From where to look.
@@ -47,18 +48,29 @@ struct ViewOptions {
 
 /// How to solve.
 struct SolverOptions {
-    SolveOptions solve;
-    std::string method = "srr";
     int threads = 0;  ///< 0: as many as the machine has.
     std::filesystem::path stats;
 
     void add_to(CLI::App& app);
-    /// Solve options, with the default of rays removed where only another limit was given.
-    SolveOptions resolved() const;
+    /// What solve() is to be asked for. Where no method was named it is ihsrr if something is looked at, else hsrr; the
+    /// default of rays goes where only another limit was given.
+    /// @param aspect  Width over height of the pictures.
+    SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9) const;
 
   private:
+    void add_limits(CLI::App& app);
+    void add_sampling(CLI::App& app);
+    void add_refinement(CLI::App& app);
+    void add_importance(CLI::App& app);
+
+    SolveOptions solve_;
+    std::optional<Method> method_;
+    std::optional<ImportanceUse> importance_;
     CLI::Option* rays_ = nullptr;
 };
+
+/// How to solve, where it is named.
+void add_method(CLI::App& app, std::optional<Method>& method);
 
 void add_threads(CLI::App& app, int& threads);
 

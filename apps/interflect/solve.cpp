@@ -37,11 +37,13 @@ void add_solve(CLI::App& app, int& exit_code) {
         const ThreadLimit threads(options->solver.threads);
         require_solution_name(options->output);
         PendingFile output(options->output);
-        Scene scene = options->mesh.divide(options->scene.load(), options->scene.read);
-        // What was asked for comes first: `render` takes the first view of a solution.
+        Scene scene = options->scene.load();
         const std::vector<View> views = options->view.views(scene);
+        const SolveOptions solve_options = options->solver.resolved(views);
+        scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
         const RayCaster ray_caster(scene);
-        const Solution solution = run_solve(scene, ray_caster, options->solver);
+        const Solution solution = run_solve(scene, ray_caster, solve_options, options->solver);
+        // What was asked for comes first: `render` takes the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         write_solution(output.temporary_path(), scene, solution);
         output.commit();

@@ -27,9 +27,9 @@ double sum_of_channels(const std::vector<RgbD>& colours) {
 }
 
 FixedPoint::Value sum_in_order(const FixedPoint& fixed_point, const std::vector<RgbD>& colours) {
-    ConcurrentSums sums(1);
-    for (const RgbD& c : colours) sums.add(0, fixed_point.from(c));
-    return sums[0];
+    FixedPoint::Value sum{};
+    for (const RgbD& c : colours) add_concurrently(sum, fixed_point.from(c));
+    return sum;
 }
 
 TEST(FixedPoint, SumDoesNotDependOnTheOrder) {
@@ -45,9 +45,9 @@ TEST(FixedPoint, SumDoesNotDependOnTheOrder) {
 TEST(FixedPoint, SumDoesNotDependOnTheThreads) {
     const std::vector<RgbD> colours = random_colours(100'000);
     const FixedPoint fixed_point(sum_of_channels(colours));
-    ConcurrentSums sums(3);
+    std::array<FixedPoint::Value, 3> sums{};
     parallel_for_ranges(colours.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) sums.add(1, fixed_point.from(colours[i]));
+        for (std::size_t i = begin; i < end; ++i) add_concurrently(sums[1], fixed_point.from(colours[i]));
     });
     EXPECT_EQ(sums[1], sum_in_order(fixed_point, colours));
     EXPECT_EQ(sums[0], FixedPoint::Value{});

@@ -42,7 +42,7 @@ class Progress(CommandTest):
         self.assertRegex(first, r"^ *\d+%  ")
         self.assertRegex(last, f"^{STATUS}$")
         self.assertIn("100%", last)
-        self.assertRegex(summary, r"^info: 300.0 k rays in .*, estimated relative error [\d.]+%")
+        self.assertRegex(summary, r"^info: hsrr: 300.0 k rays in .* elements, estimated relative error [\d.]+%")
 
     def test_bar_on_a_terminal(self):
         text = self.on_terminal()

@@ -4,7 +4,7 @@ import json
 import struct
 import unittest
 
-from command import LARGE, SMALL, VIEW, VIEWS, CommandTest, room
+from command import BAD_INPUT, LARGE, SMALL, VIEW, VIEWS, CommandTest, room
 
 SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
@@ -54,7 +54,7 @@ class Reproducibility(RenderTest):
         self.assertNotEqual(self.render("one.hdr"), self.render("two.hdr", "--seed", "2"))
 
     def test_of_a_solution_and_of_its_scene_are_the_same(self):
-        self.solve()
+        self.solve("--view", "door")  # the first one, which `render` takes by itself
         for kind in ("png", "exr"):
             from_scene = self.render(f"scene.{kind}")
             self.assertEqual(self.render(f"solution.{kind}", source="room.h5"), from_scene, kind)
@@ -95,6 +95,43 @@ class Views(RenderTest):
         result = self.interflect("render", "room.mgf", "-o", "out.png", *SMALL, *SOLVED)
         self.assertIn("warning: room.mgf names no view", result.stderr)
         self.assertIn("--eye", result.stderr)
+
+
+class Shown(RenderTest):
+    QUANTITIES = ("irradiance", "importance", "direct-importance", "level", "rays", "error")
+
+    def test_each_quantity_and_the_mesh_is_a_picture_of_its_own(self):
+        self.solve("--view", "door")
+        pictures = [self.render("out.png", "--show", shown, source="room.h5") for shown in (*self.QUANTITIES, "light", "mesh")]
+        self.assertEqual(len(set(pictures)), len(pictures))
+
+    def test_exr_has_the_numbers(self):
+        self.solve("--view", "door")
+        attributes = exr_attributes(self.render("out.exr", "--show", "importance", source="room.h5"))
+        self.assertEqual(attributes["interflect.quantity"][1], b"importance [1/m^2]")
+
+    def test_what_is_not_there_is_refused(self):
+        self.solve()
+        result = self.interflect("render", "room.h5", "-o", "out.png", "--show", "importance", exit_code=BAD_INPUT)
+        self.assertIn("without a view", result.stderr)
+        result = self.interflect("render", "room.h5", "-o", "out.exr", "--show", "mesh", exit_code=BAD_INPUT)
+        self.assertIn(".png", result.stderr)
+        self.assertEqual(self.files(), ["room.h5", "room.mgf", "room.views.json"])
+
+
+class Methods(RenderTest):
+    def test_all_show_the_same_room(self):
+        """Flat ones on a mesh: what it smooths away is the difference, which noise adds to."""
+        render = ("render", "room.mgf", *SMALL, "--view", "door", "--mesh-size", "0.5", "-o")
+        self.interflect(*render, "reference.exr", "--rays", "2M", "--seed", "9")
+        for method in ("srr", "isrr", "wdrs", "hwdrs", "hsrr", "random-walk", "hr"):
+            self.interflect(*render, "out.exr", "--rays", "500k", "--method", method)
+            difference = self.json("compare", "out.exr", "reference.exr")
+            self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.05, msg=method)
+
+    def test_importance_where_every_ray_is_kept_is_refused(self):
+        arguments = ("render", "room.mgf", "-o", "out.png", "--method", "wdrs", "--importance", "full")
+        self.assertIn("importance", self.interflect(*arguments, exit_code=BAD_INPUT).stderr)
 
 
 class Pictures(RenderTest):

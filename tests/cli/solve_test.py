@@ -56,7 +56,7 @@ class Statistics(CommandTest):
         header, _ = self.solve("--rays", "100k", "--seed", "18446744073709551615", "--threads", "2")
         keys = ["scene", "method", "options", "seed", "threads", "version", "patches", "area", "emitted_power"]
         self.assertEqual(list(header), keys)
-        self.assertEqual((header["method"], header["seed"], header["threads"]), ("srr", 2**64 - 1, 2))
+        self.assertEqual((header["method"], header["seed"], header["threads"]), ("hsrr", 2**64 - 1, 2))
         self.assertEqual(header["options"]["rays"], 100_000)
         for channel in header["emitted_power"]:
             self.assertAlmostEqual(channel, 1000, places=2)

@@ -4,7 +4,7 @@ import unittest
 
 from command import WRONG_USAGE, CommandTest, room
 
-SUBCOMMANDS = ("info", "solve", "render", "compare", "bench")
+SUBCOMMANDS = ("info", "solve", "render", "compare", "bench", "make-scene")
 SOLVE = ("solve", "room.mgf", "-o", "out.h5")
 RENDER = ("render", "room.mgf", "-o", "out.png")
 
@@ -47,12 +47,23 @@ class WrongUsage(CommandTest):
             "--mesh-size": ("0", "-1", "nan", "inf", "fine"),
             "--curve-divisions": ("0", "x"),
             "--warm-up": ("-1",),
+            "--epsilon": ("0", "-1", "nan", "small"),
+            "--min-area": ("-1", "nan"),
+            "--max-elements": ("0", "5G"),
+            "--inherited-trust": ("-0.1", "1.1"),
+            "--alpha": ("-0.1", "1.1", "nan"),
+            "--beta": ("-0.1", "1.1"),
+            "--eye-rays": ("0",),
         }.items():
             for value in values:
                 self.assert_wrong([*SOLVE, f"{option}={value}"], option)
 
     def test_words(self):
         self.assert_wrong([*SOLVE, "--method", "guess"], "--method", "srr")
+        self.assert_wrong([*SOLVE, "--importance", "some"], "--importance", "none", "direct", "full")
+        self.assert_wrong([*SOLVE, "--iteration", "both"], "--iteration", "separate", "combined")
+        self.assert_wrong([*SOLVE, "--importance-storage", "disk"], "--importance-storage", "patch", "element")
+        self.assert_wrong([*RENDER, "--show", "all"], "--show", "importance", "level", "mesh")
         self.assert_wrong([*SOLVE, "--points", "grid"], "--points", "sobol", "random")
         self.assert_wrong([*RENDER, "--shading", "phong"], "--shading", "flat", "smooth")
         self.assert_wrong([*RENDER, "--tonemap", "1"], "--tonemap", "filmic", "reinhard", "linear")
@@ -86,6 +97,7 @@ class Help(CommandTest):
             "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "smooth|flat=smooth", "STOPS"),
             "compare": ("IMAGE", "REFERENCE", "--scale"),
             "bench": ("--rays COUNT=4M", "--rounds"),
+            "make-scene": ("maze", "office", "boxes"),
         }
         self.assertEqual(tuple(expected), SUBCOMMANDS)
         for subcommand, words in expected.items():

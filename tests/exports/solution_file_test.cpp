@@ -19,7 +19,8 @@ using namespace testing_support;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A scene with everything that a solution file holds: triangles, two-sided faces, objects, views, names in UTF-8.
+/// A scene with everything that a solution file holds: triangles, two-sided faces, objects, views, names in UTF-8. Its
+/// patches are whole, and it was solved without a view.
 SolvedScene example() {
     SolvedScene solved;
     Scene& scene = solved.scene;
@@ -39,6 +40,29 @@ SolvedScene example() {
     options.seed = 0xfedcba9876543210;
     solved.solution = solve(scene, RayCaster(scene), options);
     return solved;
+}
+
+/// The same, looked at and refined: with importance and elements of several levels.
+SolvedScene refined_example() {
+    SolvedScene solved = example();
+    SolveOptions options = solved.solution.options;
+    options.method = find_method("ihsrr");
+    options.views = {{solved.scene.views[0]}};
+    options.epsilon = 1e-3;
+    solved.solution = solve(solved.scene, RayCaster(solved.scene), options);
+    return solved;
+}
+
+void expect_equal(const ElementForest& a, const ElementForest& b) {
+    ASSERT_EQ(a.size(), b.size());
+    ASSERT_EQ(a.patch_count(), b.patch_count());
+    for (std::uint32_t e = 0; e < a.size(); ++e) {
+        EXPECT_EQ(a.patch(e), b.patch(e)) << e;
+        EXPECT_EQ(a.parent(e), b.parent(e)) << e;
+        EXPECT_EQ(a.path(e), b.path(e)) << e;
+        EXPECT_EQ(a.first_child(e), b.first_child(e)) << e;
+        EXPECT_EQ(a.area(e), b.area(e)) << e;
+    }
 }
 
 void expect_equal(const SolvedScene& a, const SolvedScene& b) {
@@ -67,8 +91,13 @@ void expect_equal(const SolvedScene& a, const SolvedScene& b) {
         EXPECT_EQ(a.scene.views[i].up, b.scene.views[i].up);
         EXPECT_EQ(a.scene.views[i].fov, b.scene.views[i].fov);
     }
+    expect_equal(*a.solution.forest, *b.solution.forest);
     EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
-    EXPECT_EQ(a.solution.method, b.solution.method);
+    EXPECT_EQ(a.solution.standard_error, b.solution.standard_error);
+    EXPECT_EQ(a.solution.rays, b.solution.rays);
+    EXPECT_EQ(a.solution.view_importance, b.solution.view_importance);
+    EXPECT_EQ(a.solution.indirect_importance, b.solution.indirect_importance);
+    EXPECT_STREQ(a.solution.options.method.name, b.solution.options.method.name);
     EXPECT_EQ(a.solution.options.seed, b.solution.options.seed);
     EXPECT_EQ(a.solution.emitted_power, b.solution.emitted_power);
     EXPECT_EQ(a.solution.interrupted, b.solution.interrupted);
@@ -77,6 +106,25 @@ void expect_equal(const SolvedScene& a, const SolvedScene& b) {
 std::string contents(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What /elements/subdivided holds.
+std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
+    std::vector<std::uint32_t> parents;
+    for (std::uint32_t e = solution.forest->patch_count(); e < solution.forest->size(); e += 4)
+        parents.push_back(solution.forest->parent(e));
+    return parents;
+}
+
+/// A file's bytes with the only array that has these contents changed to others of the same size.
+std::string replaced(std::string bytes, const std::vector<std::uint32_t>& before,
+                     const std::vector<std::uint32_t>& after) {
+    const auto raw = [](const std::vector<std::uint32_t>& numbers) {
+        return std::string(reinterpret_cast<const char*>(numbers.data()), 4 * numbers.size());
+    };
+    const std::size_t at = bytes.find(raw(before));
+    if (at == std::string::npos) throw std::logic_error("no such array in the file");
+    return bytes.replace(at, 4 * before.size(), raw(after));
 }
 
 std::string error_of(const fs::path& path) {
@@ -104,7 +152,8 @@ class SolutionFile : public testing::Test {
         try {
             const SolvedScene solved = read_solution(damaged);
             EXPECT_TRUE(scene_faults(solved.scene).empty()) << what;
-            EXPECT_EQ(solved.solution.irradiance.size(), solved.scene.patches.size()) << what;
+            EXPECT_EQ(solved.solution.forest->patch_count(), solved.scene.patches.size()) << what;
+            EXPECT_EQ(solved.solution.irradiance.size(), solved.solution.forest->size()) << what;
             for (const Rgb& h : solved.solution.irradiance) EXPECT_TRUE(is_finite(h)) << what;
         } catch (const InputError& e) {
             EXPECT_THAT(e.what(), HasSubstr("damaged.h5")) << what;
@@ -120,6 +169,14 @@ TEST_F(SolutionFile, ReadsWhatWasWritten) {
         expect_equal(read_solution(path_), solved);
         EXPECT_EQ(read_solution(path_).solution.options.rays, 10'000) << "as many as were traced";
     }
+}
+
+TEST_F(SolutionFile, ReadsARefinedForestWithImportance) {
+    const SolvedScene solved = refined_example();
+    ASSERT_GT(solved.solution.forest->size(), solved.scene.patches.size()) << "the solver has refined";
+    ASSERT_GT(solved.solution.forest->level(solved.solution.forest->size() - 1), 1);
+    write_solution(path_, solved.scene, solved.solution);
+    expect_equal(read_solution(path_), solved);
 }
 
 TEST_F(SolutionFile, KeepsADarkSolution) {
@@ -157,22 +214,52 @@ TEST_F(SolutionFile, CannotBeWrittenIntoAMissingFolder) {
 
 TEST_F(SolutionFile, IsRefusedWithIrradianceThatCannotBe) {
     for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.0f}) {
-        SolvedScene solved = example();
+        SolvedScene solved = refined_example();
         solved.solution.irradiance[3].y = wrong;
         write_solution(path_, solved.scene, solved.solution);
-        EXPECT_THAT(error_of(path_), HasSubstr("irradiance of patch 3")) << wrong;
+        EXPECT_THAT(error_of(path_), HasSubstr("irradiance of element 3")) << wrong;
     }
 }
 
-TEST_F(SolutionFile, IsRefusedWherePatchesAndIrradianceDiffer) {
-    SolvedScene solved = example();
+TEST_F(SolutionFile, IsRefusedWithImportanceThatCannotBe) {
+    SolvedScene solved = refined_example();
+    solved.solution.indirect_importance[5] = -1;
+    write_solution(path_, solved.scene, solved.solution);
+    EXPECT_THAT(error_of(path_), HasSubstr("the indirect importance of element 5 is negative"));
+}
+
+TEST_F(SolutionFile, IsRefusedWhereElementsAndTheirValuesDiffer) {
+    SolvedScene solved = refined_example();
     solved.solution.irradiance.pop_back();
     write_solution(path_, solved.scene, solved.solution);
-    EXPECT_THAT(error_of(path_), HasSubstr("differ in number"));
+    EXPECT_THAT(error_of(path_), HasSubstr("irradiance and elements differ in number"));
+    solved = refined_example();
+    solved.solution.view_importance.pop_back();
+    write_solution(path_, solved.scene, solved.solution);
+    EXPECT_THAT(error_of(path_), HasSubstr("view importance and elements differ in number"));
+}
+
+/// An element with children can neither have them twice nor come after them, nor lie below the deepest level.
+TEST_F(SolutionFile, IsRefusedWithAForestThatCannotGrow) {
+    const SolvedScene solved = refined_example();
+    const std::vector<std::uint32_t> subdivided = subdivided_elements(solved.solution);
+    const std::string bytes = bytes_of(solved);
+    for (const std::uint32_t wrong : {subdivided[0], solved.solution.forest->size(), none}) {
+        std::vector<std::uint32_t> damaged = subdivided;
+        damaged[1] = wrong;
+        EXPECT_THAT(error_of(folder_.write("damaged.h5", replaced(bytes, subdivided, damaged))),
+                    HasSubstr(std::to_string(wrong) + " cannot be subdivided"));
+    }
+    std::vector<std::uint32_t> deep = subdivided;
+    for (std::uint32_t i = 1; i < deep.size(); ++i)
+        deep[i] = solved.solution.forest->patch_count() + 4 * (i - 1);  // always the first child of the last
+    ASSERT_GT(deep.size(), std::size_t{ElementForest::deepest_level});
+    EXPECT_THAT(error_of(folder_.write("deep.h5", replaced(bytes, subdivided, deep))),
+                HasSubstr("cannot be subdivided"));
 }
 
 TEST_F(SolutionFile, IsRefusedWhereverItIsCutOff) {
-    const std::string bytes = bytes_of(example());
+    const std::string bytes = bytes_of(refined_example());
     for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 100)
         EXPECT_THAT(error_of(folder_.write("cut.h5", bytes.substr(0, length))), HasSubstr("not a solution file"))
             << length;
@@ -180,7 +267,7 @@ TEST_F(SolutionFile, IsRefusedWhereverItIsCutOff) {
 }
 
 TEST_F(SolutionFile, DoesNoHarmWithFlippedBits) {
-    const std::string bytes = bytes_of(example());
+    const std::string bytes = bytes_of(refined_example());
     std::mt19937_64 random(1);
     for (int trial = 0; trial < 300; ++trial) {
         std::string damaged = bytes;
@@ -191,7 +278,7 @@ TEST_F(SolutionFile, DoesNoHarmWithFlippedBits) {
 }
 
 TEST_F(SolutionFile, DoesNoHarmWithOverwrittenStretches) {
-    const std::string bytes = bytes_of(example());
+    const std::string bytes = bytes_of(refined_example());
     std::mt19937_64 random(2);
     for (int trial = 0; trial < 150; ++trial) {
         std::string damaged = bytes;

@@ -1,4 +1,4 @@
-#include "interflect/image/camera.h"
+#include "interflect/raycast/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

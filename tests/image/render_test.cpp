@@ -28,9 +28,15 @@ void add_facing(Scene& scene, float left, float right, float bottom, float top, 
     add_rectangle(scene, V3f(left, 0, bottom), V3f(right - left, 0, 0), V3f(0, 0, top - bottom), material);
 }
 
+/// Of patches that are whole: element i is patch i.
+Rendering rendering(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
+                    const View& view = view_of_plane()) {
+    return render(scene, ElementForest(scene, scene.patches.size()), RayCaster(scene), view, h, options);
+}
+
 Image picture(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
               const View& view = view_of_plane()) {
-    return render(scene, RayCaster(scene), view, h, options).image;
+    return rendering(scene, h, options, view).image;
 }
 
 class FlatAndSmooth : public testing::TestWithParam<Shading> {};
@@ -48,6 +54,24 @@ TEST(Render, FlatLuminanceIsExact) {
     add_facing(scene, -9, 9, -9, 9, add_material(scene, reflectance, exitance));
     for (const Rgb& pixel : picture(scene, {irradiance}, {.width = 4, .height = 2, .shading = Shading::flat}).pixels)
         EXPECT_EQ(pixel, luminance_of_quad);
+}
+
+/// The picture shows a square in 4 x 4 leaves, one in each pixel.
+TEST(Render, FlatShadingShowsTheLeafThatWasHit) {
+    Scene scene;
+    add_facing(scene, -1, 1, -1, 1, add_material(scene, reflectance, Rgb(0, 0, 0)));
+    ElementForest forest(scene, 100);
+    for (std::uint32_t e = 0; e < 5; ++e) forest.subdivide(e);
+    std::vector<Rgb> h;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) h.push_back(irradiance * static_cast<float>(e));
+    const Image image =
+        render(scene, forest, RayCaster(scene), view_of_plane(), h, {.width = 4, .height = 4, .shading = Shading::flat})
+            .image;
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x) {
+            const Parameters centre{(static_cast<float>(x) + 0.5f) / 4, (3.5f - static_cast<float>(y)) / 4};
+            EXPECT_EQ(image.at(x, y), reflectance * h[forest.leaf_at(0, centre)] / pi) << x << ", " << y;
+        }
 }
 
 /// Red is up and to the left, green down and to the right: upside down or mirrored pictures differ.
@@ -82,8 +106,7 @@ TEST(Render, EdgesAreSmoothedByCoverage) {
 TEST(Render, CountsRaysThatEscape) {
     Scene scene;
     add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
-    const Rendering half =
-        render(scene, RayCaster(scene), view_of_plane(), std::vector{irradiance}, {.width = 8, .height = 4});
+    const Rendering half = rendering(scene, {irradiance}, {.width = 8, .height = 4});
     EXPECT_EQ(half.rays, 8 * 4 * 16);
     EXPECT_EQ(half.escaped_rays, half.rays / 2);
     EXPECT_EQ(half.non_finite_pixels, 0);
@@ -95,11 +118,11 @@ TEST(Render, CountsWhatIsNotANumberAndDoesNotHideIt) {
     add_facing(scene, -9, 0, -9, 9, material);
     add_facing(scene, 0, 9, -9, 9, material);
     const Rgb broken(1, std::numeric_limits<float>::quiet_NaN(), 1);
-    const Rendering rendering = render(scene, RayCaster(scene), view_of_plane(), std::vector{irradiance, broken},
-                                       {.width = 8, .height = 4, .shading = Shading::flat});
-    EXPECT_EQ(rendering.non_finite_pixels, 4 * 4);
-    EXPECT_FALSE(is_finite(rendering.image.at(7, 0)));
-    EXPECT_TRUE(is_finite(rendering.image.at(0, 0)));
+    const Rendering result =
+        rendering(scene, {irradiance, broken}, {.width = 8, .height = 4, .shading = Shading::flat});
+    EXPECT_EQ(result.non_finite_pixels, 4 * 4);
+    EXPECT_FALSE(is_finite(result.image.at(7, 0)));
+    EXPECT_TRUE(is_finite(result.image.at(0, 0)));
 }
 
 /// A box lit unevenly, seen from inside, so that every kind of edge is in the picture.
@@ -115,11 +138,15 @@ struct UnevenBox {
 
 TEST_P(FlatAndSmooth, SameBitsForAnyNumberOfThreads) {
     const UnevenBox box;
+    ElementForest forest(box.scene, 10'000);
+    for (std::uint32_t e = 0; forest.size() < 5'000; e += 3) forest.subdivide(e);
+    std::vector<Rgb> h;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) h.push_back(Rgb(1, 2, 3) * static_cast<float>(1 + e % 7));
     std::vector<std::vector<Rgb>> pictures;
     for (const std::size_t threads : {1, 2, 5}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        pictures.push_back(
-            picture(box.scene, box.irradiance, {.width = 160, .height = 90, .shading = GetParam()}, box.view).pixels);
+        const RenderOptions options{.width = 160, .height = 90, .shading = GetParam()};
+        pictures.push_back(render(box.scene, forest, RayCaster(box.scene), box.view, h, options).image.pixels);
     }
     EXPECT_EQ(pictures[0], pictures[1]);
     EXPECT_EQ(pictures[0], pictures[2]);
@@ -152,6 +179,10 @@ TEST(Render, RefusesWhatDoesNotFitTogether) {
     EXPECT_THROW(picture(scene, {}, {}), InputError);
     EXPECT_THROW(picture(scene, {irradiance}, {.samples = 0}), InputError);
     EXPECT_THROW(picture(scene, {irradiance}, {.width = 0}), InputError);
+    ElementForest refined(scene, 5);
+    refined.subdivide(0);
+    EXPECT_THROW(render(scene, refined, RayCaster(scene), view_of_plane(), std::vector{irradiance}), InputError);
+    EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}), InputError);
 }
 
 }  // namespace

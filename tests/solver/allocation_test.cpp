@@ -1,9 +1,8 @@
-// How rays are handed to patches: systematically, in proportion to q (Eq. 3, Prikryl et al. 2000).
+// How rays are handed to leaves: systematically, in proportion to q (Eq. 3, Prikryl et al. 2000).
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 
@@ -23,7 +22,7 @@ std::vector<double> some_weights() {
 /// The largest number below 1: no random offset is larger.
 const double largest_offset = std::nextafter(1.0, 0.0);
 
-TEST(AllocateRays, GivesEachPatchItsShareRoundedUpOrDown) {
+TEST(AllocateRays, GivesEachSourceItsShareRoundedUpOrDown) {
     const std::vector<double> q = some_weights();
     const double sum = std::accumulate(q.begin(), q.end(), 0.0);
     for (const std::int64_t rays :
@@ -36,7 +35,7 @@ TEST(AllocateRays, GivesEachPatchItsShareRoundedUpOrDown) {
             for (std::size_t s = 0; s < q.size(); ++s) {
                 const double share = static_cast<double>(rays) * (q[s] / sum);
                 const auto count = static_cast<double>(first[s + 1] - first[s]);
-                ASSERT_LT(std::abs(count - share), 1 + 1e-3) << "patch " << s << ", offset " << offset;
+                ASSERT_LT(std::abs(count - share), 1 + 1e-3) << "source " << s << ", offset " << offset;
                 ASSERT_TRUE(q[s] > 0 || count == 0);
             }
         }
@@ -55,22 +54,10 @@ TEST(AllocateRays, GivesTheExactShareInTheMeanOverOffsets) {
     for (std::size_t s = 0; s < q.size(); ++s) EXPECT_NEAR(mean[s], rays * q[s] / sum, 2.0 / offsets);
 }
 
-TEST(AllocateRays, GivesNothingToPatchesWithoutWeight) {
+TEST(AllocateRays, GivesNothingToSourcesWithoutWeight) {
     for (const double offset : {0.0, 0.5, largest_offset})
         EXPECT_EQ(allocate_rays(std::vector<double>{0, 0, 5, 0}, 100, offset),
                   (std::vector<std::int64_t>{0, 0, 0, 100, 100}));
-}
-
-TEST(PowerWeights, AreTheSumsOfTheChannels) {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    const std::vector<Rgb> power{{1, 2, 3}, {0, 0, 0}, {infinity, 1, 1}, {1, std::nanf(""), 1}};
-    EXPECT_EQ(power_weights(power), (std::vector<double>{6, 0, 0, 0}));
-}
-
-TEST(PowerWeights, AreFiniteForEveryFinitePower) {
-    constexpr float largest = std::numeric_limits<float>::max();
-    const std::vector<Rgb> power{{largest, largest, largest}};
-    EXPECT_TRUE(std::isfinite(power_weights(power)[0]));
 }
 
 }  // namespace

@@ -11,8 +11,10 @@
 
 #include <cmath>
 
+#include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/solve.h"
 #include "interflect/solver/surfaces.h"
+#include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -49,13 +51,10 @@ SolveOptions paper_options(std::uint64_t seed) {
     return options;
 }
 
-double area_weighted_mean(const Surfaces& surfaces, const std::vector<Rgb>& irradiance) {
-    double sum = 0, area = 0;
-    for (std::size_t i = 0; i < irradiance.size(); ++i) {
-        sum += static_cast<double>(surfaces.area(i)) * irradiance[i].x;
-        area += surfaces.area(i);
-    }
-    return sum / area;
+/// Over all surfaces, from the roots of the forest.
+double area_weighted_mean(const Solution& solution) {
+    const std::vector<Rgb> ones(solution.irradiance.size(), Rgb(1));
+    return integral(*solution.forest, solution.irradiance).x / integral(*solution.forest, ones).x;
 }
 
 /// Solutions of one furnace with many seeds.
@@ -66,11 +65,10 @@ struct Runs {
     template <class Options>
     Runs(const Scene& scene, const Options& options_of_seed) : irradiance(scene.patches.size()) {
         const RayCaster ray_caster(scene);
-        const Surfaces surfaces(scene);
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
             const Solution solution = solve(scene, ray_caster, options_of_seed(seed));
             EXPECT_EQ(solution.iterations.back().escaped_rays + solution.non_finite, 0);
-            area_mean.push_back(area_weighted_mean(surfaces, solution.irradiance));
+            area_mean.push_back(area_weighted_mean(solution));
             plain_mean.push_back(0);
             for (std::size_t i = 0; i < irradiance.size(); ++i) {
                 const double h = solution.irradiance[i].x;
@@ -122,13 +120,79 @@ TEST_P(Furnace, HasTheSameAnswerWithTheDefaultStart) {
     EXPECT_LT(sample.p_value(1.01 * limit), false_alarm);
 }
 
+TEST(Furnace, WeighsEveryIterationByItsRays) {
+    // Without noise in the mean, the power after each iteration tells its weight: tau = N_m / (N_1 + ... + N_m).
+    constexpr double rho = 0.5;
+    SolveOptions options;
+    options.incremental_start = false;
+    options.warm_up = 2;
+    options.rays = 1'000'000;
+    const Solution solution = solve(furnace(rho), RayCaster(furnace(rho)), options);
+    const double surface = solution.emitted_power.x / exitance;
+    const auto& iterations = solution.iterations;
+    ASSERT_GT(iterations.size(), 6u);
+    EXPECT_GT(iterations[6].rays - iterations[5].rays, iterations[4].rays - iterations[3].rays) << "they grow";
+    double irradiance = 0;
+    for (std::size_t k = 0; k < iterations.size(); ++k) {
+        const auto merged_rays = static_cast<double>(iterations[k].rays - (k < 2 ? 0 : iterations[1].rays));
+        const auto rays = static_cast<double>(iterations[k].rays - (k == 0 ? 0 : iterations[k - 1].rays));
+        const double tau = k < 2 ? 1 : rays / merged_rays;
+        irradiance += tau * (exitance + rho * irradiance - irradiance);
+        EXPECT_NEAR(iterations[k].total_power.x / (surface * (exitance + rho * irradiance)), 1, float_rounding) << k;
+    }
+}
+
 TEST(Furnace, RadiosityOfBlackWallsIsTheirExitanceExactly) {
     const Scene scene = furnace(0);
-    const Surfaces surfaces(scene);
     const Solution solution = solve(scene, RayCaster(scene), paper_options(1));
-    const std::vector<Rgb> power = radiated_power(surfaces, solution.irradiance);
-    for (std::size_t i = 0; i < power.size(); ++i)
-        EXPECT_EQ(power[i], surfaces.area(i) * Rgb(static_cast<float>(exitance)));
+    for (const Rgb& b : radiosity(Surfaces(scene), *solution.forest, solution.irradiance))
+        EXPECT_EQ(b, Rgb(static_cast<float>(exitance)));
+}
+
+// The furnace on a deep mesh that every method is forced to make: six walls, each an 8 x 8 grid of leaves at the end.
+class DeepFurnace : public testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(All, DeepFurnace, testing::ValuesIn(stochastic_variants()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST_P(DeepFurnace, HasTheSameIrradianceEverywhere) {
+    constexpr double rho = 0.5;
+    constexpr std::uint64_t seeds = 16;
+    constexpr std::size_t walls = 6, all_elements = walls * (1 + 4 + 16 + 64);
+    const bool refines = GetParam().options.method.refines;
+    const Scene scene = closed_box({1, 2, 3}, 1, {{"wall", Rgb(rho), Rgb(exitance)}});
+    const RayCaster ray_caster(scene);
+    std::vector<std::vector<double>> leaves, patches(walls);  // [leaf or patch][run]
+    std::vector<double> area_mean;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        SolveOptions options = GetParam().options;
+        options.views = {{into_the_corner}};
+        options.incremental_start = false;
+        options.warm_up = warm_up;
+        options.iterations = averaged;
+        options.rays_per_iteration = 10'000;
+        options.seed = seed;
+        divide_everything(options, 0.03f);  // m^2; the walls have 2, 3 and 6
+        const Solution solution = solve(scene, ray_caster, options);
+        ASSERT_EQ(solution.forest->size(), refines ? all_elements : walls);
+        const std::vector<std::uint32_t> places = leaves_by_place(*solution.forest);
+        leaves.resize(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) leaves[i].push_back(solution.irradiance[places[i]].x);
+        for (std::size_t w = 0; w < walls; ++w) patches[w].push_back(solution.irradiance[w].x);
+        area_mean.push_back(area_weighted_mean(solution));
+    }
+
+    const auto p_value = [](const std::vector<std::vector<double>>& values, double expected) {
+        std::vector<double> p_values;
+        for (const std::vector<double>& v : values) p_values.push_back(t_test(v, expected));
+        return bonferroni(p_values);
+    };
+    const double expected = expected_irradiance(rho);
+    EXPECT_GT(p_value(leaves, expected), false_alarm);
+    EXPECT_LT(p_value(leaves, 1.1 * expected), false_alarm) << "would notice ten percent in a leaf";
+    EXPECT_GT(p_value(patches, expected), false_alarm);
+    EXPECT_LT(p_value(patches, 1.01 * expected), false_alarm) << "would notice one percent in a wall";
+    if (GetParam().options.method.importance != ImportanceUse::off) return;
+    for (const double mean : area_mean) EXPECT_NEAR(mean / expected, 1, float_rounding) << "all rays carry the same";
 }
 
 // A closed room of surface S with one luminaire of power Phi and reflectance rho everywhere: all that is emitted and
@@ -145,15 +209,14 @@ TEST_P(ClosedRoom, HasTheMeanIrradianceOfItsPowerBalance) {
     add_rectangle(scene, {2, 1, 0.5f}, {1, 0, 0}, {0, 2, 0.5f}, 0, 1, 1, true);       // a slanting table
     add_rectangle(scene, {1, 1, 0}, {0, 1, 0}, {0.25f, 0.25f, 1.5f}, 0, 2, 2, true);  // a leaning board
 
-    const Surfaces surfaces(scene);
     SolveOptions options;
     options.rays = 200'000;
     const Solution solution = solve(scene, RayCaster(scene), options);
     double surface = 0;
-    for (std::size_t i = 0; i < surfaces.size(); ++i) surface += surfaces.area(i);
+    for (const Patch& patch : scene.patches) surface += patch_area(scene, patch);
     const double expected = solution.emitted_power.x / (surface * (1 - rho));
     EXPECT_EQ(solution.iterations.back().escaped_rays, 0);
-    EXPECT_NEAR(area_weighted_mean(surfaces, solution.irradiance) / expected, 1, 1e-3 + float_rounding);
+    EXPECT_NEAR(area_weighted_mean(solution) / expected, 1, 1e-3 + float_rounding);
 }
 
 }  // namespace

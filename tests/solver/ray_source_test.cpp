@@ -72,10 +72,11 @@ PatchGeometry geometry_of(const Shape& shape) {
     return {scene, patch};
 }
 
-std::vector<Ray> rays_of(const Shape& shape, PointSet set) {
+std::vector<Ray> rays_of(const Shape& shape, PointSet set, const Cell& cell = {}) {
     std::vector<Ray> rays(ray_count);
+    std::vector<Parameters> origins(ray_count);
     PointBlock points;
-    shoot_rays(geometry_of(shape), lift * shape.scale, set, 1, 0, points, rays);
+    shoot_rays(geometry_of(shape), cell, lift * shape.scale, set, 1, 0, points, rays, origins);
     return rays;
 }
 

@@ -12,6 +12,7 @@
 
 #include "interflect/base/error.h"
 #include "tests/solver/reference_rooms.h"
+#include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -43,10 +44,10 @@ bool all_finite(const std::vector<Rgb>& colours) {
     return std::all_of(colours.begin(), colours.end(), [](const Rgb& c) { return is_finite(c); });
 }
 
-std::vector<Rgb> solved_on_threads(int threads, const Scene& scene, const SolveOptions& options) {
+Solution solved_on_threads(int threads, const Scene& scene, const SolveOptions& options) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);  // more threads than cores too
-    return arena.execute([&] { return solve(scene, options).irradiance; });
+    return arena.execute([&] { return solve(scene, options); });
 }
 
 class Reproducible : public testing::TestWithParam<PointSet> {};
@@ -56,8 +57,9 @@ TEST_P(Reproducible, SameSeedSameBitsForAnyNumberOfThreads) {
     const Scene scene = furnished_room();
     SolveOptions options = with_rays(150'000);
     options.points = GetParam();
-    const std::vector<Rgb> irradiance = solved_on_threads(1, scene, options);
-    for (const int threads : {2, 3}) EXPECT_EQ(solved_on_threads(threads, scene, options), irradiance) << threads;
+    const std::vector<Rgb> irradiance = solved_on_threads(1, scene, options).irradiance;
+    for (const int threads : {2, 3})
+        EXPECT_EQ(solved_on_threads(threads, scene, options).irradiance, irradiance) << threads;
 }
 
 TEST_P(Reproducible, AnotherSeedGivesOtherBits) {
@@ -67,6 +69,31 @@ TEST_P(Reproducible, AnotherSeedGivesOtherBits) {
     const std::vector<Rgb> irradiance = solve(scene, options).irradiance;
     options.seed = 2;
     EXPECT_NE(solve(scene, options).irradiance, irradiance);
+}
+
+class ReproducibleMesh : public testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(Variants, ReproducibleMesh, testing::ValuesIn(variants_that_refine()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
+    const Scene scene = furnished_room();
+    SolveOptions options = GetParam().options;
+    options.views = {{{"room", {0.2f, 0.2f, 2}, {3.5f, 2.5f, 0.5f}, {0, 0, 1}, 60}}};
+    options.rays = 60'000;
+    options.warm_up = 1;
+    const Solution expected = solved_on_threads(1, scene, options);
+    EXPECT_GT(expected.forest->size(), 10 * scene.patches.size()) << "the mesh has grown";
+    for (const int threads : {2, 3}) {
+        const Solution s = solved_on_threads(threads, scene, options);
+        ASSERT_EQ(s.forest->size(), expected.forest->size());
+        for (std::uint32_t e = 0; e < s.forest->size(); ++e) {
+            ASSERT_EQ(s.forest->patch(e), expected.forest->patch(e));
+            ASSERT_EQ(s.forest->path(e), expected.forest->path(e));
+        }
+        EXPECT_EQ(s.irradiance, expected.irradiance) << threads;
+        EXPECT_EQ(s.view_importance, expected.view_importance) << threads;
+        EXPECT_EQ(s.indirect_importance, expected.indirect_importance) << threads;
+    }
 }
 
 TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
@@ -177,6 +204,12 @@ TEST(Solve, CarriesEnormousAndTinyLights) {
     }
 }
 
+TEST(Solve, CountsWhatIsNotFinite) {
+    // The light of all bounces together is too much for a float, that of each is not.
+    const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.9f), Rgb(3e38f, 1, 1)}});
+    EXPECT_GT(solve(scene, with_rays(10'000)).non_finite, 0);
+}
+
 TEST(Solve, ListsAllOptionsOutOfRange) {
     SolveOptions options;
     options.rays = 0;
@@ -185,8 +218,17 @@ TEST(Solve, ListsAllOptionsOutOfRange) {
     options.warm_up = -1;
     options.iterations = -1;
     options.rays_per_iteration = -1;
+    options.epsilon = 0;
+    options.smallest_area = -1;
+    options.most_elements = 3;
+    options.alpha = 1.5;
+    options.beta = -0.1;
+    options.inherited_trust = 2;
+    options.eye_rays = 0;
     const std::string message = error_of(colourful_box(), options);
-    for (const char* name : {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:"})
+    for (const char* name :
+         {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:", "epsilon:", "smallest_area:",
+          "most_elements:", "alpha:", "beta:", "inherited_trust:", "eye_rays:"})
         EXPECT_THAT(message, HasSubstr(name));
 }
 

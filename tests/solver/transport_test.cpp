@@ -1,4 +1,5 @@
-// One transport step: nothing is lost, nothing depends on the threads, streams go on where they ended.
+// One transport step: nothing is lost, nothing depends on the threads, streams go on where they ended; with a mesh and
+// with an oracle that refines as well.
 // Seen to fail (scripts/plant-faults) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
 // streams do not advance, all patches share one sequence of points.
 
@@ -7,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "interflect/solver/probabilities.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -20,38 +21,87 @@ using namespace testing_support;
 
 constexpr std::int64_t rays = 50'000;
 
-/// A scene with what a transport step needs.
+/// A scene with what transport steps need; H = 1 everywhere. The mesh is its patches, until somebody refines it.
 struct Room {
-    explicit Room(Scene s) : scene(std::move(s)) {}
-    Received receive(SampleStreams& streams) const { return receive(streams, power_weights(power)); }
-    Received receive(SampleStreams& streams, const std::vector<double>& q) const {
-        return receive_power(surfaces, ray_caster, power, q, rays, streams);
+    explicit Room(Scene s, std::size_t capacity = 1 << 18) : scene(std::move(s)), forest(scene, capacity) {}
+
+    /// A step that shoots by power (Eq. 3).
+    TransportStep step() const {
+        TransportStep step;
+        step.leaves = forest.leaves();
+        step.radiosity = radiosity(surfaces, forest, std::vector<Rgb>(forest.size(), Rgb(1)));
+        step.q = power_weights({surfaces, forest, step.leaves, step.radiosity, no_importance, no_importance});
+        step.rays = rays;
+        return step;
     }
-    SampleStreams streams(std::uint64_t seed) const { return {PointSet::sobol, seed, surfaces.size()}; }
+    /// One that divides everything as far as it may.
+    TransportStep refining_step(float smallest_area) const {
+        TransportStep s = step();
+        s.oracle.refines = true;
+        s.oracle.smallest_area = smallest_area;
+        return s;
+    }
+    Received receive(SampleStreams& streams) { return receive(streams, step()); }
+    Received receive(SampleStreams& streams, const TransportStep& step) {
+        return transport(surfaces, forest, ray_caster, step, streams);
+    }
+    RgbD radiated_power() const { return integral(forest, step().radiosity); }
 
     const Scene scene;
     const Surfaces surfaces{scene};
     const RayCaster ray_caster{scene};
-    std::vector<Rgb> power = radiated_power(surfaces, std::vector<Rgb>(surfaces.size(), Rgb(1)));
+    ElementForest forest;
+    const std::vector<float> no_importance;
 };
 
-TEST(ReceivePower, LosesNothing) {
-    for (const Scene& scene : {colourful_box(), open_colourful_box(), furnished_room()}) {
-        const Room room(scene);
-        SampleStreams streams = room.streams(1);
-        const Received received = room.receive(streams);
-        const RgbD arrived = total(received.power) + received.escaped_power;
-        for (int channel = 0; channel < 3; ++channel) {
-            EXPECT_NEAR(arrived[channel] / received.shot_power[channel], 1, 1e-7);  // a patch's power is a float
-            EXPECT_NEAR(received.shot_power[channel] / total(room.power)[channel], 1, 1e-3) << "rounded ray counts";
-        }
-        EXPECT_EQ(received.non_finite, 0);
+SampleStreams streams_of(std::uint64_t seed) { return {PointSet::sobol, seed}; }
+
+/// That all which was shot arrived or escaped, and that it was what the room radiates.
+void expect_balance(const Room& room, const Received& received, const RgbD& radiated) {
+    const RgbD arrived = integral(room.forest, received.irradiance) + received.escaped_power;
+    for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(arrived[channel] / received.shot_power[channel], 1, 1e-6);  // irradiance is a float
+        EXPECT_NEAR(received.shot_power[channel] / radiated[channel], 1, 1e-3) << "rounded ray counts";
     }
 }
 
-TEST(ReceivePower, EscapesFromAnOpenBoxAlone) {
-    const Room closed(colourful_box()), open(open_colourful_box());
-    SampleStreams closed_streams = closed.streams(1), open_streams = open.streams(1);
+TEST(Transport, LosesNothing) {
+    for (const Scene& scene : {colourful_box(), open_colourful_box(), furnished_room()}) {
+        Room room(scene);
+        SampleStreams streams = streams_of(1);
+        expect_balance(room, room.receive(streams), room.radiated_power());
+    }
+}
+
+TEST(Transport, LosesNothingWhileTheMeshGrowsAndAfterwards) {
+    for (const Scene& scene : {colourful_box(), open_colourful_box(), furnished_room()}) {
+        Room room(scene);
+        SampleStreams streams = streams_of(1);
+        const RgbD radiated = room.radiated_power();
+        for (const float smallest_area : {0.05f, 0.01f, 1.0f}) {
+            const std::uint32_t before = room.forest.size();
+            const Received received = room.receive(streams, room.refining_step(smallest_area));
+            EXPECT_EQ(room.forest.size() > before, smallest_area < 1);
+            ASSERT_EQ(received.irradiance.size(), room.forest.size());
+            expect_balance(room, received, radiated);
+        }
+        expect_balance(room, room.receive(streams), radiated);
+    }
+}
+
+TEST(Transport, GivesInnerElementsTheMeanOfTheirChildren) {
+    Room room(furnished_room());
+    SampleStreams streams = streams_of(1);
+    room.receive(streams, room.refining_step(0.1f));
+    const Received received = room.receive(streams, room.refining_step(0.01f));
+    std::vector<Rgb> pulled = received.irradiance;
+    pull(room.forest, pulled);
+    EXPECT_EQ(received.irradiance, pulled);
+}
+
+TEST(Transport, EscapesFromAnOpenBoxAlone) {
+    Room closed(colourful_box()), open(open_colourful_box());
+    SampleStreams closed_streams = streams_of(1), open_streams = streams_of(1);
     const Received nothing = closed.receive(closed_streams), some = open.receive(open_streams);
     EXPECT_EQ(nothing.escaped_rays, 0);
     EXPECT_EQ(nothing.escaped_power, RgbD(0, 0, 0));
@@ -59,22 +109,23 @@ TEST(ReceivePower, EscapesFromAnOpenBoxAlone) {
     EXPECT_LT(some.escaped_rays, rays);
 }
 
-TEST(ReceivePower, IsUnbiasedForAnyPositiveWeights) {
-    const Room room(colourful_box());
-    std::vector<double> q(room.surfaces.size());
-    for (std::size_t s = 0; s < q.size(); ++s) q[s] = 1 + static_cast<double>(s % 5);
-    std::vector<std::vector<double>> arrived(q.size());  // [patch][run]
+TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
+    Room room(colourful_box());
+    TransportStep step = room.step();
+    const std::size_t patches = step.q.size();
+    for (std::size_t s = 0; s < patches; ++s) step.q[s] = 1 + static_cast<double>(s % 5);
+    std::vector<std::vector<double>> arrived(patches);  // [patch][run]
     for (std::uint64_t seed = 1; seed <= 24; ++seed) {
-        SampleStreams streams = room.streams(seed);
-        const Received received = room.receive(streams, q);
-        for (std::size_t i = 0; i < q.size(); ++i) arrived[i].push_back(received.power[i].y);
+        SampleStreams streams = streams_of(seed);
+        const Received received = room.receive(streams, step);
+        for (std::size_t i = 0; i < patches; ++i) arrived[i].push_back(received.irradiance[i].y);
     }
 
     const FormFactors f = exact_form_factors(room.scene);
     std::vector<double> p_values, p_values_off;  // of the right answer and of one that is two percent off
-    for (std::size_t i = 0; i < q.size(); ++i) {
-        double expected = 0;  // R_i = sum_s F_si P_s
-        for (std::size_t s = 0; s < q.size(); ++s) expected += f(s, i) * room.power[s].y;
+    for (std::size_t i = 0; i < patches; ++i) {
+        double expected = 0;  // R_i / A_i = sum_s F_si P_s / A_i = sum_s F_is B_s
+        for (std::size_t s = 0; s < patches; ++s) expected += f(i, s) * step.radiosity[s].y;
         p_values.push_back(t_test(arrived[i], expected));
         p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
     }
@@ -82,11 +133,42 @@ TEST(ReceivePower, IsUnbiasedForAnyPositiveWeights) {
     EXPECT_LT(bonferroni(p_values_off), false_alarm) << "would notice two percent";
 }
 
-TEST(ReceivePower, AdvancesTheStreamsByWhatItShot) {
-    const Room room(colourful_box());
-    SampleStreams streams = room.streams(1);
-    for (const std::int64_t steps : {1, 2}) {
-        const Received received = room.receive(streams);
+TEST(Transport, CarriesImportanceWithoutBias) {
+    Room room(colourful_box());
+    TransportStep step = room.step();
+    step.radiosity.clear();
+    step.carries_importance = true;
+    const std::size_t patches = step.q.size();
+    for (std::size_t s = 0; s < patches; ++s) {
+        step.importance.push_back(1 + static_cast<float>(s % 7));
+        step.q[s] = 1 + static_cast<double>(s % 5);
+    }
+    std::vector<std::vector<double>> arrived(patches);  // [patch][run]
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+        SampleStreams streams = streams_of(seed);
+        const Received received = room.receive(streams, step);
+        EXPECT_TRUE(received.irradiance.empty());
+        for (std::size_t i = 0; i < patches; ++i) arrived[i].push_back(received.importance[i]);
+    }
+
+    const FormFactors f = exact_form_factors(room.scene);
+    std::vector<double> p_values, p_values_off;
+    for (std::size_t i = 0; i < patches; ++i) {
+        double expected = 0;  // sum_s F_is rho_s psi_s: Eq. 7 without V
+        for (std::uint32_t s = 0; s < patches; ++s)
+            expected += f(i, s) * static_cast<double>(room.surfaces.mean_reflectance(s) * step.importance[s]);
+        p_values.push_back(t_test(arrived[i], expected));
+        p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
+    }
+    EXPECT_GT(bonferroni(p_values), false_alarm);
+    EXPECT_LT(bonferroni(p_values_off), false_alarm) << "would notice two percent";
+}
+
+TEST(Transport, AdvancesTheStreamsByWhatItShot) {
+    Room room(colourful_box());
+    SampleStreams streams = streams_of(1);
+    for (const std::int64_t steps : {1, 2, 3}) {
+        room.receive(streams, room.refining_step(steps == 1 ? 1.0f : 0.01f));
         std::uint64_t used = 0;
         for (const std::uint64_t u : streams.used) used += u;
         EXPECT_EQ(used, static_cast<std::uint64_t>(steps * rays));
@@ -94,60 +176,78 @@ TEST(ReceivePower, AdvancesTheStreamsByWhatItShot) {
     }
 }
 
-TEST(ReceivePower, DrawsNewRaysFromTheSameStreamsAndTheSameFromNewOnes) {
-    const Room room(colourful_box());
-    SampleStreams streams = room.streams(1), again = room.streams(1);
+TEST(Transport, DrawsNewRaysFromTheSameStreamsAndTheSameFromNewOnes) {
+    Room room(colourful_box());
+    SampleStreams streams = streams_of(1), again = streams_of(1);
     const Received first = room.receive(streams), second = room.receive(streams);
-    EXPECT_NE(first.power, second.power);
-    EXPECT_EQ(room.receive(again).power, first.power);
+    EXPECT_NE(first.irradiance, second.irradiance);
+    EXPECT_EQ(room.receive(again).irradiance, first.irradiance);
 }
 
-TEST(ReceivePower, CountsAndLeavesOutWhatIsNotFinite) {
+TEST(Transport, ShootsNothingWhereNothingRadiates) {
     Room room(colourful_box());
-    room.power[3].y = std::numeric_limits<float>::infinity();
-    room.power[7].z = std::nanf("");
-    SampleStreams streams = room.streams(1);
-    const Received received = room.receive(streams);
-    EXPECT_EQ(received.non_finite, 2);
-    for (const Rgb& p : received.power) EXPECT_TRUE(is_finite(p));
-}
-
-TEST(ReceivePower, ShootsNothingWhereNothingRadiates) {
-    Room room(colourful_box());
-    room.power.assign(room.power.size(), Rgb(0));
-    SampleStreams streams = room.streams(1);
-    const Received received = room.receive(streams);
+    TransportStep step = room.step();
+    step.radiosity.assign(step.radiosity.size(), Rgb(0));
+    step.q.assign(step.q.size(), 0.0);
+    SampleStreams streams = streams_of(1);
+    const Received received = room.receive(streams, step);
     EXPECT_EQ(received.shot_power, RgbD(0, 0, 0));
-    EXPECT_EQ(total(received.power), RgbD(0, 0, 0));
+    EXPECT_EQ(received.irradiance, step.radiosity);
 }
 
-TEST(TransportRays, DrawFromASequenceOfItsOwnForEachPatch) {
-    const Room room(colourful_box());
-    const std::vector<double> q(room.surfaces.size(), 1.0);
-    const std::int64_t rays_per_patch = 4, all = rays_per_patch * static_cast<std::int64_t>(q.size());
-    const std::vector<Ray> traced = transport_rays(room.surfaces, room.ray_caster, q, all, room.streams(1));
-    // Patches 0 ... 8 are congruent and lie in one wall: with the same numbers they would shoot in the same directions.
-    for (std::size_t patch = 1; patch < 9; ++patch)
-        EXPECT_GT((traced[patch * rays_per_patch].direction - traced[0].direction).length(), 1e-4f) << patch;
+TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
+    Room room(furnished_room());
+    SampleStreams streams = streams_of(1);
+    constexpr float smallest_area = 0.02f;
+    room.receive(streams, room.refining_step(smallest_area));
+    float smallest = 1;
+    for (const std::uint32_t e : room.forest.leaves()) smallest = std::min(smallest, room.forest.area(e));
+    EXPECT_GE(smallest, smallest_area * (1 - 1e-6f));
+    EXPECT_LT(smallest, 4 * smallest_area) << "everything is divided as far as it may";
 }
 
-TEST(TransportRays, AreThoseThatReceivePowerTraces) {
-    const Room room(furnished_room());
-    const std::vector<double> q = power_weights(room.power);
-    SampleStreams streams = room.streams(1);
-    const std::vector<Ray> traced = transport_rays(room.surfaces, room.ray_caster, q, rays, streams);
+TEST(Transport, StopsRefiningWhereTheForestIsFull) {
+    const Scene scene = furnished_room();
+    Room room(scene, scene.patches.size() + 41);
+    SampleStreams streams = streams_of(1);
+    const RgbD radiated = room.radiated_power();
+    const Received received = room.receive(streams, room.refining_step(1e-4f));
+    EXPECT_EQ(room.forest.size(), scene.patches.size() + 40);
+    expect_balance(room, received, radiated);
+}
+
+TEST(TransportRays, DrawFromASequenceOfItsOwnForEachElement) {
+    Room room(colourful_box());
+    SampleStreams streams = streams_of(1);
+    room.receive(streams, room.refining_step(0.02f));
+    TransportStep step = room.step();
+    const std::int64_t rays_per_leaf = 4;
+    step.q.assign(step.leaves.size(), 1.0);
+    step.rays = rays_per_leaf * static_cast<std::int64_t>(step.leaves.size());
+    const std::vector<Ray> traced = transport_rays(room.forest, room.ray_caster, step, streams_of(1));
+    // The first wall's elements are congruent: with the same numbers they would shoot in the same directions.
+    for (std::size_t leaf = 1; leaf < step.leaves.size() && room.forest.patch(step.leaves[leaf]) < 9; ++leaf)
+        EXPECT_GT((traced[leaf * rays_per_leaf].direction - traced[0].direction).length(), 1e-4f) << leaf;
+}
+
+TEST(TransportRays, AreThoseThatTransportTraces) {
+    Room room(furnished_room());
+    const TransportStep step = room.step();
+    SampleStreams streams = streams_of(1);
+    const std::vector<Ray> traced = transport_rays(room.forest, room.ray_caster, step, streams);
     ASSERT_EQ(traced.size(), static_cast<std::size_t>(rays));
     std::vector<Hit> hits(traced.size());
     room.ray_caster.trace(traced, hits);
 
     // With q in proportion to the sum of the channels every ray carries the same sum: count hits and compare.
-    std::vector<double> hit_count(room.surfaces.size(), 0.0);
+    std::vector<double> hit_count(room.forest.size(), 0.0);
     for (const Hit& hit : hits)
         if (hit.patch != none) ++hit_count[hit.patch];
-    const double quantum = channel_sum(total(room.power)) / static_cast<double>(rays);
+    const double quantum = channel_sum(room.radiated_power()) / static_cast<double>(rays);
     const Received received = room.receive(streams);
-    for (std::size_t i = 0; i < hit_count.size(); ++i)
-        EXPECT_NEAR(channel_sum(received.power[i]) / quantum, hit_count[i], 1e-5 * hit_count[i] + 1e-3);
+    for (std::uint32_t i = 0; i < hit_count.size(); ++i)
+        EXPECT_NEAR(channel_sum(received.irradiance[i]) * room.forest.area(i) / quantum, hit_count[i],
+                    1e-5 * hit_count[i] + 1e-3);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "interflect/base/colour.h"
 
@@ -18,13 +17,15 @@ class FixedPoint {
   public:
     using Value = std::array<std::int64_t, 3>;
 
-    /// @param total  At least the sum of all terms, per channel; > 0 and finite.
-    explicit FixedPoint(double total) : unit_(total * 0x1p-61), per_unit_(1 / unit_) {}
+    /// @param total  At least the sum of all terms, per channel; finite. Where it is 0, so are all terms.
+    explicit FixedPoint(double total) : unit_(total * 0x1p-61), per_unit_(total > 0 ? 1 / unit_ : 0) {}
 
     /// The nearest integers.
     Value from(const RgbD& c) const {
         return {std::llround(c.x * per_unit_), std::llround(c.y * per_unit_), std::llround(c.z * per_unit_)};
     }
+    std::int64_t from(double number) const { return std::llround(number * per_unit_); }
+    double to_number(std::int64_t v) const { return static_cast<double>(v) * unit_; }
     RgbD to_colour(const Value& v) const {
         return RgbD(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])) * unit_;
     }
@@ -33,21 +34,12 @@ class FixedPoint {
     double unit_, per_unit_;
 };
 
-/// One sum for each of many receivers, to which all threads may add at the same time.
-class ConcurrentSums {
-  public:
-    explicit ConcurrentSums(std::size_t size) : sums_(size) {}
-
-    void add(std::size_t i, const FixedPoint::Value& term) {
-        for (std::size_t c = 0; c < 3; ++c)
-            if (term[c] != 0) std::atomic_ref(sums_[i][c]).fetch_add(term[c], std::memory_order_relaxed);
-    }
-    /// Only once all adding has ended.
-    const FixedPoint::Value& operator[](std::size_t i) const { return sums_[i]; }
-    std::size_t size() const { return sums_.size(); }
-
-  private:
-    std::vector<FixedPoint::Value> sums_;
-};
+/// Adds to a sum to which other threads may add at the same time.
+inline void add_concurrently(std::int64_t& sum, std::int64_t term) {
+    if (term != 0) std::atomic_ref(sum).fetch_add(term, std::memory_order_relaxed);
+}
+inline void add_concurrently(FixedPoint::Value& sum, const FixedPoint::Value& term) {
+    for (std::size_t c = 0; c < 3; ++c) add_concurrently(sum[c], term[c]);
+}
 
 }  // namespace interflect

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
@@ -131,11 +132,12 @@ Json describe(const Scene& scene, const Solution& solution) {
             {{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
     const std::int64_t rays = solution.iterations.empty() ? 0 : solution.iterations.back().rays;
     return {{"scene", scene.name},
-            {"method", solution.method},
+            {"method", solution.options.method.name},
             {"seed", solution.options.seed},
             {"rays", rays},
             {"emitted_power", json_of(solution.emitted_power)},
             {"interrupted", solution.interrupted},
+            {"has_importance", !solution.view_importance.empty()},
             {"views", views},
             {"materials", materials},
             {"objects", scene.objects}};
@@ -144,7 +146,7 @@ Json describe(const Scene& scene, const Solution& solution) {
 void read_description(const Json& j, SolvedScene& solved) {
     Scene& scene = solved.scene;
     scene.name = j.at("scene").get<std::string>();
-    solved.solution.method = j.at("method").get<std::string>();
+    solved.solution.options.method = find_method(j.at("method").get<std::string>());
     solved.solution.options.seed = j.at("seed").get<std::uint64_t>();
     solved.solution.options.rays = j.at("rays").get<std::int64_t>();
     solved.solution.emitted_power = vector_of<RgbD>(j.at("emitted_power"));
@@ -181,6 +183,49 @@ std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers) {
     return patches;
 }
 
+/// The elements that have children, in the order of their children: what a forest is rebuilt from.
+std::vector<std::uint32_t> subdivided_elements(const ElementForest& forest) {
+    std::vector<std::uint32_t> parents;
+    for (std::uint32_t e = forest.patch_count(); e < forest.size(); e += 4) parents.push_back(forest.parent(e));
+    return parents;
+}
+
+std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<std::uint32_t>& parents) {
+    const std::size_t size = scene.patches.size() + 4 * parents.size();
+    if (size >= none) throw std::runtime_error("too many elements");
+    auto forest = std::make_shared<ElementForest>(scene, size);
+    for (const std::uint32_t parent : parents) {
+        const std::uint32_t next = forest->size();
+        if (parent >= next || forest->subdivide(parent) != next)
+            throw std::runtime_error(fmt::format("element {} cannot be subdivided there", parent));
+    }
+    return forest;
+}
+
+/// What every element has one number of.
+struct ElementNumbers {
+    const char* dataset;
+    const char* name;
+    std::vector<float> Solution::*values;
+    bool needs_view;
+};
+constexpr std::array<ElementNumbers, 4> element_numbers = {
+    {{"/solution/standard_error", "standard error", &Solution::standard_error, false},
+     {"/solution/rays", "number of rays", &Solution::rays, false},
+     {"/solution/view_importance", "view importance", &Solution::view_importance, true},
+     {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true}}};
+
+void require_per_element(std::size_t size, const ElementForest& forest, const char* what) {
+    if (size != forest.size()) throw std::runtime_error(fmt::format("{} and elements differ in number", what));
+}
+
+void require_quantities(const std::vector<float>& numbers, std::size_t per_element, const char* what) {
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (!std::isfinite(numbers[i]) || numbers[i] < 0)
+            throw std::runtime_error(
+                fmt::format("the {} of element {} is negative or not finite", what, i / per_element));
+}
+
 SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
     const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
@@ -192,7 +237,21 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     read_description(description, solved);
     solved.scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
     solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", 7));
-    solved.solution.irradiance = grouped<Rgb>(read_array<float>(file, "/solution/irradiance", 3));
+    for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
+
+    Solution& solution = solved.solution;
+    solution.forest = forest_of(solved.scene, read_array<std::uint32_t>(file, "/elements/subdivided", 1));
+    const std::vector<float> irradiance = read_array<float>(file, "/solution/irradiance", 3);
+    require_quantities(irradiance, 3, "irradiance");
+    solution.irradiance = grouped<Rgb>(irradiance);
+    require_per_element(solution.irradiance.size(), *solution.forest, "irradiance");
+    const bool has_importance = description.at("has_importance").get<bool>();
+    for (const auto& [dataset, name, values, needs_view] : element_numbers) {
+        if (needs_view && !has_importance) continue;
+        solution.*values = read_array<float>(file, dataset, 1);
+        require_per_element((solution.*values).size(), *solution.forest, name);
+        require_quantities(solution.*values, 1, name);
+    }
     return solved;
 }
 
@@ -207,23 +266,19 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     write_array(file, "/description", text.data(), text.size(), 1);
     write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3);
     write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), 7);
+    const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
+    write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);
     write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);
+    for (const auto& [dataset, name, values, needs_view] : element_numbers)
+        if (!needs_view || !solution.view_importance.empty())
+            write_array(file, dataset, (solution.*values).data(), (solution.*values).size(), 1);
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
     if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
     try {
-        SolvedScene solved = read_solution_unchecked(path);
-        if (solved.solution.irradiance.size() != solved.scene.patches.size())
-            throw std::runtime_error("irradiance and patches differ in number");
-        for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
-        for (std::size_t i = 0; i < solved.solution.irradiance.size(); ++i) {
-            const Rgb& h = solved.solution.irradiance[i];
-            if (!is_finite(h) || std::min({h.x, h.y, h.z}) < 0)
-                throw std::runtime_error(fmt::format("the irradiance of patch {} is negative or not finite", i));
-        }
-        return solved;
+        return read_solution_unchecked(path);
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("not a solution file that can be read: {}", e.what()));
     }

@@ -13,8 +13,9 @@ struct SolvedScene {
     Solution solution;
 };
 
-/// Writes scene and solution as one HDF5 file (layout in docs/solution-file.md): geometry, materials, views, irradiance
-/// per patch and how it was found. The same input gives the same bytes. To be given a name by a PendingFile.
+/// Writes scene and solution as one HDF5 file (layout in docs/solution-file.md): geometry, materials, views, the
+/// elements with their irradiance and importance, and how they were found. The same input gives the same bytes. To be
+/// given a name by a PendingFile.
 /// @throws std::runtime_error when the file cannot be written.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution);
 

@@ -7,7 +7,9 @@
 
 #include "interflect/base/error.h"
 #include "interflect/formats/mgf.h"
+#include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
+#include "interflect/scene/maze.h"
 
 namespace interflect {
 
@@ -45,9 +47,36 @@ bool emits(const Scene& scene) {
     });
 }
 
+constexpr std::string_view maze_prefix = "maze:";
+
+/// What `maze:ROOMS[:furniture]` asks for.
+MazeOptions parse_maze(const std::string& name) {
+    std::string_view rooms = std::string_view(name).substr(maze_prefix.size());
+    MazeOptions maze;
+    if (const auto colon = rooms.find(':'); colon != rooms.npos) {
+        maze.furniture = rooms.substr(colon) == ":furniture";
+        if (maze.furniture) rooms = rooms.substr(0, colon);
+    }
+    const auto count = parse_integer(rooms);
+    if (!count || *count < 1)
+        throw InputError(name, 0, "expected maze:ROOMS or maze:ROOMS:furniture, such as maze:9:furniture");
+    maze.rooms = static_cast<std::uint32_t>(*count);
+    return maze;
+}
+
+Scene load_maze(const std::string& name, const ReadOptions& options) {
+    Scene scene = make_maze(parse_maze(name));
+    if (scene.patches.size() > options.max_patches)
+        throw InputError(name, 0,
+                         fmt::format("this maze has {} patches, more than {}; --max-patches raises the limit",
+                                     scene.patches.size(), options.max_patches));
+    return scene;
+}
+
 }  // namespace
 
 Scene load_scene(const fs::path& path, const ReadOptions& options) {
+    if (path.string().starts_with(maze_prefix)) return load_maze(path.string(), options);
     require_regular_file(path);
     Scene scene = format_of(path).read(path, options);
     const fs::path views = view_list_path(path);

@@ -10,7 +10,11 @@ namespace interflect {
 
 /// Reads a scene, in the format that the file name's extension tells (.mgf), and its named views, where the file of
 /// view_list_path() is there. The result has no scene_faults(). A scene without any light gets the warning "no-light".
-/// @throws InputError  for an unknown extension, and as the readers do.
+///
+/// In place of a file, `maze:ROOMS` or `maze:ROOMS:furniture` makes that maze in memory (make_maze(), its other options
+/// at their defaults), with its views: `maze:9:furniture` is the size of the scene in Prikryl et al. 2000.
+/// @throws InputError  for an unknown extension, as the readers do, for a maze that is not as above, and where it has
+///         more patches than options.max_patches.
 Scene load_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect

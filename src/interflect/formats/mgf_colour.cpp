@@ -74,6 +74,11 @@ M33d make_rec709_from_xyz() {
     return xyz_from_rec709.inverse() * adapt;
 }
 
+const M33d& rec709_from_xyz() {
+    static const M33d matrix = make_rec709_from_xyz();
+    return matrix;
+}
+
 /// Relative excess that is rounding, not colour.
 constexpr double rounding = 1e-9;
 
@@ -132,8 +137,7 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
         result.too_bright = true;
         luminance = largest;
     }
-    static const M33d rec709_from_xyz = make_rec709_from_xyz();
-    V3d rgb = multiply(rec709_from_xyz, xyz_of(colour.x, colour.y));
+    V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
     // The adaptation keeps Y of neutral only, so first come into the gamut, then set the luminance.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
@@ -147,6 +151,14 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
     const auto channel = [&](double value) { return static_cast<float>(std::clamp(value * luminance, 0.0, largest)); };
     result.rgb = Rgb(channel(rgb.x), channel(rgb.y), channel(rgb.z));
     return result;
+}
+
+LuminousColour from_rec709(const RgbD& rgb) {
+    static const M33d xyz_from_rec709 = rec709_from_xyz().inverse();
+    if (!(largest_channel(rgb) > 0)) return {};
+    const V3d xyz = multiply(xyz_from_rec709, V3d(rgb));
+    const double total = xyz.x + xyz.y + xyz.z;
+    return {{xyz.x / total, xyz.y / total}, luminance(rgb)};
 }
 
 }  // namespace interflect

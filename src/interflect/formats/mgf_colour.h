@@ -30,6 +30,10 @@ struct MixedColour {
 /// parts' chromaticities matter. @throws std::invalid_argument where a weight is negative or all are zero.
 Chromaticity mix(std::span<const MixedColour> parts);
 
+/// Bound of every channel of a reflectance that is read: interflection between surfaces that lose nothing would never
+/// end, and real files do have reflectances of 1.
+inline constexpr double largest_reflectance = 0.99;
+
 /// A colour brought into linear Rec. 709, and what had to be given up for it.
 struct Rec709Colour {
     Rgb rgb{0, 0, 0};
@@ -48,7 +52,17 @@ struct Rec709Colour {
 /// reflectance and exitance as luminous quantities (rd, ed), and interflection must keep those. So always
 /// luminance(rgb) == min(luminance, largest), up to rounding.
 /// @param luminance  rd, or ed [lm/m^2]; >= 0.
-/// @param largest    Upper bound of every channel: 0.99 for a reflectance, infinite for an exitance.
+/// @param largest    Upper bound of every channel: largest_reflectance, or infinite for an exitance.
 Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double largest);
+
+/// A colour as MGF gives it.
+struct LuminousColour {
+    Chromaticity colour;
+    double luminance = 0;
+};
+
+/// The inverse: to_rec709() of what is returned gives `rgb` again, up to rounding, where no channel is above `largest`.
+/// @param rgb  Linear Rec. 709, each channel >= 0 and finite; black gets the chromaticity of neutral.
+LuminousColour from_rec709(const RgbD& rgb);
 
 }  // namespace interflect

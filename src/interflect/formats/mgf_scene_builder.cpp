@@ -9,9 +9,6 @@ namespace interflect {
 
 namespace {
 
-/// Interflection between surfaces that lose nothing would never end; real files do have reflectances of 1.
-constexpr double largest_reflectance = 0.99;
-
 /// Equal for materials that look the same and are called the same, however often a file defines them.
 std::string identity(const Material& m) {
     std::string key = m.name;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -174,6 +175,18 @@ std::vector<View> read_view_list(const fs::path& path) {
                              fmt::format("view {}: there is another view '{}'", views.size(), views.back().name));
     }
     return views;
+}
+
+void write_view_list(std::span<const View> views, const fs::path& path) {
+    // Numbers are written by fmt: the shortest decimals that round to the same single-precision value.
+    const auto vector = [](const V3f& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
+    std::vector<std::string> lines;
+    for (const View& v : views)
+        lines.push_back(fmt::format(R"(    {{"name": {}, "eye": {}, "look_at": {}, "up": {}, "fov": {}}})",
+                                    json(v.name).dump(), vector(v.eye), vector(v.look_at), vector(v.up), v.fov));
+    std::ofstream file(path, std::ios::binary);
+    file << fmt::format("{{\n  \"views\": [\n{}\n  ]\n}}\n", fmt::join(lines, ",\n"));
+    if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
 View read_radiance_view(const fs::path& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "interflect/scene/scene.h"
@@ -17,6 +18,10 @@ std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 /// the
 ///         wrong kind or range, two views have one name, or a view has no direction (`up` included).
 std::vector<View> read_view_list(const std::filesystem::path& path);
+
+/// Writes named views in that form, so that read_view_list() gives them back exactly.
+/// @param views  Each with a name of its own. @throws std::runtime_error where the file cannot be written.
+void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
 /// Reads a Radiance view file, such as `rvu -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 45`. What is missing is as in
 /// Radiance (eye at the origin, direction y, up z, 45 degrees); where the file has several lines, later options

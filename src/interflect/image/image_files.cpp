@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "interflect/base/error.h"
+#include "interflect/base/image_size.h"
 #include "interflect/image/image_codecs.h"
 
 namespace interflect {

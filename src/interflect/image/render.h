@@ -3,17 +3,18 @@
 #include <cstdint>
 #include <span>
 
+#include "interflect/elements/forest.h"
 #include "interflect/image/image.h"
-#include "interflect/image/smooth.h"
+#include "interflect/image/smooth_surfaces.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
-/// How the irradiance of patches becomes that of points.
+/// How the irradiance of elements becomes that of points.
 enum class Shading {
-    flat,    ///< Every patch has one irradiance.
-    smooth,  ///< Interpolated between the patches of a smooth surface: see SmoothIrradiance.
+    flat,    ///< Every leaf has one irradiance.
+    smooth,  ///< Interpolated between the leaves of a smooth surface: see SmoothField.
 };
 
 struct RenderOptions {
@@ -36,11 +37,11 @@ struct Rendering {
 };
 
 /// Renders what `view` sees of a solved scene.
-/// @param ray_caster  Of the same scene.
-/// @param irradiance  H of every patch, in the unit of the materials' exitance.
+/// @param forest      Of the same scene, as is `ray_caster`.
+/// @param irradiance  H of every element, in the unit of the materials' exitance; only those of leaves count.
 /// @return            The same bits for the same seed and any number of threads.
 /// @throws InputError for a view that defines no picture, an option out of range, or sizes that disagree.
-Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, std::span<const Rgb> irradiance,
-                 const RenderOptions& options = {});
+Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                 std::span<const Rgb> irradiance, const RenderOptions& options = {});
 
 }  // namespace interflect

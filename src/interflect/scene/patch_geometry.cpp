@@ -57,20 +57,23 @@ V3f PatchGeometry::point(Parameters p) const { return origin_ + p.u * edge_u_ + 
 
 float PatchGeometry::jacobian(Parameters p) const { return jacobian_[0] + p.u * jacobian_[1] + p.v * jacobian_[2]; }
 
-Parameters PatchGeometry::uniform_parameters(float a, float b) const {
+Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner, float size) const {
+    Parameters local{a, b};
     if (triangle_) {
         // Area-preserving and continuous: fold along the diagonal (Heitz 2019, 'A Low-Distortion Map').
-        if (b > a) {
-            a *= 0.5f;
-            return {a, b - a};
-        }
-        b *= 0.5f;
-        return {a - b, b};
+        if (b > a)
+            local = {0.5f * a, b - 0.5f * a};
+        else
+            local = {a - 0.5f * b, 0.5f * b};
+    } else if (!parallelogram_) {
+        // Marginal density of u: the jacobian at the middle of v; then that of v given u. Both are linear.
+        const auto density = [&](float s, float t) {
+            return std::max(0.0f, jacobian({corner.u + size * s, corner.v + size * t}));
+        };
+        local.u = warp_linear(density(0, 0.5f), size * jacobian_[1], a);
+        local.v = warp_linear(density(local.u, 0), size * jacobian_[2], b);
     }
-    if (parallelogram_) return {a, b};
-    // Marginal density of u: the jacobian at v = 1/2; then that of v given u. Both are linear.
-    const float u = warp_linear(std::max(0.0f, jacobian({0, 0.5f})), jacobian_[1], a);
-    return {u, warp_linear(std::max(0.0f, jacobian({u, 0})), jacobian_[2], b)};
+    return {corner.u + size * local.u, corner.v + size * local.v};
 }
 
 Parameters PatchGeometry::parameters_of(const V3f& x) const {

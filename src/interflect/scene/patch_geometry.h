@@ -26,8 +26,10 @@ class PatchGeometry {
 
     V3f point(Parameters p) const;
 
-    /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the patch's area.
-    Parameters uniform_parameters(float a, float b) const;
+    /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the area of the
+    /// patch, or of the part of it that corner + size (s, t) covers, where (s, t) runs over the patch's parameter
+    /// domain.
+    Parameters uniform_parameters(float a, float b, Parameters corner = {}, float size = 1) const;
 
     /// The parameters of a point on (or close to) the patch; the inverse of point(), clamped to the patch.
     Parameters parameters_of(const V3f& x) const;

@@ -23,7 +23,8 @@ struct Material {
 
 /// One side of an input polygon: a triangle or a convex, (nearly) planar quadrilateral.
 struct Patch {
-    std::array<std::uint32_t, 4> vertices;  ///< Counter-clockwise seen from the lit side; [3] == none for a triangle.
+    /// Counter-clockwise seen from the lit side; [3] == none for a triangle.
+    std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::uint32_t material = 0;
     std::uint32_t other_side = none;  ///< The patch on the back of the same face; none for a one-sided face.
     std::uint32_t object = 0;         ///< Index into Scene::objects.

@@ -35,8 +35,8 @@ inline CosSin cos_sin_of_turn(float turn) {
 
 }  // namespace
 
-void shoot_rays(const PatchGeometry& patch, float lift, PointSet set, std::uint64_t key, std::uint64_t first_sample,
-                PointBlock& points, std::span<Ray> rays) {
+void shoot_rays(const PatchGeometry& patch, const Cell& cell, float lift, PointSet set, std::uint64_t key,
+                std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins) {
     const V3f normal = patch.normal();
     const Frame frame(normal);
     for (std::size_t begin = 0; begin < rays.size(); begin += PointBlock::capacity) {
@@ -49,8 +49,10 @@ void shoot_rays(const PatchGeometry& patch, float lift, PointSet set, std::uint6
             rays[begin + i].direction =
                 frame.s * (radius * turn.cosine) + frame.t * (radius * turn.sine) + normal * height;
         }
-        for (std::size_t i = 0; i < count; ++i)
-            rays[begin + i].origin = patch.point(patch.uniform_parameters(a[i], b[i])) + normal * lift;
+        for (std::size_t i = 0; i < count; ++i) {
+            origins[begin + i] = patch.uniform_parameters(a[i], b[i], {cell.u, cell.v}, cell.size);
+            rays[begin + i].origin = patch.point(origins[begin + i]) + normal * lift;
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "interflect/base/points.h"
+#include "interflect/elements/cell.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/patch_geometry.h"
 
@@ -14,7 +15,7 @@ namespace interflect {
 /// @param key     Names the patch's point sequence (fill_points).
 /// @param points  Working space.
 /// @param rays    Receives the rays; its size is their number.
-void shoot_rays(const PatchGeometry& patch, float lift, PointSet set, std::uint64_t key, std::uint64_t first_sample,
-                PointBlock& points, std::span<Ray> rays);
+void shoot_rays(const PatchGeometry& patch, const Cell& cell, float lift, PointSet set, std::uint64_t key,
+                std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins);
 
 }  // namespace interflect

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace interflect {
 
@@ -24,7 +25,10 @@ Schedule::Schedule(const SolveOptions& options, std::size_t patches) : options_(
         std::min({smallest_, largest_iteration, std::max<std::int64_t>(1, options.rays / budget_over_first_rays)});
 }
 
-void Schedule::began_with(std::int64_t rays) { rays_ = averaged_rays_ = rays; }
+void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
+    rays_ = power_rays + other_rays;
+    averaged_rays_ = power_rays;
+}
 
 IterationPlan Schedule::next(double seconds) const {
     const bool warming_up = finished_ < options_.warm_up;
@@ -45,8 +49,7 @@ IterationPlan Schedule::next(double seconds) const {
     // What would remain for a last iteration of less than half the size goes into this one.
     if (left < rays + rays / 2) rays = left;
     if (rays <= 0) return {};
-    const double tau = warming_up ? 1.0 : static_cast<double>(rays) / static_cast<double>(averaged_rays_ + rays);
-    return {rays, tau};
+    return {rays, warming_up};
 }
 
 void Schedule::done(const IterationPlan& plan) {
@@ -55,24 +58,24 @@ void Schedule::done(const IterationPlan& plan) {
     averaged_rays_ = warming_up ? 0 : averaged_rays_ + plan.rays;
 }
 
-void ErrorEstimate::add(const Surfaces& surfaces, const std::vector<Rgb>& mean, std::int64_t mean_rays,
-                        const std::vector<Rgb>& received, std::int64_t rays) {
-    double area = 0, square = 0, irradiance = 0;
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const double a = surfaces.area(i), difference = luminance(received[i]) - luminance(mean[i]);
-        area += a;
-        square += a * difference * difference;
-        irradiance += a * luminance(received[i]);
+void ErrorEstimate::add(std::span<const double> weights, std::span<const double> mean, std::int64_t mean_rays,
+                        std::span<const double> received, std::int64_t rays) {
+    double weight = 0, square = 0, sum = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const double difference = received[i] - mean[i];
+        weight += weights[i];
+        square += weights[i] * difference * difference;
+        sum += weights[i] * received[i];
     }
-    variance_sum_ += square / area / (1.0 / static_cast<double>(rays) + 1.0 / static_cast<double>(mean_rays));
+    variance_sum_ += square / weight / (1.0 / static_cast<double>(rays) + 1.0 / static_cast<double>(mean_rays));
     ++terms_;
-    mean_irradiance_ = irradiance / area;
+    mean_ = sum / weight;
 }
 
 double ErrorEstimate::relative(std::int64_t averaged_rays) const {
     if (terms_ == 0 || averaged_rays == 0) return std::numeric_limits<double>::infinity();
-    if (mean_irradiance_ == 0) return 0;
-    return std::sqrt(variance_sum_ / terms_ / static_cast<double>(averaged_rays)) / mean_irradiance_;
+    if (mean_ == 0) return 0;
+    return std::sqrt(variance_sum_ / terms_ / static_cast<double>(averaged_rays)) / mean_;
 }
 
 }  // namespace interflect

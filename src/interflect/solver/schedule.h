@@ -1,31 +1,29 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
-#include "interflect/base/colour.h"
 #include "interflect/solver/solve.h"
-#include "interflect/solver/surfaces.h"
 
 namespace interflect {
 
 /// One iteration to come.
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
-    double tau = 1;         ///< Weight of the new iteration in Eq. 6.
+    bool warms_up = false;  ///< It is not averaged: the next one takes its place.
 };
 
-/// How many rays the next iteration gets and how it is weighted. Iterations are averaged by their ray counts,
-/// tau = N_m / (N_1 + ... + N_m), which is the paper's 1/m when all have the same; without a fixed size they grow with
-/// what was averaged before, so that early iterations, which still lack late bounces, soon weigh little.
+/// How many rays the next iteration gets. Iterations are averaged by their ray counts, tau = N_m / (N_1 + ... + N_m) in
+/// Eq. 6, which is the paper's 1/m when all have the same; without a fixed size they grow with what was averaged
+/// before, so that early iterations, which still lack late bounces and a fine mesh, soon weigh little.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
     /// Rays for the incremental start.
     std::int64_t start_rays() const { return smallest_; }
-    /// Enters the incremental start's rays, as the first term of the average.
-    void began_with(std::int64_t rays);
+    /// Enters the incremental start's rays; those that carried power are the first term of the average.
+    void began_with(std::int64_t power_rays, std::int64_t other_rays);
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds) const;
     void done(const IterationPlan& plan);
@@ -42,21 +40,25 @@ class Schedule {
 };
 
 /// Estimates the error of the running mean from the iterations themselves. One iteration of N rays has the variance
-/// S^2 / N, the mean of M earlier rays S^2 / M, and they are independent, so the area-weighted mean square of their
+/// S^2 / N, the mean of M earlier rays S^2 / M, and they are independent, so the weighted mean square of their
 /// difference, divided by 1/N + 1/M, estimates S^2; the error of the mean is then S / sqrt(M + N). Sobol' points of
 /// successive iterations repel each other, which makes this an overestimate.
 class ErrorEstimate {
   public:
-    /// Call before the merge. @param mean  The running mean, of `mean_rays` rays; received: the new one, of `rays`.
-    void add(const Surfaces& surfaces, const std::vector<Rgb>& mean, std::int64_t mean_rays,
-             const std::vector<Rgb>& received, std::int64_t rays);
-    /// Relative to the area-weighted mean irradiance of the last call; infinite before the first.
+    /// Call before the merge.
+    /// @param weights   How much each element counts: V with a view, area without.
+    /// @param mean      Luminance of what counts: of the running mean, of `mean_rays` rays; received: the new one, of
+    /// `rays`.
+    void add(std::span<const double> weights, std::span<const double> mean, std::int64_t mean_rays,
+             std::span<const double> received, std::int64_t rays);
+    /// Relative to the weighted mean of the last call; infinite before the first.
     double relative(std::int64_t averaged_rays) const;
+    int terms() const { return terms_; }  ///< Calls of add().
 
   private:
     double variance_sum_ = 0;  // of S^2 [irradiance^2]
     int terms_ = 0;
-    double mean_irradiance_ = 0;
+    double mean_ = 0;
 };
 
 }  // namespace interflect

@@ -1,148 +1,188 @@
 #include "interflect/solver/solve.h"
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "interflect/base/error.h"
-#include "interflect/solver/schedule.h"
-#include "interflect/solver/surfaces.h"
-#include "interflect/solver/transport.h"
+#include "interflect/solver/link_radiosity.h"
+#include "interflect/solver/random_walk.h"
+#include "interflect/solver/run.h"
+#include "interflect/solver/steps.h"
+#include "interflect/solver/well_distributed.h"
 
 namespace interflect {
 
 namespace {
 
-/// The incremental start ends when this share of the emitted power has not been shot.
-constexpr double negligible_unshot = 1e-3;
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 void require_valid(const Scene& scene, const SolveOptions& o) {
     std::vector<std::string> faults = scene_faults(scene);
-    if (scene.patches.empty()) faults.emplace_back("the scene has no patches");
-    const auto fault = [&](bool is_fault, const char* message) {
-        if (is_fault) faults.emplace_back(message);
+    const auto require = [&](bool holds, const char* message) {
+        if (!holds) faults.emplace_back(message);
     };
-    fault(o.rays <= 0, "rays: expected more than 0");
-    fault(!(o.seconds > 0), "seconds: expected more than 0");
-    fault(!(o.until >= 0 && o.until < 1), "until: expected a relative error from 0 to below 1");
-    fault(o.warm_up < 0, "warm_up: expected 0 or more");
-    fault(o.iterations < 0, "iterations: expected 0 or more");
-    fault(o.rays_per_iteration < 0, "rays_per_iteration: expected 0 or more");
+    require(!scene.patches.empty(), "the scene has no patches");
+    require(o.rays > 0, "rays: expected more than 0");
+    require(o.seconds > 0, "seconds: expected more than 0");
+    require(o.until >= 0 && o.until < 1, "until: expected a relative error from 0 to below 1");
+    require(o.warm_up >= 0, "warm_up: expected 0 or more");
+    require(o.iterations >= 0, "iterations: expected 0 or more");
+    require(o.rays_per_iteration >= 0, "rays_per_iteration: expected 0 or more");
+    require(o.epsilon > 0, "epsilon: expected more than 0");
+    require(o.smallest_area >= 0, "smallest_area: expected 0 or more");
+    require(o.most_elements >= scene.patches.size() && o.most_elements < 0xfffffff0u,
+            "most_elements: expected at least the number of patches and less than 2^32 - 16");
+    require(o.alpha >= 0 && o.alpha <= 1, "alpha: expected 0 to 1");
+    require(o.beta >= 0 && o.beta <= 1, "beta: expected 0 to 1");
+    require(o.inherited_trust >= 0 && o.inherited_trust <= 1, "inherited_trust: expected 0 to 1");
+    require(o.eye_rays > 0, "eye_rays: expected more than 0");
+    require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
+            "importance: a method that keeps every ray needs rays of equal power, which importance does not give");
     if (faults.empty()) return;
     std::string message = "cannot solve '" + scene.name + "':";
     for (const std::string& f : faults) message += "\n  " + f;
     throw InputError(message);
 }
 
-/// The state of a run: everything that one iteration hands to the next.
-struct Run {
-    const Surfaces surfaces;
-    const RayCaster& ray_caster;
-    SampleStreams streams;
-    Schedule schedule;
-    ErrorEstimate error;
-    Solution solution;
-    std::int64_t escaped_rays = 0;
-    Clock::time_point start = Clock::now();
-
-    Run(const Scene& scene, const RayCaster& caster, const SolveOptions& options)
-        : surfaces(scene),
-          ray_caster(caster),
-          streams(options.points, options.seed, scene.patches.size()),
-          schedule(options, scene.patches.size()) {
-        solution.options = options;
-        solution.irradiance.assign(surfaces.size(), Rgb(0, 0, 0));
-        solution.emitted_power = total(radiated_power(surfaces, solution.irradiance));
-    }
-};
-
-/// Shoots `power` with N rays; returns the irradiance R_i / A_i that it makes.
-std::vector<Rgb> irradiance_from(Run& run, const std::vector<Rgb>& power, std::int64_t rays, RgbD& escaped_power) {
-    Received received = receive_power(run.surfaces, run.ray_caster, power, power_weights(power), rays, run.streams);
-    run.solution.non_finite += received.non_finite;
-    run.escaped_rays += received.escaped_rays;
-    escaped_power += received.escaped_power;
-    for (std::size_t i = 0; i < received.power.size(); ++i) received.power[i] /= run.surfaces.area(i);
-    return std::move(received.power);
+/// What scales children to their parent's mean; where all of them are 0 there is nothing to scale.
+float scaled(float child, float children_mean, float parent_mean) {
+    return children_mean > 0 ? child * (parent_mean / children_mean) : parent_mean;
+}
+Rgb scaled(const Rgb& child, const Rgb& children_mean, const Rgb& parent_mean) {
+    return Rgb(scaled(child.x, children_mean.x, parent_mean.x), scaled(child.y, children_mean.y, parent_mean.y),
+               scaled(child.z, children_mean.z, parent_mean.z));
 }
 
-void report(Run& run, int iteration, const RgbD& escaped_power, const Monitor& monitor) {
-    IterationReport r;
-    r.iteration = iteration;
-    r.seconds = seconds_since(run.start);
-    r.rays = run.schedule.rays();
-    r.escaped_rays = run.escaped_rays;
-    r.total_power = total(radiated_power(run.surfaces, run.solution.irradiance));
-    r.escaped_power = escaped_power;
-    r.error_estimate = run.error.relative(run.schedule.averaged_rays());
-    run.solution.iterations.push_back(r);
-    if (monitor.report) monitor.report(r);
-}
-
-/// Follows the light bounce by bounce, shooting only what has not been shot: an estimate of all bounces in which no ray
-/// is thrown away ('incremental shooting', Neumann et al. 1995).
-void start_incrementally(Run& run, const Monitor& monitor) {
-    std::vector<Rgb> unshot = radiated_power(run.surfaces, run.solution.irradiance);
-    const double emitted = channel_sum(run.solution.emitted_power);
-    RgbD escaped_power(0, 0, 0);
-    std::int64_t budget = run.solution.options.rays;
-    double left = emitted, decay = 0;  // unshot power, and by what it fell in the last bounce
-    while (left > negligible_unshot * emitted && budget > 0) {
-        // Rays in proportion to power; but if all bounces to come decay alike, they must do with half of the budget.
-        const double share = static_cast<double>(run.schedule.start_rays()) * left / emitted;
-        const double affordable = 0.5 * (1 - decay) * static_cast<double>(budget);
-        const std::int64_t rays = std::max<std::int64_t>(1, std::llround(std::min(share, affordable)));
-        const std::vector<Rgb> received = irradiance_from(run, unshot, rays, escaped_power);
-        budget -= rays;
-        for (std::size_t i = 0; i < unshot.size(); ++i) {
-            run.solution.irradiance[i] += received[i];
-            unshot[i] = run.surfaces.area(i) * run.surfaces.reflectance(i) * received[i];
+/// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. A patch has
+/// the same tau as all others. Children made later have a larger one, but only for how they share what their parent
+/// has: so none of the light is forgotten, and none counts twice. Where no element is younger than others this is
+/// Eq. 6 as it is.
+template <class T>
+void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received, const IterationPlan& plan) {
+    const ElementForest& forest = *run.forest;
+    const auto rays = static_cast<float>(plan.rays);
+    const auto merge_one = [&](std::uint32_t e) {
+        const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
+        mean[e] += tau * (received[e] - mean[e]);
+    };
+    for (std::uint32_t e = 0; e < forest.patch_count(); ++e) merge_one(e);
+    for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
+        T sum(0);
+        float area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            merge_one(e);
+            sum += mean[e] * forest.area(e);
+            area += forest.area(e);
         }
-        const double reflected = channel_sum(total(unshot));
-        decay = reflected / left;
-        left = reflected;
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = scaled(mean[e], sum / area, mean[forest.parent(e)]);
     }
-    run.schedule.began_with(run.solution.options.rays - budget);
-    report(run, 0, escaped_power, monitor);
+    pull(forest, mean);
 }
 
-void iterate(Run& run, const IterationPlan& plan, int iteration, const Monitor& monitor) {
-    std::vector<Rgb>& irradiance = run.solution.irradiance;
-    const std::vector<Rgb> power = radiated_power(run.surfaces, irradiance);
+/// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
+/// inherited a mean that is too smooth, less of them count.
+void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new) {
+    for (float& rays : run.history) rays = plan.warms_up ? 0.0f : rays + static_cast<float>(plan.rays);
+    for (std::uint32_t e = first_new; e < run.forest->size(); ++e)
+        run.history[e] *= static_cast<float>(run.options.inherited_trust);
+}
+
+/// One iteration: what is received in one bounce of the present estimate, merged with the past.
+/// @return The power that left the scene.
+RgbD iterate(Run& run, IterationPlan& plan) {
+    Solution& solution = run.solution;
+    const std::uint32_t elements_before = run.forest->size();
+    const bool with_importance = importance_use(solution) == ImportanceUse::full;
+    const bool combined = with_importance && !run.options.separate_iterations;
+    const std::int64_t for_importance =
+        with_importance ? std::llround(run.options.alpha * static_cast<double>(plan.rays)) : 0;
+    run.importance_rays += for_importance;
+    run.power_rays += plan.rays - for_importance;
+    if (with_importance && !combined && for_importance > 0) {
+        const Received received =
+            run_step(run, importance_step(run.surfaces, solution, total_importance(solution), for_importance));
+        merge(run, solution.indirect_importance, received.importance, plan);
+    }
     RgbD escaped_power(0, 0, 0);
-    const std::vector<Rgb> received = irradiance_from(run, power, plan.rays, escaped_power);  // Eq. 1
-    if (plan.tau < 1) run.error.add(run.surfaces, irradiance, run.schedule.averaged_rays(), received, plan.rays);
-    const auto tau = static_cast<float>(plan.tau);
-    for (std::size_t i = 0; i < irradiance.size(); ++i)
-        irradiance[i] += tau * (received[i] - irradiance[i]);  // Eq. 6, Prikryl et al. 2000
-    run.schedule.done(plan);
-    report(run, iteration, escaped_power, monitor);
+    const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
+    if (rays > 0) {
+        TransportStep step = power_step(run.surfaces, solution, present_radiosity(run), combined, rays);
+        const bool deferred = run.options.defer_refinement && plan.warms_up;
+        if (run.options.method.refines && !deferred) step.oracle = make_oracle(solution, step, run.smallest_element);
+        const Received received = run_step(run, step);
+        if (run.schedule.averaged_rays() > 0) estimate_error(run, received.irradiance, rays);
+        merge(run, solution.irradiance, received.irradiance, plan);
+        if (combined) merge(run, solution.indirect_importance, received.importance, plan);
+        escaped_power = received.escaped_power;
+    }
+    remember(run, plan, elements_before);
+    return escaped_power;
 }
 
 bool reached(const Run& run, double relative_error) {
     return relative_error > 0 && run.error.relative(run.schedule.averaged_rays()) <= relative_error;
 }
 
+/// What is known of each element beside its irradiance.
+void describe_elements(Run& run) {
+    Solution& solution = run.solution;
+    solution.standard_error.resize(run.forest->size());
+    for (std::uint32_t e = 0; e < run.forest->size(); ++e)
+        solution.standard_error[e] = std::sqrt(run.variance[e] / std::max(run.history[e], 1.0f));
+    run.streams.used.resize(run.forest->size(), 0);
+    solution.rays.assign(run.streams.used.begin(), run.streams.used.end());
+}
+
+/// One iteration of so many rays; it may change their number. @return The power that left the scene.
+using Iteration = std::function<RgbD(Run&, IterationPlan&)>;
+
+Iteration iteration_of(Run& run) {
+    switch (run.options.method.scheme) {
+        case Scheme::well_distributed:
+            return [rays = WellDistributedRays(run)](Run& r, IterationPlan& plan) mutable {
+                return rays.iterate(r, plan);
+            };
+        case Scheme::random_walk:
+            return [walks = RandomWalks(run)](Run& r, IterationPlan& plan) mutable { return walks.iterate(r, plan); };
+        default:
+            return iterate;
+    }
+}
+
+Solution iterate_until_done(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
+                            const Monitor& monitor) {
+    Run run(scene, ray_caster, options, monitor);
+    if (channel_sum(run.solution.emitted_power) > 0) {  // else it is dark, and exactly so
+        if (options.incremental_start && options.method.scheme != Scheme::random_walk) start_incrementally(run);
+        const Iteration iterate_once = iteration_of(run);
+        for (int iteration = 1; !reached(run, options.until); ++iteration) {
+            IterationPlan plan = run.schedule.next(run.seconds());
+            if (plan.rays == 0) break;
+            run.solution.interrupted = run.stop_is_asked_for();
+            if (run.solution.interrupted) break;
+            const RgbD escaped_power = iterate_once(run, plan);
+            run.schedule.done(plan);
+            report(run, iteration, escaped_power);
+        }
+    }
+    describe_elements(run);
+    return std::move(run.solution);
+}
+
 }  // namespace
+
+const Method& find_method(const std::string& name) {
+    std::string known;
+    for (const Method& method : methods) {
+        if (name == method.name) return method;
+        known += (known.empty() ? "" : ", ") + std::string(method.name);
+    }
+    throw InputError("there is no method '" + name + "'; there are: " + known);
+}
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     require_valid(scene, options);
-    Run run(scene, ray_caster, options);
-    if (!(channel_sum(run.solution.emitted_power) > 0)) return std::move(run.solution);  // dark, and exactly so
-    if (options.incremental_start) start_incrementally(run, monitor);
-    for (int iteration = 1; !reached(run, options.until); ++iteration) {
-        const IterationPlan plan = run.schedule.next(seconds_since(run.start));
-        if (plan.rays == 0) break;
-        if (monitor.stop && monitor.stop->load()) {
-            run.solution.interrupted = true;
-            break;
-        }
-        iterate(run, plan, iteration, monitor);
-    }
-    return std::move(run.solution);
+    if (options.method.scheme == Scheme::links) return solve_by_links(scene, ray_caster, options, monitor);
+    return iterate_until_done(scene, ray_caster, options, monitor);
 }
 
 }  // namespace interflect

@@ -1,21 +1,65 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "interflect/base/colour.h"
 #include "interflect/base/points.h"
+#include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
+#include "interflect/solver/view_importance.h"
 
 namespace interflect {
 
+/// What importance steers.
+enum class ImportanceUse {
+    off,     ///< Nothing: every leaf shoots by its power (Eq. 3).
+    direct,  ///< What the view shows, V alone: what 'prioritise the view' often means.
+    full,    ///< What the view shows and what lights that: V and all its bounces (Eq. 7).
+};
+
+/// What becomes of the rays.
+enum class Scheme {
+    averaged,          ///< Each iteration estimates all irradiance anew; their mean is kept (Eq. 6).
+    well_distributed,  ///< Every ray is kept: all carry one quantum, and an iteration shoots what the leaves lack.
+    random_walk,       ///< Particles start at the lights and are scored wherever they hit, until they are absorbed.
+    links,             ///< Deterministic: elements are linked, and gather over their links.
+};
+
+/// A method is data: how rays are used, what steers them, whether the mesh is refined.
+struct Method {
+    const char* name;
+    Scheme scheme;
+    bool refines;              ///< Hierarchical: the oracle decides (Eq. 14, or Eq. 15 with importance).
+    ImportanceUse importance;  ///< Taken as `off` where there is no view.
+    const char* source;
+};
+
+inline constexpr std::array<Method, 8> methods = {
+    {{"srr", Scheme::averaged, false, ImportanceUse::off, "Neumann et al. 1995"},
+     {"isrr", Scheme::averaged, false, ImportanceUse::full, "Neumann et al. 1996"},
+     {"wdrs", Scheme::well_distributed, false, ImportanceUse::off, "Neumann, Neumann and Bekaert 1997"},
+     {"hwdrs", Scheme::well_distributed, true, ImportanceUse::off, "Bekaert et al. 1998"},
+     {"hsrr", Scheme::averaged, true, ImportanceUse::off, "srr on the hierarchy of Bekaert et al. 1998"},
+     {"ihsrr", Scheme::averaged, true, ImportanceUse::full, "Prikryl et al. 2000"},
+     {"random-walk", Scheme::random_walk, false, ImportanceUse::off, "Pattanaik and Mudur 1992, 1995"},
+     {"hr", Scheme::links, true, ImportanceUse::off, "Hanrahan et al. 1991, Smits et al. 1992"}}};
+
+/// The method of that name. @throws InputError that lists the methods there are.
+const Method& find_method(const std::string& name);
+
 /// What to compute and when to stop. The run ends at the first limit that is reached.
 struct SolveOptions {
+    Method method = methods[0];
+    std::vector<WeightedView> views;  ///< What is looked at; empty: there is no importance.
+
     std::int64_t rays = 20'000'000;  ///< Most rays to trace in all; > 0.
     double seconds =
         std::numeric_limits<double>::infinity();  ///< Most time to take [s]; > 0. Bits then depend on speed.
@@ -23,38 +67,60 @@ struct SolveOptions {
     std::uint64_t seed = 1;
     PointSet points = PointSet::sobol;
 
-    /// The first estimate: true: light is followed bounce by bounce, each time only what has not been shot yet, until
-    /// 0.1% of the emitted power is left (all rays count). False: the paper's, from darkness through warm_up
-    /// iterations.
+    /// The first estimate: true: light (and importance) is followed bounce by bounce, each time only what has not been
+    /// shot yet, until little is left (all rays count). False: the paper's, from darkness through warm_up iterations.
     bool incremental_start = true;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Averaged iterations; 0: as many as the limits allow. >= 0.
     /// Rays of each iteration; 0: begins small and grows with the rays already averaged. >= 0.
     std::int64_t rays_per_iteration = 0;
+
+    double epsilon = 5e-7;     ///< Threshold of the oracle, relative to the reference power (see reference_power); > 0.
+    double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
+    std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there.
+    /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
+    /// At 1 all elements are averaged alike, as in the paper.
+    double inherited_trust = 0.1;
+    bool defer_refinement = false;  ///< No refinement before averaging begins ('dr').
+
+    bool separate_iterations = false;    ///< Importance and power in steps of their own ('si'), or combined ('ci').
+    bool importance_at_elements = true;  ///< Importance is kept by leaves ('hi'), or by patches.
+    bool total_importance = false;       ///< Eq. 9 in place of Eq. 10.
+    double alpha = 0.1;                  ///< Share of the rays for importance, Eq. 11; in [0, 1].
+    double beta = 0.1;       ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
+    int eye_rays = 1 << 16;  ///< Rays that find V, per view; > 0.
 };
 
 /// Where a run stands after an iteration; counts since its start.
 struct IterationReport {
     int iteration = 0;  ///< 0 is the incremental start, where there is one.
     double seconds = 0;
-    std::int64_t rays = 0;
+    std::int64_t rays = 0;             ///< Of these:
+    std::int64_t power_rays = 0;       ///< in proportion to what is asked of power, and
+    std::int64_t importance_rays = 0;  ///< of importance; in a combined iteration every ray carries both.
     std::int64_t escaped_rays = 0;
+    std::uint32_t elements = 0, leaves = 0;
     RgbD total_power{0, 0, 0};    ///< Sum of P [lm or W].
     RgbD escaped_power{0, 0, 0};  ///< What this iteration lost through the openings of the scene [lm or W].
-    /// Estimated relative standard error of the irradiance: root of its area-weighted mean square over the patches,
-    /// over the area-weighted mean irradiance; luminance. From the spread of independent iterations about their running
-    /// mean (ErrorEstimate in schedule.h); infinite while only one is there.
+    /// Estimated relative standard error, luminance. With a view: of the radiosity that the view sees, root of its mean
+    /// square over the picture, over the mean. Without: of the irradiance, likewise over the area. From the spread of
+    /// independent iterations about their running mean (ErrorEstimate in schedule.h); infinite while only one is there.
     double error_estimate = std::numeric_limits<double>::infinity();
 };
 
-/// The light on the surfaces, and how it was found.
+/// The light on the surfaces, and how it was found. Every vector has an entry for every element of the forest; inner
+/// elements have the mean of their children.
 struct Solution {
-    std::vector<Rgb> irradiance;  ///< H of each patch [lm/m^2 or W/m^2].
-    std::string method = "srr";
+    std::shared_ptr<const ElementForest> forest;
+    std::vector<Rgb> irradiance;             ///< H [lm/m^2 or W/m^2].
+    std::vector<float> view_importance;      ///< v; empty where there is no view.
+    std::vector<float> indirect_importance;  ///< psi - v; likewise.
+    std::vector<float> standard_error;       ///< Estimated, of the luminance of H [as H].
+    std::vector<float> rays;                 ///< How many started on it.
     SolveOptions options;
     std::vector<IterationReport> iterations;
     RgbD emitted_power{0, 0, 0};  ///< Sum of W [lm or W].
-    std::int64_t non_finite = 0;  ///< Non-finite powers met (and not shot); 0 unless something is wrong.
+    std::int64_t non_finite = 0;  ///< Non-finite radiosities met (and not shot); 0 unless something is wrong.
     bool interrupted = false;     ///< Stopped by the caller before any limit was reached.
 };
 
@@ -64,8 +130,9 @@ struct Monitor {
     const std::atomic<bool>* stop = nullptr;             ///< Once true, the run ends after the iteration under way.
 };
 
-/// Solves Eq. 1 of Prikryl et al. 2000 for the irradiance of every patch by stochastic ray radiosity (Neumann et al.
-/// 1995): each iteration shoots N rays, chosen by power (Eq. 3), and is merged with the past (Eq. 6).
+/// Solves Eq. 1 of Prikryl et al. 2000 for the irradiance of every element: each iteration shoots N rays, chosen by
+/// power (Eq. 3) or by power and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is
+/// merged with the past (Eq. 6).
 /// @throws InputError listing every option out of range and every fault of the scene. A scene without light is legal.
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
                const Monitor& monitor = {});

@@ -2,21 +2,19 @@
 
 namespace interflect {
 
-Surfaces::Surfaces(const Scene& scene) : scene_(scene) {
-    geometry_.reserve(scene.patches.size());
-    for (const Patch& patch : scene.patches) geometry_.emplace_back(scene, patch);
+std::vector<Rgb> radiosity(const Surfaces& surfaces, const ElementForest& forest, const std::vector<Rgb>& irradiance) {
+    std::vector<Rgb> b(irradiance.size());
+    for (std::uint32_t e = 0; e < b.size(); ++e) {
+        const std::uint32_t patch = forest.patch(e);
+        b[e] = surfaces.exitance(patch) + surfaces.reflectance(patch) * irradiance[e];
+    }
+    return b;
 }
 
-std::vector<Rgb> radiated_power(const Surfaces& surfaces, const std::vector<Rgb>& irradiance) {
-    std::vector<Rgb> power(surfaces.size());
-    for (std::size_t i = 0; i < power.size(); ++i)
-        power[i] = surfaces.area(i) * (surfaces.exitance(i) + surfaces.reflectance(i) * irradiance[i]);
-    return power;
-}
-
-RgbD total(const std::vector<Rgb>& values) {
+RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values) {
     RgbD sum(0, 0, 0);
-    for (const Rgb& v : values) sum += RgbD(v);
+    for (std::uint32_t e = 0; e < forest.patch_count(); ++e)
+        sum += RgbD(values[e]) * static_cast<double>(forest.area(e));
     return sum;
 }
 

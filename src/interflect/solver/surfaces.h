@@ -4,32 +4,30 @@
 #include <vector>
 
 #include "interflect/base/colour.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/elements/forest.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
-/// What the solver asks of a scene's patches, gathered for fast access. Refers to the scene, which must outlive it.
+/// What the surfaces of a scene do with light, by patch. Refers to the scene, which must outlive it.
 class Surfaces {
   public:
-    explicit Surfaces(const Scene& scene);
+    explicit Surfaces(const Scene& scene) : scene_(scene) {}
 
-    std::size_t size() const { return geometry_.size(); }
-    const PatchGeometry& geometry(std::size_t i) const { return geometry_[i]; }
-    float area(std::size_t i) const { return geometry_[i].area(); }  ///< [m^2]
-    const Rgb& reflectance(std::size_t i) const { return scene_.materials[scene_.patches[i].material].reflectance; }
-    const Rgb& exitance(std::size_t i) const { return scene_.materials[scene_.patches[i].material].exitance; }
+    const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
+    const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
+    /// What importance, one number, is reflected with: exact for grey surfaces.
+    float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
 
   private:
+    const Material& material(std::uint32_t patch) const { return scene_.materials[scene_.patches[patch].material]; }
     const Scene& scene_;
-    std::vector<PatchGeometry> geometry_;
 };
 
-/// P_i = A_i (M_i + rho_i H_i), the power that leaves each patch (radiosity B = M + rho H times area) [lm or W].
-/// @param irradiance  H_i, size surfaces.size() [lm/m^2 or W/m^2].
-std::vector<Rgb> radiated_power(const Surfaces& surfaces, const std::vector<Rgb>& irradiance);
+/// B = M + rho H of every element [lm/m^2 or W/m^2]. @param irradiance  H; size forest.size().
+std::vector<Rgb> radiosity(const Surfaces& surfaces, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
-/// Sum in index order, in double precision: the same bits for any number of threads.
-RgbD total(const std::vector<Rgb>& values);
+/// Sum of area times value over the roots, in index order and double precision: the same for any number of threads.
+RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
 }  // namespace interflect

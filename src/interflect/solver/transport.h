@@ -6,55 +6,72 @@
 
 #include "interflect/base/colour.h"
 #include "interflect/base/points.h"
+#include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
+#include "interflect/solver/oracle.h"
 #include "interflect/solver/surfaces.h"
 
 namespace interflect {
 
-/// The random numbers of a run: each patch draws from a sequence of its own, which goes on from iteration to iteration.
+/// The random numbers of a run: each leaf draws from a sequence of its own, which goes on from iteration to iteration.
 struct SampleStreams {
-    SampleStreams(PointSet set, std::uint64_t run_seed, std::size_t patches)
-        : points(set), seed(run_seed), used(patches, 0) {}
+    SampleStreams(PointSet set, std::uint64_t run_seed) : points(set), seed(run_seed) {}
 
     PointSet points;
     std::uint64_t seed;
-    std::vector<std::uint64_t> used;  ///< Points that each patch has consumed.
-    std::uint64_t allocations = 0;    ///< Calls that have drawn from these streams.
+    std::vector<std::uint64_t> used;  ///< Points that each element has consumed; grows with the forest.
+    std::uint64_t allocations = 0;    ///< Steps that have drawn from these streams.
 };
 
-/// Splits N rays systematically: patch s gets the rays first[s] ... first[s + 1] - 1, their number N q_s rounded up or
+/// Splits N rays systematically: source s gets the rays first[s] ... first[s + 1] - 1, their number N q_s rounded up or
 /// down, N q_s in the mean over `offset`.
 /// @param q       Sampling weights >= 0, not all 0; they need not sum to 1.
 /// @param offset  Uniform in [0, 1).
-/// @return        `first`, size q.size() + 1, first[0] = 0, last = N; patches of weight 0 get no ray.
+/// @return        `first`, size q.size() + 1, first[0] = 0, last = N; sources of weight 0 get no ray.
 std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t ray_count, double offset);
 
-/// q of Eq. 3, Prikryl et al. 2000: in proportion to power, all channels together; 0 where it is not finite.
-std::vector<double> power_weights(std::span<const Rgb> power);
-
-/// What one transport step brought.
-struct Received {
-    std::vector<Rgb> power;       ///< R_i of each patch [lm or W].
-    RgbD shot_power{0, 0, 0};     ///< What all rays carried together.
-    RgbD escaped_power{0, 0, 0};  ///< What the rays that hit nothing carried.
-    std::int64_t escaped_rays = 0;
-    std::int64_t non_finite = 0;  ///< Patches whose power was not finite and was not shot.
+/// One step of transport: which rays start where, what they carry, and where it is received.
+struct TransportStep {
+    std::vector<std::uint32_t> leaves;  ///< The elements that rays start on: all leaves of the forest.
+    std::vector<double> q;              ///< Their sampling weights; same size. All 0 shoots nothing.
+    std::int64_t rays = 0;              ///< N > 0.
+    /// B of every element [lm/m^2 or W/m^2], finite: rays carry power. Empty: they carry none.
+    std::vector<Rgb> radiosity;
+    /// What one ray of each leaf carries, same size as leaves; empty: B_s A_s / (N q_s), which makes the estimate
+    /// unbiased.
+    std::vector<Rgb> quanta;
+    /// psi of every element, as the oracle weighs receivers and as it is shot on; empty where neither is asked for.
+    std::vector<float> importance;
+    bool carries_importance = false;
+    bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
+    Oracle oracle;
 };
 
-/// Estimates the power that every patch receives in one bounce, R_i = sum_s F_si P_s (in Eq. 1, Prikryl et al. 2000),
-/// without any form factor: a ray starts on patch s with probability q_s / sum q, uniformly on s, in a
-/// cosine-distributed direction, and brings P_s / (N q_s) to the patch it hits. Unbiased for every q that is positive
-/// wherever P is.
-/// @param power      P_s of each patch [lm or W], linear RGB; size surfaces.size(), >= 0.
-/// @param q          Sampling weights, as in allocate_rays; all 0 shoots nothing.
-/// @param ray_count  N > 0.
-/// @param streams    Read and advanced. The same streams give the same bits for any number of threads.
-/// Cost: O(N log(patches)) time on all threads, 24 bytes a patch.
-Received receive_power(const Surfaces& surfaces, const RayCaster& ray_caster, std::span<const Rgb> power,
-                       std::span<const double> q, std::int64_t ray_count, SampleStreams& streams);
+/// What one step brought, for every element of the (grown) forest.
+struct Received {
+    std::vector<Rgb> irradiance;    ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
+    std::vector<float> importance;  ///< Importance per area, likewise; empty unless the step carried it.
+    RgbD shot_power{0, 0, 0};       ///< What all rays carried together [lm or W]: the sum of what arrived and escaped.
+    RgbD escaped_power{0, 0, 0};    ///< What the rays that hit nothing carried.
+    std::int64_t escaped_rays = 0;
+};
 
-/// The rays that receive_power would trace with these arguments, in its order; q not all 0.
-std::vector<Ray> transport_rays(const Surfaces& surfaces, const RayCaster& ray_caster, std::span<const double> q,
-                                std::int64_t ray_count, const SampleStreams& streams);
+/// Estimates what every element receives in one bounce of Eq. 1 (power) and Eq. 7 (importance), Prikryl et al. 2000,
+/// without any form factor. A ray starts on leaf s with probability q_s / sum q, uniformly on s, in a
+/// cosine-distributed direction; it brings B_s A_s / (N q_s) of power to element i, and rho_s psi_s A_s / (N q_s) of
+/// importance to the leaf that it hits. Without a refining oracle i is the leaf that is hit; with one, the search
+/// starts at the patches of both ends and the larger side is subdivided until the oracle accepts the pair, making
+/// children where there are none. The paper's rays carry B_j, the mean over the accepted shooter j; that loses or makes
+/// energy wherever B varies over j together with what j sees, 0.4% in a closed box, while B_s keeps shot = received +
+/// escaped exactly. Unbiased on a fixed mesh for every q that is positive wherever what is carried is.
+/// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
+/// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
+/// Cost: O(N (log(patches) + levels)) time on all threads, 32 bytes an element.
+Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster,
+                   const TransportStep& step, SampleStreams& streams);
+
+/// The rays that transport() would trace, in its order.
+std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
+                                const SampleStreams& streams);
 
 }  // namespace interflect

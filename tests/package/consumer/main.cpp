@@ -55,7 +55,8 @@ int main() {
     expect(interflect::read_solution("cube.h5").solution.irradiance == solution.irradiance, "to read what was written");
 
     const interflect::View view{.name = "inside", .eye = {0.5f, 0.5f, 0.5f}};
-    const auto picture = interflect::render(scene, ray_caster, view, solution.irradiance, {.width = 4, .height = 4});
+    const auto picture =
+        interflect::render(scene, *solution.forest, ray_caster, view, solution.irradiance, {.width = 4, .height = 4});
     expect(picture.escaped_rays == 0, "no ray to leave a closed cube");
     std::puts("consumer: all is well");
 }

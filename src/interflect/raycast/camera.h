@@ -1,6 +1,5 @@
 #pragma once
 
-#include "interflect/image/image.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
 
@@ -13,7 +12,7 @@ class Camera {
     /// Made before a solve, it finds all that render() could object to in a view and a size.
     /// @throws InputError, naming the view, where it defines no picture: a number that is not finite, eye == look_at,
     ///         `up` zero or along the direction of view, fov outside (0, 180). InputError where width or height is < 1
-    ///         or there are more than most_image_pixels.
+    ///         or there are more than most_image_pixels (base/image_size.h).
     Camera(const View& view, int width, int height);
 
     /// The ray through a point of the image plane.

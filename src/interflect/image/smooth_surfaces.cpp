@@ -1,6 +1,4 @@
-#include "interflect/image/smooth.h"
-
-#include <fmt/format.h>
+#include "interflect/image/smooth_surfaces.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +10,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "interflect/base/error.h"
 #include "interflect/base/random.h"
+#include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
 
@@ -104,7 +102,7 @@ std::vector<std::uint32_t> weld(const std::vector<V3f>& positions) {
 /// An edge as one patch sees it; the patch's vertex order runs along it from `start` to `end`, which are corners.
 struct PatchEdge {
     std::uint32_t low, high;   // welded vertices, low < high: the same for every patch at the edge
-    std::uint32_t start, end;  // 4 patch + corner
+    std::uint32_t start, end;  // 4 patch + corner; start also is the number of the edge
     bool upwards;              // the patch runs from low to high
 
     std::uint32_t patch() const { return start / 4; }
@@ -131,12 +129,6 @@ std::vector<PatchEdge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Joins the corners at both ends of an edge that smooth neighbours share.
-void unite_across(const PatchEdge& a, const PatchEdge& b, DisjointSets& corners) {
-    corners.unite(a.start, b.end);
-    corners.unite(a.end, b.start);
-}
-
 /// Unit normals towards the lit side.
 std::vector<V3f> patch_normals(const Scene& scene) {
     std::vector<V3f> normals;
@@ -145,30 +137,21 @@ std::vector<V3f> patch_normals(const Scene& scene) {
     return normals;
 }
 
-/// Numbers the sets of corners that patches have.
-CornerGroups number_groups(const Scene& scene, DisjointSets& corners) {
-    CornerGroups groups;
+/// Numbers the sets of corners, or of edges, that patches have.
+SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
+    SmoothSurfaces::Groups groups;
     groups.group.assign(4 * scene.patches.size(), none);
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
-            const std::uint32_t corner = 4 * p + c, first = corners.find(corner);  // first <= corner: numbered already
-            groups.group[corner] = first == corner ? groups.count++ : groups.group[first];
+            const std::uint32_t member = 4 * p + c, first = sets.find(member);  // first <= member: numbered already
+            groups.group[member] = first == member ? groups.count++ : groups.group[first];
         }
     return groups;
 }
 
-/// The angle of a patch at one of its corners [rad].
-float corner_angle(const Scene& scene, const Patch& patch, int corner) {
-    const int n = patch.vertex_count();
-    const V3f& here = scene.vertices[patch.vertices[corner]];
-    const V3f to_next = (scene.vertices[patch.vertices[(corner + 1) % n]] - here).normalized();
-    const V3f to_last = (scene.vertices[patch.vertices[(corner + n - 1) % n]] - here).normalized();
-    return std::acos(std::clamp(to_next.dot(to_last), -1.0f, 1.0f));
-}
-
 }  // namespace
 
-CornerGroups group_corners(const Scene& scene, const SmoothingOptions& options) {
+SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options) {
     const float least_cosine = std::cos(options.crease_angle * std::numbers::pi_v<float> / 180);
     const std::vector<V3f> normals = patch_normals(scene);
     const auto smooth = [&](const PatchEdge& a, const PatchEdge& b) {
@@ -177,48 +160,21 @@ CornerGroups group_corners(const Scene& scene, const SmoothingOptions& options) 
     };
 
     const std::vector<PatchEdge> edges = sorted_edges(scene);
-    DisjointSets corners(4 * scene.patches.size());
+    DisjointSets joined_corners(4 * scene.patches.size()), joined_edges(4 * scene.patches.size());
+    const auto join = [&](const PatchEdge& a, const PatchEdge& b) {
+        joined_corners.unite(a.start, b.end);
+        joined_corners.unite(a.end, b.start);
+        joined_edges.unite(a.start, b.start);
+    };
     for (auto first = edges.begin(); first != edges.end();) {
         const auto last = std::find_if(first, edges.end(), [&](const PatchEdge& e) { return !e.same_place(*first); });
         if (static_cast<std::size_t>(last - first) <= most_patches_at_an_edge)
             for (auto a = first; a != last; ++a)
                 for (auto b = a + 1; b != last; ++b)
-                    if (smooth(*a, *b)) unite_across(*a, *b, corners);
+                    if (smooth(*a, *b)) join(*a, *b);
         first = last;
     }
-    return number_groups(scene, corners);
-}
-
-std::vector<Rgb> corner_means(const Scene& scene, const CornerGroups& groups, std::span<const Rgb> values) {
-    std::vector<RgbD> sum(groups.count, RgbD(0, 0, 0));
-    std::vector<double> weight(groups.count, 0.0);
-    for (std::size_t p = 0; p < scene.patches.size(); ++p)
-        for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
-            const std::uint32_t group = groups.group[4 * p + c];
-            const double angle = corner_angle(scene, scene.patches[p], c);
-            sum[group] += RgbD(values[p]) * angle;
-            weight[group] += angle;
-        }
-    std::vector<Rgb> means(groups.count, Rgb(0, 0, 0));
-    for (std::size_t g = 0; g < means.size(); ++g)
-        if (weight[g] > 0) means[g] = Rgb(sum[g] / weight[g]);
-    return means;
-}
-
-SmoothIrradiance::SmoothIrradiance(const Scene& scene, std::span<const Rgb> irradiance,
-                                   const SmoothingOptions& options) {
-    if (irradiance.size() != scene.patches.size())
-        throw InputError(fmt::format("irradiance has {} values, expected one for each of the scene's {} patches",
-                                     irradiance.size(), scene.patches.size()));
-    groups_ = group_corners(scene, options);
-    corner_value_ = corner_means(scene, groups_, irradiance);
-}
-
-Rgb SmoothIrradiance::at(std::uint32_t patch, Parameters p) const {
-    const auto corner = [&](std::size_t c) { return corner_value_[groups_.group[4 * std::size_t{patch} + c]]; };
-    const bool triangle = groups_.group[4 * std::size_t{patch} + 3] == none;
-    if (triangle) return corner(0) * (1 - p.u - p.v) + corner(1) * p.u + corner(2) * p.v;
-    return (corner(0) * (1 - p.u) + corner(1) * p.u) * (1 - p.v) + (corner(3) * (1 - p.u) + corner(2) * p.u) * p.v;
+    return {number_groups(scene, joined_corners), number_groups(scene, joined_edges)};
 }
 
 }  // namespace interflect

@@ -1,4 +1,4 @@
-#include "interflect/image/camera.h"
+#include "interflect/raycast/camera.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "interflect/base/error.h"
+#include "interflect/base/image_size.h"
 
 namespace interflect {
 

@@ -1,0 +1,102 @@
+#include <spdlog/spdlog.h>
+
+#include <functional>
+#include <memory>
+
+#include "apps/interflect/commands.h"
+#include "apps/interflect/parse.h"
+#include "interflect/base/error.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/formats/view_files.h"
+#include "interflect/formats/write_mgf.h"
+#include "interflect/scene/boxes.h"
+#include "interflect/scene/maze.h"
+#include "interflect/scene/office.h"
+
+namespace interflect::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Makes a scene and writes it with its views. Both files are opened before the work begins.
+void write(const fs::path& path, const std::function<Scene()>& make) {
+    if (path.extension() != ".mgf") throw InputError(path, 0, "scenes are written as .mgf");
+    PendingFile scene_file(path), view_file(view_list_path(path));
+    const Scene scene = make();
+    write_mgf(scene, scene_file.temporary_path());
+    write_view_list(scene.views, view_file.temporary_path());
+    scene_file.commit();
+    view_file.commit();
+    spdlog::info("{}: {} patches; {}: {} views", path.string(), scene.patches.size(), view_file.final_path().string(),
+                 scene.views.size());
+}
+
+/// Adds one kind of scene, with the options that every kind has.
+CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help, std::uint64_t& seed,
+                   const std::function<Scene()>& make) {
+    const auto output = std::make_shared<fs::path>();
+    CLI::App& kind = *parent.add_subcommand(name, help);
+    kind.add_option("-o,--output", *output, "Scene file to write (.mgf); its views go beside it (.views.json)")
+        ->required();
+    kind.add_option("--seed", seed, "Same seed, same scene")->capture_default_str();
+    kind.callback([output, make] { write(*output, make); });
+    return kind;
+}
+
+CLI::Option* add_number(CLI::App& kind, const std::string& name, std::uint32_t& number, std::uint32_t most,
+                        const std::string& help) {
+    return kind.add_option(name, number, help)->capture_default_str()->check(CLI::Range(1u, most));
+}
+
+void add_maze(CLI::App& parent) {
+    struct Options {
+        MazeOptions maze;
+        std::int64_t patches = 0;  // 0: as many as the rooms have
+    };
+    const auto options = std::make_shared<Options>();
+    MazeOptions& maze = options->maze;
+    CLI::App& kind = add_kind(parent, "maze", "Rooms joined by doorways, a luminaire in each", maze.seed, [options] {
+        MazeOptions asked_for = options->maze;
+        if (options->patches > 0)
+            asked_for.rooms = maze_rooms_for(static_cast<std::uint64_t>(options->patches), asked_for);
+        return make_maze(asked_for);
+    });
+    CLI::Option* rooms = add_number(kind, "--rooms", maze.rooms, MazeOptions::most_rooms, "How many rooms");
+    add_parsed(kind, "--patches", options->patches, parse_count,
+               "About so many patches, such as 10M: chooses the number of rooms")
+        ->excludes(rooms);
+    kind.add_flag("--furniture", maze.furniture, "With desks, chairs, bookcases: about 2,600 patches a room, not 50");
+    kind.add_option("--extra-doors", maze.extra_doors,
+                    "Share of the walls that could stay closed which get a doorway as well")
+        ->capture_default_str()
+        ->check(CLI::Range(0.f, 1.f));
+}
+
+void add_office(CLI::App& parent) {
+    const auto office = std::make_shared<OfficeOptions>();
+    CLI::App& kind = add_kind(parent, "office", "Offices with desks in rows and luminaires in a grid", office->seed,
+                              [office] { return make_office(*office); });
+    add_number(kind, "--rooms", office->rooms, OfficeOptions::most_rooms, "How many rooms");
+    add_number(kind, "--desk-rows", office->desk_rows, OfficeOptions::most_rows, "Rows of desks in a room");
+    add_number(kind, "--desks-per-row", office->desks_per_row, OfficeOptions::most_desks_per_row, "Desks in a row");
+}
+
+void add_boxes(CLI::App& parent) {
+    const auto boxes = std::make_shared<BoxesOptions>();
+    CLI::App& kind = add_kind(parent, "boxes", "One room with random boxes on its floor", boxes->seed,
+                              [boxes] { return make_boxes(*boxes); });
+    add_number(kind, "--boxes", boxes->boxes, BoxesOptions::most_boxes, "How many boxes");
+}
+
+}  // namespace
+
+void add_make_scene(CLI::App& app) {
+    CLI::App& command = *app.add_subcommand("make-scene", "Make a scene of any size to measure on");
+    command.require_subcommand(1);
+    add_maze(command);
+    add_office(command);
+    add_boxes(command);
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace interflect {
+
+/// An array of up to `capacity` zeros that never moves: address space is reserved at once, memory comes page by page as
+/// it is touched. So threads may use new entries while others still read old ones.
+template <class T>
+class StableArray {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    explicit StableArray(std::size_t capacity = 0) : capacity_(capacity) {
+        if (capacity == 0) return;
+        void* memory =
+            ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (memory == MAP_FAILED) throw std::bad_alloc();
+        data_ = static_cast<T*>(memory);
+    }
+    ~StableArray() {
+        if (data_) ::munmap(data_, bytes());
+    }
+    StableArray(StableArray&& other) noexcept
+        : data_(std::exchange(other.data_, nullptr)), capacity_(std::exchange(other.capacity_, 0)) {}
+    StableArray& operator=(StableArray&& other) noexcept {
+        std::swap(data_, other.data_);
+        std::swap(capacity_, other.capacity_);
+        return *this;
+    }
+
+    T& operator[](std::size_t i) { return data_[i]; }
+    const T& operator[](std::size_t i) const { return data_[i]; }
+    std::size_t capacity() const { return capacity_; }
+
+  private:
+    std::size_t bytes() const { return capacity_ * sizeof(T); }
+    T* data_ = nullptr;
+    std::size_t capacity_ = 0;
+};
+
+}  // namespace interflect

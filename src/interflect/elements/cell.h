@@ -1,0 +1,34 @@
+#pragma once
+
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+/// The part of a patch's parameter domain that an element covers: a square of a quadrilateral, a triangle of a
+/// triangle. A local point (s, t) of the domain's own shape lies at (u + size s, v + size t); size is negative for the
+/// triangles that stand on their head (each central child does, relative to its parent).
+struct Cell {
+    float u = 0, v = 0, size = 1;
+
+    Parameters at(float s, float t) const { return {u + size * s, v + size * t}; }
+    Parameters centre(bool triangle) const { return triangle ? at(1.0f / 3, 1.0f / 3) : at(0.5f, 0.5f); }
+
+    /// Child k of the regular 1:4 subdivision. Quadrilateral: k = 2 (upper half in v) + (upper half in u). Triangle: k
+    /// = 0, 1, 2 keep the corner at v0, v1, v2; k = 3 is the central one.
+    Cell child(unsigned k, bool triangle) const {
+        const float half = 0.5f * size;
+        if (triangle && k == 3) return {u + half, v + half, -half};
+        return {(k & 1u) ? u + half : u, (k & 2u) ? v + half : v, half};
+    }
+
+    /// Which child holds a point of this cell; points on a border go to one of the neighbours, always the same.
+    unsigned child_at(Parameters p, bool triangle) const {
+        const float s = (p.u - u) / size, t = (p.v - v) / size;
+        if (!triangle) return (s >= 0.5f ? 1u : 0u) + (t >= 0.5f ? 2u : 0u);
+        if (s >= 0.5f) return 1;
+        if (t >= 0.5f) return 2;
+        return s + t < 0.5f ? 0 : 3;
+    }
+};
+
+}  // namespace interflect

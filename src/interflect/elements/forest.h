@@ -1,0 +1,98 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/base/stable_array.h"
+#include "interflect/elements/cell.h"
+#include "interflect/scene/patch_geometry.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// Quadtrees of elements over the patches of a scene: element i < patch_count() is patch i whole; children come in
+/// blocks of four, after their parents. Structure of arrays with 32-bit indices, 20 bytes an element. Threads may
+/// subdivide while others walk the trees; what they made gets its final numbers in put_in_order().
+class ElementForest {
+  public:
+    /// Finest level: an element's side is then 2^-15 of its patch's.
+    static constexpr int deepest_level = 15;
+
+    /// One element a patch. @param capacity  Most elements ever, >= the number of patches and < 2^32 - 1.
+    ElementForest(const Scene& scene, std::size_t capacity);
+
+    std::uint32_t patch_count() const { return static_cast<std::uint32_t>(geometry_.size()); }
+    std::uint32_t size() const { return size_.load(std::memory_order_acquire); }
+    std::size_t capacity() const { return area_.capacity(); }
+
+    std::uint32_t patch(std::uint32_t e) const { return patch_[e]; }
+    std::uint32_t parent(std::uint32_t e) const { return parent_[e]; }  ///< none for a root.
+    float area(std::uint32_t e) const { return area_[e]; }              ///< [m^2]
+    int level(std::uint32_t e) const;                                   ///< 0 for a root.
+    /// The way from the root: 1, then two binary digits a level, the child's number.
+    std::uint32_t path(std::uint32_t e) const { return path_[e]; }
+    Cell cell(std::uint32_t e) const;
+    const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
+
+    /// The first of four children; none for a leaf.
+    std::uint32_t first_child(std::uint32_t e) const {
+        const std::uint32_t child = std::atomic_ref(first_child_[e]).load(std::memory_order_acquire);
+        return child >= being_made ? none : child;
+    }
+    bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
+    std::vector<std::uint32_t> leaves() const;  ///< In ascending order.
+    /// The leaf under `root` that holds a point of its patch, among elements below `limit` (all of them by default).
+    std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const;
+
+    /// Makes the children of `e` unless it has some; any number of threads may call it at the same time.
+    /// @return  The first child; none where the forest is full or `e` is at the deepest level.
+    std::uint32_t subdivide(std::uint32_t e);
+
+    /// Renumbers the elements made since there were `first` of them, which threads made in any order, by level, patch
+    /// and path. Call while no thread uses the forest.
+    /// @return  Their new numbers: element first + i becomes renumbered[i].
+    std::vector<std::uint32_t> put_in_order(std::uint32_t first);
+
+  private:
+    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are on their way; none: there are none
+
+    std::vector<PatchGeometry> geometry_;  // of each patch
+    std::atomic<std::uint32_t> size_{0};
+    mutable StableArray<std::uint32_t> first_child_;
+    StableArray<std::uint32_t> parent_, patch_, path_;
+    StableArray<float> area_;
+};
+
+/// Makes the values of a new element those of its parent, for all elements from `first` on: nothing recorded is lost.
+template <class T>
+void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
+    values.resize(forest.size());
+    for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
+}
+
+/// Adds to every element what its parent has, from the roots down: of what arrived at an element, per unit of area,
+/// each of its parts got the same.
+template <class T>
+void push(const ElementForest& forest, std::vector<T>& values) {
+    for (std::uint32_t e = forest.patch_count(); e < forest.size(); ++e) values[e] += values[forest.parent(e)];
+}
+
+/// Makes every inner element the area-weighted mean of its children, from the leaves up.
+template <class T>
+void pull(const ElementForest& forest, std::vector<T>& values) {
+    for (std::uint32_t e = forest.size(); e-- > 0;) {
+        const std::uint32_t child = forest.first_child(e);
+        if (child == none) continue;
+        T sum = values[child] * forest.area(child);
+        float area = forest.area(child);
+        for (std::uint32_t c = child + 1; c < child + 4; ++c) {
+            sum += values[c] * forest.area(c);
+            area += forest.area(c);
+        }
+        values[e] = sum / area;
+    }
+}
+
+}  // namespace interflect

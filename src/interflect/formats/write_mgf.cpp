@@ -1,0 +1,172 @@
+#include "interflect/formats/write_mgf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "interflect/formats/mgf_colour.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr std::size_t buffer_size = 1 << 16;  // characters, before they go to the stream
+
+std::string printable(std::string_view name) {
+    std::string text(name);
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) <= ' ' || c == '\x7f' || c == '\\') c = '_';
+    return text;
+}
+
+/// What a material can be called: white space would end its name, '-' separates the loops of a face, '=' defines.
+std::string material_name(const Material& material) {
+    std::string name = printable(material.name);
+    if (name.starts_with('-') || name == "=") name[0] = '_';
+    return name;
+}
+
+/// "room.desk.leg" as {"room", "desk", "leg"}; nothing for "".
+std::vector<std::string> object_path(const std::string& dotted_name) {
+    std::vector<std::string> path;
+    if (dotted_name.empty()) return path;
+    const std::string name = printable(dotted_name);
+    for (std::size_t begin = 0;;) {
+        const std::size_t dot = name.find('.', begin);
+        path.push_back(dot == begin || begin == name.size() ? "_" : name.substr(begin, dot - begin));
+        if (dot == std::string::npos) return path;
+        begin = dot + 1;
+    }
+}
+
+/// Writes patch after patch, and before each what it needs and the file does not have yet: objects, materials,
+/// vertices.
+class MgfWriter {
+  public:
+    MgfWriter(const Scene& scene, std::ostream& out)
+        : scene_(scene), out_(out), vertex_written_(scene.vertices.size(), false) {
+        for (const Material& material : scene.materials) names_.push_back(material_name(material));
+    }
+
+    void write() {
+        put("# {} patches\n", scene_.patches.size());
+        for (std::size_t i = 0; i < scene_.patches.size(); ++i) {
+            const Patch& patch = scene_.patches[i];
+            const bool two_sided = patch.other_side == i + 1;
+            enter_object(patch.object);
+            enter_material(patch.material, two_sided ? two_sides : 1);
+            add_face(patch);
+            if (two_sided) ++i;
+        }
+        leave_objects(0);
+        flush();
+    }
+
+  private:
+    static constexpr int two_sides = 2;  // what a new material has
+
+    /// What the file so far means by a material's name.
+    struct Definition {
+        std::uint32_t material = none;
+        int sides = two_sides;
+    };
+
+    template <class... Values>
+    void put(fmt::format_string<Values...> format, Values&&... values) {
+        fmt::format_to(std::back_inserter(buffer_), format, std::forward<Values>(values)...);
+        if (buffer_.size() > buffer_size) flush();
+    }
+
+    void flush() {
+        out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+        buffer_.clear();
+        if (!out_) throw std::runtime_error("the scene cannot be written: the disk may be full");
+    }
+
+    void enter_object(std::uint32_t object) {
+        if (object == object_) return;
+        object_ = object;
+        const std::vector<std::string> path = object_path(scene_.objects[object]);
+        const auto common = std::mismatch(path.begin(), path.end(), open_objects_.begin(), open_objects_.end()).first;
+        const auto shared = static_cast<std::size_t>(common - path.begin());
+        leave_objects(shared);
+        for (std::size_t level = shared; level < path.size(); ++level) put("o {}\n", path[level]);
+        open_objects_ = path;
+    }
+
+    void leave_objects(std::size_t depth) {
+        for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
+    }
+
+    /// Materials of one name take turns to be what the file means by it, and what has no name is forgotten as soon as
+    /// another is entered. `sides` belongs to the material in this format, so it may have to change as well.
+    void enter_material(std::uint32_t material, int sides) {
+        const std::string& name = names_[material];
+        Definition& definition = definitions_[name];
+        const bool is_new = definition.material != material || (name.empty() && material_ != material);
+        if (is_new) {
+            put("m {}{}\n", name, name.empty() ? "" : " =");
+            define_material(scene_.materials[material]);
+            definition = {material, two_sides};
+        } else if (material_ != material) {
+            put("m {}\n", name);
+        }
+        if (definition.sides != sides) put("\tsides {}\n", sides);
+        definition.sides = sides;
+        material_ = material;
+    }
+
+    void define_material(const Material& material) {
+        RgbD reflectance(material.reflectance);
+        for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], largest_reflectance);
+        put_colour("rd", reflectance);
+        if (channel_sum(material.exitance) > 0) put_colour("ed", RgbD(material.exitance));
+    }
+
+    void put_colour(std::string_view entity, const RgbD& rgb) {
+        const auto [chromaticity, luminance] = from_rec709(rgb);
+        put("\tc\n\t\tcxy {} {}\n\t{} {}\n", chromaticity.x, chromaticity.y, entity, luminance);
+    }
+
+    void add_face(const Patch& patch) {
+        for (int k = 0; k < patch.vertex_count(); ++k) {
+            const std::uint32_t v = patch.vertices[k];
+            if (vertex_written_[v]) continue;
+            const V3f& x = scene_.vertices[v];
+            put("v v{} =\n\tp {} {} {}\n", v, x.x, x.y, x.z);
+            vertex_written_[v] = true;
+        }
+        put("f");
+        for (int k = 0; k < patch.vertex_count(); ++k) put(" v{}", patch.vertices[k]);
+        put("\n");
+    }
+
+    const Scene& scene_;
+    std::ostream& out_;
+    std::vector<std::string> names_;                           // of materials
+    std::unordered_map<std::string, Definition> definitions_;  // by name
+    std::vector<bool> vertex_written_;
+    std::vector<std::string> open_objects_;
+    std::uint32_t object_ = 0, material_ = none;
+    fmt::memory_buffer buffer_;
+};
+
+}  // namespace
+
+void write_mgf(const Scene& scene, std::ostream& out) { MgfWriter(scene, out).write(); }
+
+void write_mgf(const Scene& scene, const std::filesystem::path& path) {
+    std::ofstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error(path.string() + ": cannot be opened for writing");
+    write_mgf(scene, file);
+    if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+}  // namespace interflect

@@ -1,0 +1,52 @@
+#include "interflect/image/false_colour.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace interflect {
+
+namespace {
+
+constexpr double ignored_share = 0.005;  // of the values, at either end of a logarithmic scale
+constexpr float most_ratio = 1e6f;       // between the ends of a logarithmic scale
+
+/// Oklab [Ottosson 2020] to linear Rec. 709.
+Rgb rgb_of_oklab(const V3f& lab) {
+    const auto cube = [](float x) { return x * x * x; };
+    const float l = cube(lab.x + 0.3963377774f * lab.y + 0.2158037573f * lab.z);
+    const float m = cube(lab.x - 0.1055613458f * lab.y - 0.0638541728f * lab.z);
+    const float s = cube(lab.x - 0.0894841775f * lab.y - 1.2914855480f * lab.z);
+    return {4.0767416621f * l - 3.3077115913f * m + 0.2309699292f * s,
+            -1.2684380046f * l + 2.6097574011f * m - 0.3413193965f * s,
+            -0.0041960863f * l - 0.7034186147f * m + 1.7076147010f * s};
+}
+
+}  // namespace
+
+Rgb false_colour(float position) {
+    // A parabola in Oklab with these control points, found by search: the longest one in the gamut of Rec. 709 whose
+    // speed differs by no more than a quarter.
+    constexpr V3f violet(0.27f, 0.101f, -0.078f), teal(0.595f, -0.212f, -0.097f), yellow(0.92f, -0.075f, 0.189f);
+    const float t = std::clamp(position, 0.0f, 1.0f), u = 1 - t;
+    const Rgb colour = rgb_of_oklab(u * u * violet + 2 * t * u * teal + t * t * yellow);
+    return {std::max(colour.x, 0.0f), std::max(colour.y, 0.0f), std::max(colour.z, 0.0f)};
+}
+
+float ColourScale::position(float value) const {
+    const float t = spacing == Spacing::linear ? (value - low) / (high - low)
+                                               : std::log(std::max(value, low) / low) / std::log(high / low);
+    return std::clamp(t, 0.0f, 1.0f);
+}
+
+ColourScale fit_scale(std::vector<float> values, Spacing spacing) {
+    const bool logarithmic = spacing == Spacing::logarithmic;
+    std::erase_if(values, [&](float v) { return !std::isfinite(v) || (logarithmic && v <= 0); });
+    if (values.empty()) return {logarithmic ? 0.1f : 0.0f, 1, spacing};
+    std::sort(values.begin(), values.end());
+    if (!logarithmic) return {std::min(0.0f, values.front()), values.back() > 0 ? values.back() : 1, spacing};
+    const auto ignored = static_cast<std::size_t>(ignored_share * static_cast<double>(values.size()));
+    const float high = values[values.size() - 1 - ignored], low = std::max(values[ignored], high / most_ratio);
+    return low < high ? ColourScale{low, high, spacing} : ColourScale{high / 10, high, spacing};
+}
+
+}  // namespace interflect

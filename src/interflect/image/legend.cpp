@@ -1,0 +1,154 @@
+#include "interflect/image/legend.h"
+
+#include <fmt/format.h>
+#include <stb/stb_easy_font.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "interflect/base/error.h"
+#include "interflect/base/image_size.h"
+
+namespace interflect {
+
+namespace {
+
+const Rgb paper(0.01f, 0.01f, 0.01f), ink(0.8f, 0.8f, 0.8f);
+
+/// The places of a legend's parts, in dots of the font, from the legend's top.
+constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
+              bottom = 43;
+/// Room for a number with the space to the next one, likewise, and the least such space.
+constexpr int number_width = 64, number_gap = 8;
+
+/// Pixels a dot.
+int dot_size(int picture_width) {
+    constexpr int dots = 512;  // that a picture is wide, or a little more
+    return std::max(1, (picture_width + dots / 4) / dots);
+}
+
+/// Fills the part of a rectangle that lies in the image; right and bottom are exclusive [pixels].
+void fill(Image& image, int left, int top, int right, int low, const Rgb& colour) {
+    for (int y = std::max(top, 0); y < std::min(low, image.height); ++y)
+        for (int x = std::max(left, 0); x < std::min(right, image.width); ++x) image.at(x, y) = colour;
+}
+
+/// Text is drawn with dots of a whole number of pixels, from its top left corner.
+class Pen {
+  public:
+    Pen(Image& image, int dot) : image_(image), dot_(dot) {}
+
+    int width(std::string text) const { return dot_ * stb_easy_font_width(text.data()); }
+
+    void write(int left, int top, std::string text) {
+        struct Vertex {
+            float x, y, z;
+            std::array<unsigned char, 4> colour;
+        };
+        using Rectangle = std::array<Vertex, 4>;  // clockwise from the top left
+        constexpr std::size_t most_a_letter = 24;
+        std::vector<Rectangle> rectangles(most_a_letter * text.size());
+        const int count = stb_easy_font_print(0, 0, text.data(), nullptr, rectangles.data(),
+                                              static_cast<int>(rectangles.size() * sizeof(Rectangle)));
+        rectangles.resize(static_cast<std::size_t>(count));
+        const auto pixels = [&](float dots) { return static_cast<int>(std::lround(dots)) * dot_; };
+        for (const Rectangle& r : rectangles)
+            fill(image_, left + pixels(r[0].x), top + pixels(r[0].y), left + pixels(r[2].x), top + pixels(r[2].y), ink);
+    }
+
+  private:
+    Image& image_;
+    int dot_;
+};
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above x.
+double round_below(double x) {
+    const double power = std::pow(10, std::floor(std::log10(x)));
+    for (const double factor : {5.0, 2.0})
+        if (factor * power <= x) return factor * power;
+    return power;
+}
+
+constexpr double rounding = 1e-5;  // of ends and steps, relative
+
+std::vector<float> multiples(const ColourScale& scale, double step) {
+    std::vector<float> values;
+    for (double k = std::ceil(scale.low / step - rounding) + 0.0; k <= scale.high / step + rounding; ++k)
+        values.push_back(static_cast<float>(k * step));
+    return values;
+}
+
+/// These multiples of every `stride`-th power of ten.
+std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vector<double>& factors, int stride) {
+    std::vector<float> values;
+    const double low = scale.low * (1 - rounding), high = scale.high * (1 + rounding);
+    const int first = static_cast<int>(std::floor(std::log10(low) / stride)) * stride;
+    for (int exponent = first; std::pow(10, exponent) <= high; exponent += stride)
+        for (const double factor : factors)
+            if (const double value = factor * std::pow(10, exponent); value >= low && value <= high)
+                values.push_back(static_cast<float>(value));
+    return values;
+}
+
+/// Pixels from the strip's left end to its right one; the left one is a margin from the picture's.
+int strip_length(const Image& image, int dot) { return std::max(1, image.width - 2 * margin * dot); }
+
+void draw_strip(Image& image, int top, int dot) {
+    const int left = margin * dot, length = strip_length(image, dot);
+    for (int x = 0; x < length; ++x)
+        fill(image, left + x, top + strip_top * dot, left + x + 1, top + strip_bottom * dot,
+             false_colour((static_cast<float>(x) + 0.5f) / static_cast<float>(length)));
+}
+
+/// A tick at each round value; a number that would run into the last one is left out.
+void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
+    Pen pen(image, dot);
+    const int left = margin * dot, length = strip_length(image, dot);
+    int free_from = left;
+    for (const float value : round_values(scale, std::max(3, length / (number_width * dot)))) {
+        const int x = left + static_cast<int>(scale.position(value) * static_cast<float>(length - dot));
+        fill(image, x, top + strip_bottom * dot, x + dot, top + tick_bottom * dot, ink);
+        const std::string number = fmt::format("{:.6g}", value);
+        const int width = pen.width(number),
+                  begin = std::clamp(x - width / 2, left, left + std::max(0, length - width));
+        if (begin < free_from) continue;
+        pen.write(begin, top + numbers_top * dot, number);
+        free_from = begin + width + number_gap * dot;
+    }
+}
+
+}  // namespace
+
+std::vector<float> round_values(const ColourScale& scale, int most) {
+    const auto fits = [&](const std::vector<float>& values) { return static_cast<int>(values.size()) <= most; };
+    if (scale.spacing == Spacing::logarithmic && scale.high >= 10 * scale.low) {
+        std::vector<float> values = multiples_of_powers(scale, {1, 2, 5}, 1);
+        for (int stride = 1; !fits(values); ++stride) values = multiples_of_powers(scale, {1}, stride);
+        return values;
+    }
+    constexpr double finer = 0.6;  // from 5 to 2, from 2 to 1, from 1 to 0.5 times a power of ten
+    double step = round_below(scale.high - scale.low);
+    while (fits(multiples(scale, round_below(finer * step)))) step = round_below(finer * step);
+    return multiples(scale, step);
+}
+
+int legend_height(int width) { return bottom * dot_size(width); }
+
+Image with_legend(const Image& picture, const ColourScale& scale, const std::string& title) {
+    const int top = picture.height, dot = dot_size(picture.width);
+    const std::int64_t height = std::int64_t{top} + legend_height(picture.width);
+    if (picture.width > most_image_pixels / height)
+        throw InputError(fmt::format("a picture of {} x {} pixels with its legend: expected at most {} pixels in all",
+                                     picture.width, height, most_image_pixels));
+    Image image(picture.width, static_cast<int>(height), paper);
+    std::copy(picture.pixels.begin(), picture.pixels.end(), image.pixels.begin());
+
+    Pen(image, dot).write(margin * dot, top + title_top * dot, title);
+    draw_strip(image, top, dot);
+    draw_numbers(image, top, dot, scale);
+    return image;
+}
+
+}  // namespace interflect

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// What counts as one smooth surface.
+struct SmoothingOptions {
+    /// Patches whose normals differ by more than this do not shade into each other [degrees]. The default is wider than
+    /// the 22.5 degrees between the facets of a sphere or cylinder that a reader has tessellated.
+    float crease_angle = 30;
+};
+
+/// Which corners and edges of patches are one and the same in one smooth surface, and so share their values.
+struct SmoothSurfaces {
+    struct Groups {
+        /// [4 patch + corner], or, of edges, [4 patch + the corner where it starts in the patch's vertex order]:
+        /// 0 ... count - 1; none for what would be a triangle's fourth.
+        std::vector<std::uint32_t> group;
+        std::uint32_t count = 0;
+    };
+    Groups corners, edges;
+};
+
+/// Two patches continue each other across an edge that they share where they are of equal material, there is no crease
+/// between them, and they are of one orientation (the edge runs opposite ways in the two patches' vertex orders), so
+/// that fronts continue onto fronts and backs onto backs: the edge is one for both. Two corners at the same point are
+/// one where a chain of patches leads from one to the other, each continuing the last across an edge at that point.
+/// Vertices are the same where their positions are equal to rounding (2^-20 of the scene's largest coordinate). A
+/// vertex of one patch in the middle of another patch's edge is not looked for: there surfaces end. Time O(n log n) in
+/// the number of patches n.
+SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options = {});
+
+}  // namespace interflect

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "interflect/base/colour.h"
+
+namespace interflect {
+
+/// One end of an interaction, as the oracle sees it.
+struct Party {
+    V3f centre;      ///< [m]
+    V3f normal;      ///< Unit length.
+    float area = 0;  ///< [m^2]
+};
+
+/// Cheap upper estimate of the form factor from receiver to shooter: the solid angle of a disk of the shooter's area,
+/// f = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between the centres. No cosine is taken below 2
+/// f: where the elements are close for their size, some of their parts face each other better than their centres do.
+inline float form_factor_estimate(const Party& shooter, const Party& receiver) {
+    const V3f d = receiver.centre - shooter.centre;
+    const float d2 = d.length2();
+    const float f = shooter.area / (std::numbers::pi_v<float> * d2 + shooter.area);
+    const float per_distance = d2 > 0 ? 1 / std::sqrt(d2) : 0;
+    const float least = std::min(1.0f, 2 * f);
+    return f * std::clamp(shooter.normal.dot(d) * per_distance, least, 1.0f) *
+           std::clamp(-receiver.normal.dot(d) * per_distance, least, 1.0f);
+}
+
+/// Decides for every ray whether two elements may exchange light as they are. Its verdict depends on the state at the
+/// beginning of an iteration alone, never on what other rays do.
+struct Oracle {
+    bool refines = false;  ///< False: the leaves that the ray connects exchange light.
+    double threshold = 0;  ///< P_eps, times psi_max where importance decides too [lm or W].
+    bool by_importance = false;
+    float smallest_area = 0;  ///< An element of less than four times this is not subdivided [m^2].
+
+    /// Eq. 14 (by_importance == false) and Eq. 15, Prikryl et al. 2000; of the channels the largest decides.
+    /// @param reflected  rho_i B_j, the receiver's reflectance times the shooter's radiosity [lm/m^2 or W/m^2].
+    /// @param importance psi_i of the receiver; not used unless by_importance.
+    bool accepts(const Party& shooter, const Party& receiver, const Rgb& reflected, float importance) const {
+        const double power =
+            static_cast<double>(largest_channel(reflected)) * receiver.area * form_factor_estimate(shooter, receiver);
+        return (by_importance ? power * importance : power) <= threshold;
+    }
+};
+
+}  // namespace interflect

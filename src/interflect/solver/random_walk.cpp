@@ -1,0 +1,342 @@
+#include "interflect/solver/random_walk.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/parallel.h"
+#include "interflect/base/random.h"
+#include "interflect/solver/ray_source.h"
+#include "interflect/solver/steps.h"
+
+namespace interflect {
+
+namespace {
+
+/// Paths of one task, which traces one bounce of all of them at a time: enough that Embree gets long batches.
+constexpr std::size_t paths_per_task = 4096;
+/// Most particles that one becomes at a hit; where importance rises more, the next hits split it further.
+constexpr double most_copies = 8;
+/// How much more than expected a batch may bring before its sums overflow; leaves 2^45 units for the expected.
+constexpr double sum_headroom = 0x1p16;
+/// Paths of the pilot that finds how long paths are, and the least rays of the batch for each.
+constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
+
+/// Keys of the random numbers, so that no two purposes share one.
+enum class Purpose : std::uint64_t { light = 1, importance, pilot, batch, allocation, emission, survival, reflection };
+
+constexpr std::uint64_t sub_key(std::uint64_t key, Purpose purpose, std::uint64_t index = 0) {
+    return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
+}
+
+/// What particles carry; every vector has an entry for every patch. Importance (Eq. 7) is light that the eyes send:
+/// what first leaves a patch is the reflected part of what it received from them, all channels alike.
+struct Cargo {
+    std::vector<Rgb> emitted;      ///< What leaves a patch at first: W [lm or W], or rho V.
+    std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
+    std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
+};
+
+/// What a batch of paths brought, as integers, so that the order of arrival does not matter.
+struct Sums {
+    FixedPoint unit;
+    std::vector<FixedPoint::Value> received;  ///< By every patch.
+    FixedPoint::Value escaped{};
+    std::vector<std::int64_t> started;  ///< Rays that left every patch.
+    std::int64_t rays = 0, escaped_rays = 0;
+
+    explicit Sums(const Cargo& cargo)
+        : unit(sum_headroom * most_expected(cargo)), received(cargo.emitted.size()), started(cargo.emitted.size(), 0) {}
+
+    /// No channel of all that arrives has a greater expected value: what is emitted over 1 - rho.
+    static double most_expected(const Cargo& cargo) {
+        double power = 0, rho = 0;
+        for (const Rgb& w : cargo.emitted) power += static_cast<double>(largest_channel(w));
+        for (const Rgb& r : cargo.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
+        return power / (1 - rho);
+    }
+};
+
+/// Power that is about to leave a patch.
+struct Particle {
+    std::uint32_t patch;
+    Rgb power;
+};
+
+/// The particles of one task that are under way; reused by its thread.
+struct Wavefront {
+    std::vector<Particle> particles, reflected;
+    std::vector<Ray> rays;
+    std::vector<Parameters> origins;
+    std::vector<Hit> hits;
+    PointBlock points;
+
+    void make_room_for_rays() {
+        rays.resize(particles.size());
+        origins.resize(particles.size());
+        hits.resize(particles.size());
+    }
+};
+
+/// One batch of paths, each followed from its emission to its end.
+class PathBatch {
+  public:
+    /// @param paths  > 0.  @param key  Of the batch's random numbers.
+    PathBatch(const Run& run, const Cargo& cargo, std::int64_t paths, std::uint64_t key)
+        : forest_(*run.forest),
+          ray_caster_(run.ray_caster),
+          first_points_(run.options.points),
+          cargo_(cargo),
+          paths_(paths),
+          key_(key),
+          sums_(cargo) {
+        std::vector<double> q(cargo.emitted.size());
+        for (std::size_t i = 0; i < q.size(); ++i)
+            q[i] = static_cast<double>(channel_sum(cargo.emitted[i])) * cargo.density[i];
+        const double q_sum = std::accumulate(q.begin(), q.end(), 0.0);
+        if (!(q_sum > 0)) return;
+        quantum_ = q_sum / static_cast<double>(paths);
+        first_path_ = allocate_rays(q, paths, random_double(sub_key(key, Purpose::allocation), 0));
+    }
+
+    const Sums& follow() {
+        if (!(quantum_ > 0)) return sums_;
+        tbb::enumerable_thread_specific<Wavefront> wavefronts;
+        parallel_for_ranges(static_cast<std::size_t>(paths_), paths_per_task, [&](std::size_t begin, std::size_t end) {
+            follow(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), wavefronts.local());
+        });
+        return sums_;
+    }
+
+  private:
+    void follow(std::int64_t begin, std::int64_t end, Wavefront& w) {
+        const auto task = static_cast<std::uint64_t>(begin);
+        emit(begin, end, w);
+        for (std::uint64_t bounce = 1; !w.particles.empty(); ++bounce) {
+            ray_caster_.trace(w.rays, w.hits);
+            score(w);
+            survive(random_double(sub_key(key_, Purpose::survival, task), bounce), w);
+            reflect(mix(sub_key(key_, Purpose::reflection, task), bounce), w);
+        }
+    }
+
+    /// Starts the paths begin ... end - 1. Patch s sends W_s / (N q_s) with each of its own, which are consecutive
+    /// points of its sequence.
+    void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
+        w.particles.resize(static_cast<std::size_t>(end - begin));
+        w.make_room_for_rays();
+        const auto after = std::upper_bound(first_path_.begin(), first_path_.end(), begin);
+        auto s = static_cast<std::uint32_t>(after - first_path_.begin() - 1);
+        for (std::int64_t from = begin; from < end; ++s) {
+            const std::int64_t to = std::min(first_path_[s + 1], end);
+            if (to <= from) continue;
+            const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
+            const double share = quantum_ / cargo_.density[s] / static_cast<double>(channel_sum(cargo_.emitted[s]));
+            std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(cargo_.emitted[s]) * share)});
+            shoot_rays(forest_.geometry(s), Cell(), ray_caster_.lift(), first_points_,
+                       sub_key(key_, Purpose::emission, s), static_cast<std::uint64_t>(from - first_path_[s]), w.points,
+                       std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
+            from = to;
+        }
+    }
+
+    /// Adds every particle to what the patch that it hit receives, and lists what that reflects.
+    void score(Wavefront& w) {
+        FixedPoint::Value escaped{};
+        w.reflected.clear();
+        for (std::size_t i = 0; i < w.particles.size(); ++i) {
+            const auto& [source, power] = w.particles[i];
+            const std::uint32_t patch = w.hits[i].patch;
+            const FixedPoint::Value term = sums_.unit.from(RgbD(power));
+            add_concurrently(sums_.started[source], 1);
+            if (patch == none) {
+                for (std::size_t c = 0; c < 3; ++c) escaped[c] += term[c];
+                continue;
+            }
+            add_concurrently(sums_.received[patch], term);
+            w.reflected.push_back({patch, cargo_.reflectance[patch] * power});
+        }
+        add_concurrently(sums_.escaped, escaped);
+        add_concurrently(sums_.rays, static_cast<std::int64_t>(w.particles.size()));
+        add_concurrently(sums_.escaped_rays, static_cast<std::int64_t>(w.particles.size() - w.reflected.size()));
+    }
+
+    /// Russian roulette and splitting: what is reflected goes on as a random number of copies whose mean is n, each
+    /// with 1/n of the power. With n = power * density / quantum each copy carries what an emitter there would send.
+    /// The copies of a whole wavefront are drawn systematically with one random number, so that their total hardly
+    /// varies.
+    void survive(double offset, Wavefront& w) const {
+        w.particles.clear();
+        double cumulative = offset;
+        for (const auto& [patch, power] : w.reflected) {
+            const double n =
+                std::min(most_copies, static_cast<double>(channel_sum(power)) * cargo_.density[patch] / quantum_);
+            const double before = std::floor(cumulative);
+            cumulative += n;
+            const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
+            if (copies > 0) w.particles.insert(w.particles.end(), copies, {patch, power * static_cast<float>(1 / n)});
+        }
+    }
+
+    /// Makes the rays on which the particles leave.
+    void reflect(std::uint64_t key, Wavefront& w) const {
+        w.make_room_for_rays();
+        for (std::size_t i = 0; i < w.particles.size(); ++i)
+            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.lift(), PointSet::random, key, i,
+                       w.points, std::span(w.rays).subspan(i, 1), std::span(w.origins).subspan(i, 1));
+    }
+
+    const ElementForest& forest_;
+    const RayCaster& ray_caster_;
+    PointSet first_points_;
+    const Cargo& cargo_;
+    std::int64_t paths_;
+    std::uint64_t key_;
+    Sums sums_;
+    double quantum_ = 0;                    // sum of the channels of a particle where the density is 1
+    std::vector<std::int64_t> first_path_;  // of each patch
+};
+
+/// What one batch brought.
+struct Arrived {
+    std::vector<Rgb> irradiance;  ///< Of every patch; of importance likewise per area.
+    RgbD escaped{0, 0, 0};
+    std::int64_t rays = 0;
+};
+
+/// Follows so many paths, and enters their rays.
+Arrived follow_paths(Run& run, const Cargo& cargo, std::int64_t paths, std::uint64_t key) {
+    PathBatch batch(run, cargo, paths, key);
+    const Sums& sums = batch.follow();
+    run.escaped_rays += sums.escaped_rays;
+    run.streams.used.resize(sums.started.size(), 0);
+    Arrived arrived;
+    for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
+        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / run.forest->area(i));
+        run.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
+    }
+    arrived.escaped = sums.unit.to_colour(sums.escaped);
+    arrived.rays = sums.rays;
+    return arrived;
+}
+
+/// Follows as many paths as take about this many rays.
+Arrived walk(Run& run, const Cargo& cargo, std::int64_t rays, PathSeries& series) {
+    std::int64_t pilot_rays = 0;
+    if (series.batches == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
+        const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
+        pilot_rays = follow_paths(run, cargo, paths, sub_key(series.key, Purpose::pilot)).rays;
+        series.rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(paths);
+    }
+    const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
+    const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
+    Arrived arrived = follow_paths(run, cargo, at_least_one, sub_key(series.key, Purpose::batch, series.batches++));
+    series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
+    arrived.rays += pilot_rays;
+    return arrived;
+}
+
+/// What should lead particles from where they are: Eq. 10 in place of Eq. 9 unless asked for, since what leaves a patch
+/// matters by where it arrives.
+std::vector<float> leading_importance(const Solution& so_far) {
+    switch (importance_use(so_far)) {
+        case ImportanceUse::off:
+            return {};
+        case ImportanceUse::direct:
+            return so_far.view_importance;
+        case ImportanceUse::full:
+            break;
+    }
+    return so_far.options.total_importance ? total_importance(so_far) : so_far.indirect_importance;
+}
+
+/// beta + (1 - beta) psi, where psi is relative to its mean over the emitted power: then the share beta of the paths
+/// starts by power alone.
+std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
+    std::vector<float> density = leading_importance(so_far);
+    double power = 0, important = 0;
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        const auto w = static_cast<double>(channel_sum(emitted[i]));
+        power += w;
+        important += w * density[i];
+    }
+    if (!(important > 0)) return std::vector<float>(emitted.size(), 1.0f);
+    const double beta = so_far.options.beta;
+    for (float& d : density) d = static_cast<float>(beta + (1 - beta) * d * power / important);
+    return density;
+}
+
+Cargo light(const Run& run) {
+    Cargo cargo;
+    for (std::uint32_t i = 0; i < run.forest->patch_count(); ++i) {
+        cargo.emitted.push_back(run.surfaces.exitance(i) * run.forest->area(i));
+        cargo.reflectance.push_back(run.surfaces.reflectance(i));
+    }
+    cargo.density = particle_density(run.solution, cargo.emitted);
+    return cargo;
+}
+
+Cargo importance_from_the_eyes(const Run& run) {
+    Cargo cargo;
+    for (std::uint32_t i = 0; i < run.forest->patch_count(); ++i) {
+        const float rho = run.surfaces.mean_reflectance(i);
+        cargo.emitted.emplace_back(rho * run.solution.view_importance[i] * run.forest->area(i));
+        cargo.reflectance.emplace_back(rho);
+    }
+    cargo.density.assign(run.forest->patch_count(), 1.0f);
+    return cargo;
+}
+
+}  // namespace
+
+RandomWalks::RandomWalks(Run& run)
+    : light_{sub_key(run.options.seed, Purpose::light)}, importance_{sub_key(run.options.seed, Purpose::importance)} {
+    walk_importance(run, std::min(run.schedule.start_rays(), lacking_importance(run, run.options.rays)));
+    run.schedule.began_with(0, run.importance_rays);
+}
+
+/// What importance lacks of its share alpha of the rays, where so many are planned in all.
+std::int64_t RandomWalks::lacking_importance(const Run& run, std::int64_t planned) const {
+    if (importance_use(run.solution) != ImportanceUse::full) return 0;
+    const std::int64_t share = std::llround(run.options.alpha * static_cast<double>(planned));
+    return std::max<std::int64_t>(0, share - importance_history_);
+}
+
+void RandomWalks::walk_importance(Run& run, std::int64_t rays) {
+    if (rays <= 0) return;
+    const Arrived arrived = walk(run, importance_from_the_eyes(run), rays, importance_);
+    run.importance_rays += arrived.rays;
+    importance_history_ += rays;
+    const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(importance_history_));
+    std::vector<float>& psi = run.solution.indirect_importance;
+    for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (arrived.irradiance[i].x - psi[i]);
+}
+
+void RandomWalks::walk_light(Run& run, std::int64_t rays, const IterationPlan& plan) {
+    if (rays <= 0) return;
+    const Arrived arrived = walk(run, light(run), rays, light_);
+    run.power_rays += arrived.rays;
+    const bool tells_of_error = plan.rays >= run.schedule.start_rays();  // a remainder of the rays tells too little
+    if (run.schedule.averaged_rays() > 0 && tells_of_error) estimate_error(run, arrived.irradiance, plan.rays);
+    const double before = run.history[0], now = before + static_cast<double>(plan.rays);
+    const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
+    for (std::uint32_t i = 0; i < run.forest->size(); ++i)
+        run.solution.irradiance[i] += static_cast<float>(tau) * (arrived.irradiance[i] - run.solution.irradiance[i]);
+    escaped_ += tau * (arrived.escaped - escaped_);
+    std::fill(run.history.begin(), run.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
+}
+
+RgbD RandomWalks::iterate(Run& run, IterationPlan& plan) {
+    const std::int64_t rays_before = run.power_rays + run.importance_rays;
+    const std::int64_t for_importance = std::min(plan.rays, lacking_importance(run, run.schedule.rays() + plan.rays));
+    walk_importance(run, for_importance);
+    walk_light(run, plan.rays - for_importance, plan);
+    const std::int64_t traced = run.power_rays + run.importance_rays - rays_before;
+    if (traced > 0) plan.rays = traced;  // else no eye sees what reflects, and the plan is used up
+    return escaped_;
+}
+
+}  // namespace interflect

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interflect/solver/run.h"
+
+namespace interflect {
+
+/// Batches of paths of one kind: of light, or of importance.
+struct PathSeries {
+    std::uint64_t key;  ///< Of their random numbers.
+    std::uint64_t batches = 0;
+    double rays_per_path = 0;  ///< Of the last batch; 0: there was none.
+};
+
+/// Solves Eq. 1 of Prikryl et al. 2000 by random walks of particles (Pattanaik and Mudur 1992): a particle leaves an
+/// emitter, adds its power to what every patch that it hits receives, and goes on from there, uniformly on the patch,
+/// with the probability that the reflectance gives. All channels travel together; survival keeps their sum.
+///
+/// With importance (Pattanaik and Mudur 1993, 1995) psi is found by random walks from the eyes, with the share alpha of
+/// the rays, and the particles are made proportional to power times psi: an emitter sends more of them, each with less;
+/// one that hits a patch is split where psi has risen, and dies sooner where it has fallen. A share beta of the paths
+/// starts by power alone. Unbiased for every psi while beta > 0.
+///
+/// Paths are followed to their end, so the rays of a batch come out a per cent or so off the plan. A walk needs no
+/// incremental start. Same seed, same bits, for any number of threads. Cost: O(N log(patches)) time on all threads, 150
+/// bytes a patch.
+class RandomWalks {
+  public:
+    /// Begins with importance, so that light does not start before it is known where it matters.
+    /// @param run  On a forest of one element a patch; some patch emits.
+    explicit RandomWalks(Run& run);
+
+    /// Follows paths that take about plan.rays rays, and merges what they bring with the past (Eq. 6). A batch counts
+    /// by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a bias.
+    /// @param plan  Its rays become those that were traced.
+    /// @return The power that leaves the scene, by all batches so far.
+    RgbD iterate(Run& run, IterationPlan& plan);
+
+  private:
+    std::int64_t lacking_importance(const Run& run, std::int64_t planned) const;
+    void walk_importance(Run& run, std::int64_t rays);
+    void walk_light(Run& run, std::int64_t rays, const IterationPlan& plan);
+
+    PathSeries light_, importance_;
+    RgbD escaped_{0, 0, 0};                // power, mean of all batches
+    std::int64_t importance_history_ = 0;  // rays planned for the batches that psi is the mean of
+};
+
+}  // namespace interflect

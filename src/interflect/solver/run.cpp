@@ -1,0 +1,198 @@
+#include "interflect/solver/run.h"
+
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "interflect/solver/steps.h"
+
+namespace interflect {
+
+namespace {
+
+/// The incremental start ends when this share of the emitted power, or importance, has not been shot.
+constexpr double negligible_unshot_power = 1e-3, negligible_unshot_importance = 0.005;
+/// The smallest element is the square of the scene's diagonal over this, where the user sets no limit.
+constexpr double diagonal_over_smallest = 1500;
+
+double smallest_area(const Scene& scene, const SolveOptions& options) {
+    if (options.smallest_area > 0) return options.smallest_area;
+    Imath::Box3f box;
+    for (const V3f& v : scene.vertices) box.extendBy(v);
+    return std::pow(box.size().length() / diagonal_over_smallest, 2);
+}
+
+/// How many rays each bounce of the incremental start gets: in proportion to what is left to shoot; but if all bounces
+/// to come decay alike, they must do with half of the budget.
+class BounceBudget {
+  public:
+    BounceBudget(std::int64_t first_bounce, std::int64_t budget) : first_bounce_(first_bounce), budget_(budget) {}
+
+    /// @param left  What is left, as a share of what there was at first.
+    std::int64_t next(double left) {
+        const double decay = last_left_ > 0 ? left / last_left_ : 0;
+        last_left_ = left;
+        const double affordable = 0.5 * (1 - std::min(decay, 1.0)) * static_cast<double>(budget_);
+        const double share = static_cast<double>(first_bounce_) * left;
+        const std::int64_t rays = std::max<std::int64_t>(1, std::llround(std::min(share, affordable)));
+        budget_ -= rays;
+        used_ += rays;
+        return rays;
+    }
+    bool is_spent() const { return budget_ <= 0; }
+    std::int64_t used() const { return used_; }
+
+  private:
+    std::int64_t first_bounce_, budget_, used_ = 0;
+    double last_left_ = 0;
+};
+
+bool goes_on(const Run& run, const BounceBudget& budget) {
+    return !budget.is_spent() && !run.stop_is_asked_for() && !run.is_out_of_time();
+}
+
+/// The spread of the luminance of each element's irradiance about its running mean, averaged over the iterations.
+void update_variances(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays) {
+    const auto n = static_cast<float>(rays);
+    const auto terms = static_cast<float>(run.error.terms() + 1);
+    for (std::size_t e = 0; e < fresh.size(); ++e) {
+        const float difference = luminance(fresh[e] - run.solution.irradiance[e]);
+        const float m = std::max(run.history[e], 1.0f);
+        run.variance[e] += (difference * difference * (n * m / (n + m)) - run.variance[e]) / terms;
+    }
+}
+
+/// @return The rays that it took.
+std::int64_t start_importance(Run& run) {
+    Solution& solution = run.solution;
+    BounceBudget budget(run.schedule.start_rays(), run.options.rays / 4);
+    std::vector<float> unshot = solution.view_importance;
+    for (double left = 1; left > negligible_unshot_importance && goes_on(run, budget);) {
+        const TransportStep step = importance_step(run.surfaces, solution, std::move(unshot), budget.next(left));
+        unshot = run_step(run, step).importance;
+        left = 0;  // of the reflected importance; at first all of V is to be shot
+        for (std::uint32_t e = 0; e < run.forest->patch_count(); ++e) {
+            solution.indirect_importance[e] += unshot[e];
+            left += static_cast<double>(unshot[e]) * run.forest->area(e);
+        }
+    }
+    run.importance_rays += budget.used();
+    return budget.used();
+}
+
+/// @return The rays that it took.
+std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
+    Solution& solution = run.solution;
+    BounceBudget budget(run.schedule.start_rays(), rays);
+    std::vector<Rgb> unshot = present_radiosity(run);
+    const double emitted = channel_sum(solution.emitted_power);
+    for (double left = 1; left > negligible_unshot_power && goes_on(run, budget);) {
+        const TransportStep step = power_step(run.surfaces, solution, std::move(unshot), false, budget.next(left));
+        const Received received = run_step(run, step);
+        escaped_power += received.escaped_power;
+        unshot = std::vector<Rgb>(run.forest->size());
+        for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
+            solution.irradiance[e] += received.irradiance[e];
+            unshot[e] = run.surfaces.reflectance(run.forest->patch(e)) * received.irradiance[e];
+        }
+        left = channel_sum(integral(*run.forest, unshot)) / emitted;
+    }
+    run.power_rays += budget.used();
+    return budget.used();
+}
+
+}  // namespace
+
+Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m)
+    : surfaces(scene),
+      ray_caster(caster),
+      options(o),
+      monitor(m),
+      forest(std::make_shared<ElementForest>(scene, o.method.refines ? o.most_elements : scene.patches.size())),
+      view(o.views, *forest, caster, o.eye_rays, o.seed),
+      smallest_element(smallest_area(scene, o)),
+      streams(o.points, o.seed),
+      schedule(o, scene.patches.size()) {
+    solution.forest = forest;
+    solution.options = o;
+    solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
+    history.assign(forest->size(), 0.0f);
+    variance.assign(forest->size(), 0.0f);
+    solution.emitted_power = integral(*forest, radiosity(surfaces, *forest, solution.irradiance));
+    if (view.empty()) return;
+    solution.view_importance = view.per_area(*forest, !o.importance_at_elements);
+    solution.indirect_importance.assign(forest->size(), 0.0f);
+}
+
+std::vector<Rgb> present_radiosity(Run& run) {
+    std::vector<Rgb> b = radiosity(run.surfaces, *run.forest, run.solution.irradiance);
+    for (Rgb& value : b) {
+        if (is_finite(value)) continue;
+        value = Rgb(0, 0, 0);
+        ++run.solution.non_finite;
+    }
+    return b;
+}
+
+Received run_step(Run& run, const TransportStep& step) {
+    const std::uint32_t before = run.forest->size();
+    Received received = transport(run.surfaces, *run.forest, run.ray_caster, step, run.streams);
+    run.escaped_rays += received.escaped_rays;
+    inherit(*run.forest, before, run.solution.irradiance);
+    inherit(*run.forest, before, run.variance);
+    inherit(*run.forest, before, run.history);
+    if (run.view.empty()) return received;
+    inherit(*run.forest, before, run.solution.indirect_importance);
+    run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);
+    return received;
+}
+
+void start_incrementally(Run& run) {
+    RgbD escaped_power(0, 0, 0);
+    const bool with_importance = importance_use(run.solution) == ImportanceUse::full;
+    const std::int64_t importance_rays = with_importance ? start_importance(run) : 0;
+    const std::int64_t power_rays = start_power(run, run.options.rays - importance_rays, escaped_power);
+    run.history.assign(run.forest->size(), static_cast<float>(power_rays));
+    const bool is_averaged = run.options.method.scheme == Scheme::averaged;
+    run.schedule.began_with(is_averaged ? power_rays : 0, importance_rays + (is_averaged ? 0 : power_rays));
+    report(run, 0, escaped_power);
+}
+
+void estimate_error(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays) {
+    const Solution& solution = run.solution;
+    const bool has_view = !run.view.empty();
+    const std::vector<std::uint32_t> leaves = run.forest->leaves();
+    std::vector<double> weights(leaves.size()), means(leaves.size()), received(leaves.size());
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        const std::uint32_t e = leaves[i], patch = run.forest->patch(e);
+        const double area = run.forest->area(e);
+        // With a view, what counts is B; without, H, lest black surfaces count for nothing.
+        const Rgb scale = has_view ? run.surfaces.reflectance(patch) : Rgb(1);
+        const Rgb offset = has_view ? run.surfaces.exitance(patch) : Rgb(0);
+        weights[i] = has_view ? area * static_cast<double>(solution.view_importance[e]) : area;
+        means[i] = luminance(offset + scale * solution.irradiance[e]);
+        received[i] = luminance(offset + scale * fresh[e]);
+    }
+    update_variances(run, fresh, rays);
+    run.error.add(weights, means, run.schedule.averaged_rays(), received, rays);
+}
+
+void report(Run& run, int iteration, const RgbD& escaped_power) {
+    IterationReport r;
+    r.iteration = iteration;
+    r.seconds = run.seconds();
+    r.rays = run.schedule.rays();
+    r.power_rays = run.power_rays;
+    r.importance_rays = run.importance_rays;
+    r.escaped_rays = run.escaped_rays;
+    r.elements = run.forest->size();
+    r.leaves = run.forest->patch_count() + (r.elements - run.forest->patch_count()) / 4 * 3;
+    r.total_power = integral(*run.forest, radiosity(run.surfaces, *run.forest, run.solution.irradiance));
+    r.escaped_power = escaped_power;
+    r.error_estimate = run.error.relative(run.schedule.averaged_rays());
+    run.solution.iterations.push_back(r);
+    if (run.monitor.report) run.monitor.report(r);
+}
+
+}  // namespace interflect

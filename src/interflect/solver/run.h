@@ -1,0 +1,60 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "interflect/solver/schedule.h"
+#include "interflect/solver/solve.h"
+#include "interflect/solver/surfaces.h"
+#include "interflect/solver/transport.h"
+#include "interflect/solver/view_importance.h"
+
+namespace interflect {
+
+/// The state of a run: everything that one iteration hands to the next.
+struct Run {
+    using Clock = std::chrono::steady_clock;
+
+    Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m);
+
+    const Surfaces surfaces;
+    const RayCaster& ray_caster;
+    const SolveOptions& options;
+    const Monitor& monitor;
+    const std::shared_ptr<ElementForest> forest;
+    const ViewImportance view;
+    const double smallest_element;  // [m^2]
+    SampleStreams streams;
+    Schedule schedule;
+    ErrorEstimate error;
+    Solution solution;
+    std::vector<float> history;   // of each element: rays that its mean stands for
+    std::vector<float> variance;  // of the luminance of H from one ray [(lm/m^2)^2 or (W/m^2)^2]
+    std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
+    Clock::time_point start = Clock::now();
+
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
+    bool stop_is_asked_for() const { return monitor.stop && monitor.stop->load(); }
+    bool is_out_of_time() const { return seconds() >= options.seconds; }
+};
+
+/// B of every element; what is not finite is set to 0, so that it is not shot, and counted.
+std::vector<Rgb> present_radiosity(Run& run);
+
+/// Traces a step's rays; afterwards everything kept by element has grown with the forest.
+Received run_step(Run& run, const TransportStep& step);
+
+/// Follows importance, then light, bounce by bounce, shooting only what has not been shot: an estimate of all bounces
+/// in which no ray is thrown away ('incremental shooting', Neumann et al. 1995). The mesh stays as it is.
+void start_incrementally(Run& run);
+
+/// Enters the difference between a new estimate of the irradiance, of so many rays, and the running mean into the
+/// estimates of the error: that of the whole and those of the elements. Call before the two are merged.
+void estimate_error(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays);
+
+/// Adds a report of where the run stands. @param escaped_power  What the iteration lost.
+void report(Run& run, int iteration, const RgbD& escaped_power);
+
+}  // namespace interflect

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/solver/solve.h"
+#include "interflect/solver/surfaces.h"
+#include "interflect/solver/transport.h"
+
+namespace interflect {
+
+/// What steers a run: what its method asks for, and nothing where there is no view.
+ImportanceUse importance_use(const Solution& so_far);
+
+/// psi of every element; empty where there is no view.
+std::vector<float> total_importance(const Solution& so_far);
+
+/// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
+/// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
+/// alone. No oracle is set.
+/// @param radiosity  Of every element; what is to be shot.
+TransportStep power_step(const Surfaces& surfaces, const Solution& so_far, std::vector<Rgb> radiosity, bool combined,
+                         std::int64_t rays);
+
+/// A step in which rays carry importance alone (Eq. 8). @param importance  Of every element; what is to be reflected.
+TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, std::vector<float> importance,
+                              std::int64_t rays);
+
+/// The oracle of the run's method, Eq. 14 or 15, with the references below.
+Oracle make_oracle(const Solution& so_far, const TransportStep& step, double smallest_area);
+
+/// The power that the oracle's threshold is relative to [lm or W]. With a view: what leaves the surfaces it sees, as if
+/// all were as bright as they appear on average; so it does not depend on lights elsewhere, on how an emitter is
+/// divided, or (times a length squared on both sides of Eq. 14) on the unit of length. Without a view: all emitted
+/// power.
+double reference_power(const Solution& so_far, const std::vector<Rgb>& radiosity);
+
+/// psi_max of Eq. 15: the area-weighted mean of psi over the patches that the view sees [1/m^2].
+double reference_importance(const Solution& so_far, const std::vector<float>& psi);
+
+}  // namespace interflect

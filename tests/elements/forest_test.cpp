@@ -1,0 +1,177 @@
+// The forest of quadtrees: areas, search, subdivision by many threads at once, values kept by element.
+#include "interflect/elements/forest.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+constexpr std::size_t capacity = 1 << 16;
+
+/// A parallelogram, an irregular convex quadrilateral and a triangle.
+Scene three_shapes() {
+    Scene scene;
+    testing_support::add_material(scene, Rgb(0.5f), Rgb(0));
+    testing_support::add_rectangle(scene, V3f(0, 0, 0), V3f(2, 0, 0), V3f(1, 1, 0), 0);
+    scene.vertices.insert(scene.vertices.end(), {V3f(0, 0, 1), V3f(3, 0, 1), V3f(2, 2, 1), V3f(0, 1, 1)});
+    Patch irregular, triangle;
+    irregular.vertices = {4, 5, 6, 7};
+    triangle.vertices = {4, 5, 6, none};
+    scene.patches.insert(scene.patches.end(), {irregular, triangle});
+    return scene;
+}
+
+/// Subdivides leaves that a seeded choice names, `count` times.
+void subdivide_at_random(ElementForest& forest, int count, unsigned seed) {
+    std::mt19937 random(seed);
+    for (int i = 0; i < count; ++i) {
+        const std::vector<std::uint32_t> leaves = forest.leaves();
+        forest.subdivide(leaves[random() % leaves.size()]);
+    }
+}
+
+double leaf_area(const ElementForest& forest, std::uint32_t patch) {
+    double area = 0;
+    for (const std::uint32_t e : forest.leaves()) area += forest.patch(e) == patch ? forest.area(e) : 0;
+    return area;
+}
+
+TEST(Forest, LeavesCoverTheirPatch) {
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, capacity);
+    subdivide_at_random(forest, 300, 1);
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+        EXPECT_NEAR(leaf_area(forest, p), patch_area(scene, scene.patches[p]), 1e-5);
+}
+
+TEST(Forest, CellAreaIsTheShareOfPointsThatFallIntoIt) {
+    // The irregular quadrilateral: its cells differ in area though they are alike in parameters.
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, capacity);
+    const std::uint32_t child = forest.subdivide(1);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    constexpr int points = 100'000;
+    std::array<int, 4> hits{};
+    for (int i = 0; i < points; ++i)
+        ++hits[forest.leaf_at(1, forest.geometry(1).uniform_parameters(uniform(random), uniform(random))) - child];
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        const double share = forest.area(child + k) / forest.area(1);
+        const double sigma = std::sqrt(share * (1 - share) / points);
+        EXPECT_NEAR(static_cast<double>(hits[k]) / points, share, 4 * sigma);  // false alarm 6e-5 each
+        EXPECT_GT(std::abs(share - 0.25), 8 * sigma) << "equal areas would prove nothing";
+    }
+}
+
+TEST(Forest, LeafAtFindsTheLeafWhoseCellHoldsThePoint) {
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, capacity);
+    subdivide_at_random(forest, 200, 3);
+    for (const std::uint32_t leaf : forest.leaves()) {
+        const bool triangle = forest.geometry(forest.patch(leaf)).is_triangle();
+        EXPECT_EQ(forest.leaf_at(forest.patch(leaf), forest.cell(leaf).centre(triangle)), leaf);
+    }
+}
+
+/// All that describes a forest, element by element.
+std::vector<std::array<std::uint32_t, 4>> described(const ElementForest& forest) {
+    std::vector<std::array<std::uint32_t, 4>> d;
+    for (std::uint32_t e = 0; e < forest.size(); ++e)
+        d.push_back({forest.patch(e), forest.path(e), forest.parent(e), forest.first_child(e)});
+    return d;
+}
+
+TEST(Forest, ThreadsThatSubdivideTogetherMakeTheForestThatOneMakes) {
+    const Scene scene = testing_support::closed_box({1, 2, 3}, 3, {Material{"grey", Rgb(0.5f), Rgb(1)}});
+    // Refines down to level 4 around random points; threads with the same seed fight for the same elements.
+    const auto refine = [](ElementForest& forest, unsigned seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<float> uniform(0, 1);
+        for (int i = 0; i < 500; ++i) {
+            std::uint32_t e = random() % 8;
+            const Parameters p{uniform(random), uniform(random)};
+            Cell cell;
+            for (int level = 0; level < 4; ++level) {
+                const unsigned k = cell.child_at(p, false);
+                cell = cell.child(k, false);
+                e = forest.subdivide(e) + k;
+            }
+        }
+    };
+    ElementForest by_one(scene, capacity), by_many(scene, capacity);
+    for (unsigned t = 0; t < 4; ++t) refine(by_one, t % 2);
+    std::vector<std::thread> threads;
+    for (unsigned t = 0; t < 4; ++t) threads.emplace_back([&, t] { refine(by_many, t % 2); });
+    for (std::thread& thread : threads) thread.join();
+    by_one.put_in_order(by_one.patch_count());
+    by_many.put_in_order(by_many.patch_count());
+    EXPECT_EQ(described(by_one), described(by_many));
+}
+
+TEST(Forest, IsTheSameWhateverTheOrderOfSubdivision) {
+    const Scene scene = three_shapes();
+    ElementForest a(scene, capacity), b(scene, capacity);
+    for (const std::uint32_t patch : {0u, 1u, 2u}) a.subdivide(a.subdivide(patch) + 2);
+    for (const std::uint32_t patch : {2u, 0u, 1u}) b.subdivide(b.subdivide(patch) + 2);
+    EXPECT_NE(described(a), described(b));
+    a.put_in_order(a.patch_count());
+    b.put_in_order(b.patch_count());
+    EXPECT_EQ(described(a), described(b));
+}
+
+TEST(Forest, RefusesWhatDoesNotFit) {
+    const Scene scene = three_shapes();
+    ElementForest full(scene, scene.patches.size() + 4);
+    EXPECT_NE(full.subdivide(0), none);
+    EXPECT_EQ(full.subdivide(1), none);
+    EXPECT_TRUE(full.is_leaf(1));
+    EXPECT_EQ(full.size(), scene.patches.size() + 4);
+
+    ElementForest deep(scene, capacity);
+    std::uint32_t e = 0;
+    for (int level = 0; level < ElementForest::deepest_level; ++level) e = deep.subdivide(e);
+    EXPECT_EQ(deep.level(e), ElementForest::deepest_level);
+    EXPECT_EQ(deep.subdivide(e), none);
+}
+
+TEST(Forest, PushAndPullKeepTheIntegral) {
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, capacity);
+    subdivide_at_random(forest, 100, 4);
+    forest.put_in_order(forest.patch_count());
+    std::mt19937 random(5);
+    std::vector<float> values(forest.size());
+    double integral = 0;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        values[e] = static_cast<float>(random() % 100);
+        integral += static_cast<double>(values[e]) * forest.area(e);
+    }
+    push(forest, values);
+    pull(forest, values);
+    double at_leaves = 0, at_roots = 0;
+    for (const std::uint32_t e : forest.leaves()) at_leaves += static_cast<double>(values[e]) * forest.area(e);
+    for (std::uint32_t e = 0; e < forest.patch_count(); ++e)
+        at_roots += static_cast<double>(values[e]) * forest.area(e);
+    EXPECT_NEAR(at_leaves, integral, 1e-4 * integral);
+    EXPECT_NEAR(at_roots, integral, 1e-4 * integral);
+}
+
+TEST(Forest, NewElementsInherit) {
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, capacity);
+    std::vector<float> values{1, 2, 3};
+    const std::uint32_t child = forest.subdivide(1), grandchild = forest.subdivide(child + 3);
+    inherit(forest, forest.patch_count(), values);
+    EXPECT_EQ(values[child], 2);
+    EXPECT_EQ(values[grandchild + 1], 2);
+}
+
+}  // namespace
+}  // namespace interflect

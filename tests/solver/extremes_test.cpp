@@ -1,0 +1,135 @@
+// Options at the ends of their ranges do what theory says. That alpha, beta and the rest leave the mean where it is,
+// also at their ends, is tested in dense_test.cpp.
+// Seen to fail when elements below new elements trust in full what these inherit, when alpha or beta is ignored.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "interflect/solver/solve.h"
+#include "tests/solver/reference_rooms.h"
+#include "tests/solver/variants.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+SolveOptions options_of(const char* method) {
+    SolveOptions options;
+    options.method = find_method(method);
+    options.rays = 80'000;
+    options.views = {{into_the_corner}};
+    return options;
+}
+
+/// The solution after iteration number `last`; 0 is the incremental start.
+Solution solve_until(int last, const Scene& scene, const SolveOptions& options) {
+    std::atomic<bool> stop{false};
+    return solve(scene, RayCaster(scene), options,
+                 {[&](const IterationReport& report) { stop = report.iteration == last; }, &stop});
+}
+
+Solution solve_all(const Scene& scene, const SolveOptions& options) { return solve(scene, RayCaster(scene), options); }
+
+Scene furnace(int n) { return closed_box({1, 2, 3}, n, {{"wall", Rgb(0.5f), Rgb(2)}}); }
+
+TEST(Importance, ChangesNothingWithoutAView) {
+    const Scene scene = furnished_room();
+    const auto solved = [&](const char* method) {
+        SolveOptions options = options_of(method);
+        options.views.clear();
+        return solve_all(scene, options).irradiance;
+    };
+    EXPECT_EQ(solved("isrr"), solved("srr"));
+    EXPECT_EQ(solved("ihsrr"), solved("hsrr"));
+}
+
+TEST(AlphaZeroAndBetaOne, ShootEveryRayByPowerAlone) {
+    const Scene scene = colourful_box();
+    SolveOptions by_importance = options_of("isrr"), by_power = options_of("srr");
+    by_importance.incremental_start = by_power.incremental_start = false;
+    by_importance.alpha = 0;
+    by_importance.beta = 1;
+    const std::vector<Rgb> driven = solve_all(scene, by_importance).irradiance;
+    const std::vector<Rgb> plain = solve_all(scene, by_power).irradiance;
+    // The weights are the same up to rounding, which may move a ray to the next patch once in a while.
+    for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(driven[i].x / plain[i].x, 1, 1e-3) << i;
+}
+
+TEST(AlphaZero, LeavesImportanceAsTheStartFoundIt) {
+    const Scene scene = colourful_box();
+    SolveOptions options = options_of("isrr");
+    options.separate_iterations = true;
+    options.alpha = 0;
+    const Solution start = solve_until(0, scene, options), end = solve_all(scene, options);
+    EXPECT_EQ(end.indirect_importance, start.indirect_importance);
+    EXPECT_EQ(end.iterations.back().importance_rays, start.iterations.back().importance_rays);
+    EXPECT_NE(end.irradiance, start.irradiance);
+}
+
+TEST(AlphaOne, LeavesLightAsTheStartFoundIt) {
+    const Scene scene = colourful_box();
+    SolveOptions options = options_of("isrr");
+    options.separate_iterations = true;
+    options.alpha = 1;
+    const Solution start = solve_until(0, scene, options), end = solve_all(scene, options);
+    EXPECT_EQ(end.irradiance, start.irradiance);
+    EXPECT_EQ(end.iterations.back().power_rays, start.iterations.back().power_rays);
+    EXPECT_NE(end.indirect_importance, start.indirect_importance);
+}
+
+/// Two iterations after the start, few enough rays that some leaves are missed. All is divided in the first.
+Solution two_iterations_trusting(double inherited_trust) {
+    SolveOptions options = options_of("hsrr");
+    options.views.clear();
+    options.rays_per_iteration = 1000;
+    options.inherited_trust = inherited_trust;
+    divide_everything(options, 0.03);  // m^2; the walls have 2, 3 and 6: three levels
+    return solve_until(2, furnace(1), options);
+}
+
+std::ptrdiff_t dark_leaves(const Solution& s) {
+    const std::vector<std::uint32_t> leaves = s.forest->leaves();
+    return std::count_if(leaves.begin(), leaves.end(), [&](std::uint32_t e) { return s.irradiance[e] == Rgb(0); });
+}
+
+TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
+    const Solution forgets = two_iterations_trusting(0), remembers = two_iterations_trusting(1);
+    ASSERT_EQ(forgets.forest->size(), 6u * (1 + 4 + 16 + 64));
+    EXPECT_GT(dark_leaves(forgets), 0);
+    EXPECT_EQ(dark_leaves(remembers), 0);
+}
+
+// Seen to fail with siblings left as merged: what young elements forgot was missing, 0.2% here.
+TEST(InheritedTrust, NeitherLosesNorMakesLight) {
+    const double all = two_iterations_trusting(1).iterations.back().total_power.x;
+    for (const double trust : {0.0, 0.1, 0.5})
+        EXPECT_NEAR(two_iterations_trusting(trust).iterations.back().total_power.x / all, 1, 1e-5) << trust;
+}
+
+TEST(OneIteration, FromDarknessIsOneBounce) {
+    for (const char* method : {"srr", "hsrr"}) {
+        SolveOptions options = options_of(method);
+        options.incremental_start = false;
+        options.iterations = 1;
+        const Solution s = solve_all(furnace(1), options);
+        ASSERT_EQ(s.iterations.size(), 1u);
+        EXPECT_NEAR(s.iterations[0].total_power.x / s.emitted_power.x, 1.5, 1e-5) << "M + rho M";
+    }
+}
+
+TEST(WarmUp, ThatNeverEndsKeepsOneMoreBounceEachTime) {
+    SolveOptions options = options_of("hsrr");
+    options.incremental_start = false;
+    options.warm_up = 100;
+    options.rays_per_iteration = 20'000;
+    const Solution s = solve_all(furnace(1), options);
+    ASSERT_EQ(s.iterations.size(), 4u);
+    EXPECT_NEAR(s.iterations.back().total_power.x / s.emitted_power.x, 1 + 0.5 + 0.25 + 0.125 + 0.0625, 1e-5);
+}
+
+}  // namespace
+}  // namespace interflect

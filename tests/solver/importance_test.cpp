@@ -1,0 +1,109 @@
+// View importance: the adjoint of light. What a view measures is the same from either end, sum v P = sum psi W, and in
+// a closed grey box the importance of everything is what was received straight from the eye over 1 - rho.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "interflect/solver/solve.h"
+#include "interflect/solver/surfaces.h"
+#include "tests/solver/variants.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+/// A grey box of 1 x 2 x 3 m, 3 x 3 patches a wall, each wall with a reflectance of its own; the ceiling shines.
+Scene grey_box() {
+    std::vector<Material> walls;
+    for (const float rho : {0.2f, 0.7f, 0.5f, 0.4f, 0.8f, 0.3f}) walls.push_back({"wall", Rgb(rho), Rgb(0)});
+    walls[5].exitance = Rgb(10);
+    return closed_box({1, 2, 3}, 3, walls);
+}
+
+SolveOptions options_for(const char* method, std::uint64_t seed) {
+    SolveOptions options;
+    options.method = find_method(method);
+    options.views = {{into_the_corner}};
+    options.rays = 200'000;
+    options.seed = seed;
+    return options;
+}
+
+double sum_over_leaves(const Solution& s, const std::vector<float>& per_area) {
+    double sum = 0;
+    for (const std::uint32_t e : s.forest->leaves()) sum += static_cast<double>(per_area[e]) * s.forest->area(e);
+    return sum;
+}
+
+/// sum v P: what the view measures, from the light.
+double measured_by_light(const Scene& scene, const Solution& s) {
+    const std::vector<Rgb> b = radiosity(Surfaces(scene), *s.forest, s.irradiance);
+    double sum = 0;
+    for (const std::uint32_t e : s.forest->leaves())
+        sum += static_cast<double>(s.view_importance[e]) * s.forest->area(e) * b[e].x;
+    return sum;
+}
+
+/// sum psi W: the same, from the importance of the emitters.
+double measured_by_importance(const Scene& scene, const Solution& s) {
+    double sum = 0;
+    for (const std::uint32_t e : s.forest->leaves())
+        sum += static_cast<double>(s.view_importance[e] + s.indirect_importance[e]) * s.forest->area(e) *
+               Surfaces(scene).exitance(s.forest->patch(e)).x;
+    return sum;
+}
+
+TEST(Importance, OfTheViewSumsToOne) {
+    const Scene scene = grey_box();
+    const Solution s = solve(scene, RayCaster(scene), options_for("ihsrr", 1));
+    EXPECT_NEAR(sum_over_leaves(s, s.view_importance), 1, 1e-4);
+    for (std::uint32_t patch = 45; patch < 54; ++patch)
+        EXPECT_EQ(s.view_importance[patch], 0) << "the ceiling is not seen";
+}
+
+TEST(Importance, InAClosedGreyBoxIsViewImportanceOverOneMinusRho) {
+    // Equal quanta in a closed box: no statistics; what is left is the end of the start and the last merge.
+    for (const float rho : {0.0f, 0.5f, 0.8f}) {
+        const Scene scene = closed_box({1, 2, 3}, 3, {{"grey", Rgb(rho), Rgb(1)}});
+        SolveOptions options = options_for("isrr", 1);
+        options.separate_iterations = true;  // then all rays of an importance step carry the same importance
+        const Solution s = solve(scene, RayCaster(scene), options);
+        const double indirect = rho / (1 - rho);
+        EXPECT_NEAR(sum_over_leaves(s, s.indirect_importance), indirect, 0.02 * indirect) << "rho " << rho;
+    }
+}
+
+class Duality : public testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(All, Duality, testing::ValuesIn(variants_with_importance()),
+                         [](const auto& test) { return test.param.name; });
+
+// On a fixed mesh, whose elements keep light and importance alike. Where the oracle lets light be received by whole
+// elements whose parts receive importance, or the other way round, or V moves from element to element as they are
+// divided, the two transports are adjoint only in the limit.
+TEST_P(Duality, LightAndImportanceMeasureTheSame) {
+    constexpr int runs = 16;
+    const Scene scene = grey_box();
+    const RayCaster ray_caster(scene);
+    std::vector<double> differences;
+    double mean = 0;
+    for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+        SolveOptions options = on_a_fixed_mesh(GetParam(), seed);
+        options.rays_per_iteration = 12'000;
+        options.alpha = 0.5;
+        if (!options.importance_at_elements) options.smallest_area = left_whole;
+        const Solution s = solve(scene, ray_caster, options);
+        ASSERT_EQ(s.non_finite, 0);
+        const double light = measured_by_light(scene, s);
+        differences.push_back(light - measured_by_importance(scene, s));
+        mean += light / runs;
+    }
+    EXPECT_GT(t_test(differences, 0), false_alarm);
+    EXPECT_LT(t_test(differences, 0.05 * mean), false_alarm) << "would notice five percent";
+}
+
+}  // namespace
+}  // namespace interflect

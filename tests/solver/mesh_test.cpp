@@ -1,0 +1,121 @@
+// The mesh that the oracle makes (Eq. 14, 15, Prikryl et al. 2000) and where it must be the same: METHOD.md section 3
+// asks that it does not change with the unit of length, with how finely a lamp happens to be divided, or with lights
+// that matter nothing to the view. And what it leaves coarse must stay bounded.
+//
+// Seen to fail when the reference power is the emitted power (lights elsewhere), lacks the area that is seen (unit of
+// length), or is the power of the brightest patch (divided lamps, lights elsewhere).
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "interflect/solver/solve.h"
+#include "tests/solver/variants.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+/// A room of 4 x 3 x 2.5 m with a table under a lamp, over a cellar that no light leaves or enters.
+struct Room {
+    float metre = 1;            ///< In units of the file.
+    float brightness = 1;       ///< Of all lights.
+    int lamp_divisions = 1;     ///< Each way.
+    float cellar_exitance = 0;  ///< The lamp's is 100.
+    double epsilon = 1e-5;
+    std::uint64_t seed = 1;
+};
+
+constexpr std::uint32_t first_lamp = 8, cellar_walls = 6;  // patches: 6 walls, 2 sides of the table, lamp, cellar
+
+Scene scene_of(const Room& room) {
+    Scene scene = closed_box(V3f(4, 3, 2.5f) * room.metre, 1, {{"wall", {0.6f, 0.5f, 0.4f}, Rgb(0)}});
+    const std::uint32_t grey = add_material(scene, Rgb(0.5f), Rgb(0));
+    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(100 * room.brightness));
+    const std::uint32_t cellar = add_material(scene, Rgb(0.5f), Rgb(room.cellar_exitance * room.brightness));
+    const auto rectangle = [&](V3f corner, V3f u, V3f v, std::uint32_t material, int n, bool two_sided = false) {
+        add_rectangle(scene, corner * room.metre, u * room.metre, v * room.metre, material, n, n, two_sided);
+    };
+    rectangle({1, 1, 0.7f}, {1.5f, 0, 0}, {0, 1, 0}, grey, 1, true);
+    rectangle({1.5f, 1, 2.4f}, {0, 1, 0}, {1, 0, 0}, lamp, room.lamp_divisions);
+    const Scene box = closed_box(V3f(4, 3, 2.5f) * room.metre, 1, {{"", Rgb(0), Rgb(0)}});
+    const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
+    for (const V3f& v : box.vertices) scene.vertices.push_back(v - V3f(0, 0, 5) * room.metre);
+    for (Patch patch : box.patches) {
+        for (std::uint32_t& v : patch.vertices) v += first_vertex;
+        patch.material = cellar;
+        scene.patches.push_back(patch);
+    }
+    return scene;
+}
+
+/// Leaves on the walls and the table, on the lamp, in the cellar.
+struct Leaves {
+    double room = 0, lamp = 0, cellar = 0;
+};
+
+Leaves leaves_of(const char* method, const Room& room) {
+    const Scene scene = scene_of(room);
+    SolveOptions options;
+    options.method = find_method(method);
+    const V3f eye(0.5f, 0.5f, 1.5f), look_at(3.5f, 2.5f, 0.8f);
+    options.views = {{{"room", eye * room.metre, look_at * room.metre, {0, 0, 1}, 60}}};
+    options.rays = 200'000;
+    options.epsilon = room.epsilon;
+    options.smallest_area = std::pow(0.02 * room.metre, 2);
+    options.seed = room.seed;
+    const Solution solution = solve(scene, RayCaster(scene), options);
+    const std::uint32_t first_cellar = solution.forest->patch_count() - cellar_walls;
+    Leaves leaves;
+    for (const std::uint32_t leaf : solution.forest->leaves()) {
+        const std::uint32_t patch = solution.forest->patch(leaf);
+        ++(patch >= first_cellar ? leaves.cellar : patch >= first_lamp ? leaves.lamp : leaves.room);
+    }
+    return leaves;
+}
+
+/// Counts differ by less with another seed; the last test tells how much less they differ than they might.
+constexpr double tolerance = 0.03;
+
+class Mesh : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Mesh, testing::Values("hsrr", "ihsrr"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(Mesh, DoesNotDependOnTheUnitOfLengthOrOfPower) {
+    const double expected = leaves_of(GetParam(), {}).room;
+    for (const float metre : {1000.0f, 0.001f})
+        EXPECT_NEAR(leaves_of(GetParam(), {.metre = metre}).room / expected, 1, tolerance) << metre;
+    EXPECT_NEAR(leaves_of(GetParam(), {.brightness = 683}).room / expected, 1, tolerance);
+}
+
+TEST_P(Mesh, DoesNotDependOnTheDivisionOfALamp) {
+    // As long as the lamp is not divided more finely than the oracle itself divides it.
+    const Leaves whole = leaves_of(GetParam(), {});
+    const auto ratio = [&](int divisions) {
+        EXPECT_LE(divisions * divisions, whole.lamp);
+        return leaves_of(GetParam(), {.lamp_divisions = divisions}).room / whole.room;
+    };
+    for (const int divisions : {2, 4, 8}) EXPECT_NEAR(ratio(divisions), 1, tolerance) << divisions;
+    // Areas fall by a factor of 4 from level to level: dividing by anything but halves moves where the steps fall.
+    EXPECT_NEAR(ratio(3), 1, 0.15);
+}
+
+TEST(MeshOfImportance, DoesNotDependOnLightsThatMatterNothingToTheView) {
+    const double expected = leaves_of("ihsrr", {}).room;
+    for (const float exitance : {1.0f, 100.0f, 1e5f}) {
+        const Leaves leaves = leaves_of("ihsrr", {.cellar_exitance = exitance});
+        EXPECT_NEAR(leaves.room / expected, 1, tolerance) << exitance;
+        EXPECT_EQ(leaves.cellar, cellar_walls) << "nothing is divided there";
+    }
+}
+
+TEST_P(Mesh, FollowsTheThreshold) {
+    const double expected = leaves_of(GetParam(), {}).room;
+    EXPECT_NEAR(leaves_of(GetParam(), {.seed = 2}).room / expected, 1, tolerance);
+    EXPECT_GT(leaves_of(GetParam(), {.epsilon = 0.8e-5}).room / expected, 1 + 2 * tolerance);
+}
+
+}  // namespace
+}  // namespace interflect

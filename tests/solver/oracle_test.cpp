@@ -1,0 +1,83 @@
+// What the oracle is told about two elements, and what it says (Eq. 14, 15, Prikryl et al. 2000).
+// Seen to fail when the estimate takes the receiver's area for the shooter's, or the cosines may fall to nothing.
+
+#include "interflect/solver/oracle.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/form_factors.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+Party party(const Rectangle& r) {
+    return {V3f(r.corner + 0.5 * (r.u + r.v)), V3f(r.normal()), static_cast<float>(r.area())};
+}
+
+struct Pair {
+    const char* name;
+    Rectangle receiver, shooter;
+};
+
+const Rectangle floor_tile{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+Rectangle ceiling_at(double height, double size = 1) {
+    const double low = 0.5 - 0.5 * size;
+    return {{low, low, height}, {0, size, 0}, {size, 0, 0}};
+}
+
+class FormFactorEstimate : public testing::TestWithParam<Pair> {};
+INSTANTIATE_TEST_SUITE_P(Pairs, FormFactorEstimate,
+                         testing::Values(Pair{"near", floor_tile, ceiling_at(0.5)},
+                                         Pair{"opposite", floor_tile, ceiling_at(1)},
+                                         Pair{"far", floor_tile, ceiling_at(20)},
+                                         Pair{"large_shooter", floor_tile, ceiling_at(3, 4)},
+                                         Pair{"small_shooter", floor_tile, ceiling_at(3, 0.25)},
+                                         Pair{"corner", floor_tile, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                                         Pair{"aside", floor_tile, {{5, 0, 2}, {0, 1, 0}, {1, 0, 0}}}),
+                         [](const auto& test) { return test.param.name; });
+
+TEST_P(FormFactorEstimate, IsAnUpperEstimateOfTheRightSize) {
+    const double exact = form_factor(GetParam().receiver, GetParam().shooter);
+    const float estimate = form_factor_estimate(party(GetParam().shooter), party(GetParam().receiver));
+    EXPECT_GT(estimate, 0.9 * exact);  // it may fall short by some percent where the two lie aside
+    EXPECT_LT(estimate, 1.5 * exact);
+}
+
+TEST_P(FormFactorEstimate, DoesNotDependOnTheUnitOfLength) {
+    const auto scaled = [](Party p) {
+        p.centre *= 1024;
+        p.area *= 1024 * 1024;
+        return p;
+    };
+    const Party shooter = party(GetParam().shooter), receiver = party(GetParam().receiver);
+    EXPECT_FLOAT_EQ(form_factor_estimate(scaled(shooter), scaled(receiver)), form_factor_estimate(shooter, receiver));
+}
+
+TEST(FormFactorEstimates, AreFiniteWhereTheCentresMeet) {
+    EXPECT_FLOAT_EQ(form_factor_estimate(party(floor_tile), party(floor_tile)), 1);
+}
+
+class Accepts : public testing::Test {
+  protected:
+    const Party shooter_ = party(ceiling_at(1)), receiver_ = party(floor_tile);
+    const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // of what Rgb(2, 7, 1) brings to 1 m^2
+    bool accepts(double threshold, bool by_importance, float importance) const {
+        return Oracle{true, threshold, by_importance, 0}.accepts(shooter_, receiver_, {2, 7, 1}, importance);
+    }
+};
+
+TEST_F(Accepts, PowerUpToTheThresholdInTheLargestChannel) {
+    EXPECT_TRUE(accepts(1.001 * power_, false, 5));
+    EXPECT_FALSE(accepts(0.999 * power_, false, 0));
+}
+
+TEST_F(Accepts, PowerTimesImportanceWhereImportanceDecides) {
+    EXPECT_TRUE(accepts(1.001 * 5 * power_, true, 5));
+    EXPECT_FALSE(accepts(0.999 * 5 * power_, true, 5));
+    EXPECT_TRUE(accepts(0, true, 0)) << "what nobody sees stays whole";
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,131 @@
+#include "tests/solver/variants.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "tests/support/scenes.h"
+
+namespace interflect::testing_support {
+
+namespace {
+
+Variant plain(const char* method) {
+    Variant variant{method, {}};
+    variant.options.method = find_method(method);
+    return variant;
+}
+
+Variant flat(bool separate) {
+    Variant variant = plain("isrr");
+    variant.name += separate ? "_si" : "_ci";
+    variant.options.separate_iterations = separate;
+    return variant;
+}
+
+/// One of the paper's eight, by its names for the options (METHOD.md section 4).
+Variant hierarchical(bool separate, bool deferred, bool at_elements) {
+    Variant variant = plain("ihsrr");
+    variant.name += std::string(separate ? "_si" : "_ci") + (deferred ? "_dr" : "") + (at_elements ? "_hi" : "");
+    variant.options.separate_iterations = separate;
+    variant.options.defer_refinement = deferred;
+    variant.options.importance_at_elements = at_elements;
+    return variant;
+}
+
+template <class Condition>
+std::vector<Variant> those(const Condition& condition) {
+    const std::vector<Variant> all = stochastic_variants();
+    std::vector<Variant> some;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+                 [&](const Variant& variant) { return condition(variant.options.method); });
+    return some;
+}
+
+}  // namespace
+
+const View into_the_corner{"corner", {0.9f, 1.9f, 2.5f}, {0.1f, 0.4f, 0.2f}, {0, 0, 1}, 40};
+
+std::ostream& operator<<(std::ostream& out, const Variant& variant) { return out << variant.name; }
+
+std::vector<Variant> stochastic_variants() {
+    std::vector<Variant> variants{plain("srr"), flat(true), flat(false), plain("hsrr")};
+    for (const bool separate : {true, false})
+        for (const bool deferred : {false, true})
+            for (const bool at_elements : {false, true})
+                variants.push_back(hierarchical(separate, deferred, at_elements));
+    return variants;
+}
+
+std::vector<Variant> variants_that_keep_every_ray() { return {plain("wdrs"), plain("hwdrs")}; }
+
+std::vector<Variant> variants_with_importance() {
+    return those([](const Method& method) { return method.importance != ImportanceUse::off; });
+}
+
+std::vector<Variant> variants_that_refine() {
+    std::vector<Variant> variants = those([](const Method& method) { return method.refines; });
+    variants.push_back(plain("hwdrs"));
+    return variants;
+}
+
+std::vector<Variant> extreme_variants() {
+    std::vector<Variant> variants;
+    const auto add = [&](const char* name, const auto& change, const char* method = "ihsrr") {
+        variants.push_back(plain(method));
+        variants.back().name = name;
+        change(variants.back().options);
+    };
+    add("alpha_0", [](SolveOptions& o) { o.alpha = 0; });
+    add("alpha_1", [](SolveOptions& o) { o.alpha = 1; });
+    add("beta_0", [](SolveOptions& o) { o.beta = 0; });
+    add("beta_1", [](SolveOptions& o) { o.beta = 1; });
+    add("inherited_trust_0", [](SolveOptions& o) { o.inherited_trust = 0; });
+    add("inherited_trust_1", [](SolveOptions& o) { o.inherited_trust = 1; });
+    add("total_importance", [](SolveOptions& o) { o.total_importance = true, o.beta = 0; });
+    // Flat: to what is not seen nothing is important, so it receives as a whole.
+    const auto direct = [](SolveOptions& o) { o.method.importance = ImportanceUse::direct; };
+    add("direct_importance", direct, "isrr");
+    return variants;
+}
+
+void divide_everything(SolveOptions& options, double smallest_area) {
+    options.epsilon = 1e-12;
+    options.smallest_area = smallest_area;
+}
+
+SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
+    SolveOptions options = variant.options;
+    options.views = {{into_the_corner}};
+    options.seed = seed;
+    // A kept ray has the colour that it was shot with, before any warm-up.
+    options.incremental_start = options.method.scheme == Scheme::well_distributed;
+    options.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
+    options.iterations = 4;
+    options.rays_per_iteration = 10'000;
+    divide_everything(options, options.defer_refinement ? left_whole : divided_once);
+    return options;
+}
+
+std::vector<std::uint32_t> leaves_by_place(const ElementForest& forest) {
+    std::vector<std::uint32_t> leaves = forest.leaves();
+    std::sort(leaves.begin(), leaves.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(forest.patch(a), forest.path(a)) < std::pair(forest.patch(b), forest.path(b));
+    });
+    return leaves;
+}
+
+Scene scene_of_leaves(const Scene& scene, const ElementForest& forest) {
+    Scene leaves;
+    leaves.name = "the leaves of " + scene.name;
+    leaves.materials = scene.materials;
+    for (const std::uint32_t leaf : leaves_by_place(forest)) {
+        const std::uint32_t patch = forest.patch(leaf);
+        const Cell cell = forest.cell(leaf);
+        const auto corner = [&](float s, float t) { return forest.geometry(patch).point(cell.at(s, t)); };
+        add_rectangle(leaves, corner(0, 0), corner(1, 0) - corner(0, 0), corner(0, 1) - corner(0, 0),
+                      scene.patches[patch].material);
+    }
+    return leaves;
+}
+
+}  // namespace interflect::testing_support
