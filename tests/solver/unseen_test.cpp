@@ -48,6 +48,7 @@ SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t see
     SolveOptions options;
     options.method = find_method(method);
     options.views = {{first_chamber}};
+    options.epsilon = 2e-6;  // what the bounds below were found with
     options.rays = rays;
     options.seed = seed;
     return options;
@@ -117,7 +118,7 @@ TEST_F(Unseen, RegionsAreCoarseWhereTheFlatMethodIsNoisy) {
     RecordProperty("error of isrr", std::to_string(flat.root_mean_square));
     RecordProperty("largest of isrr", std::to_string(flat.largest));
     EXPECT_LT(hierarchical.root_mean_square, 0.5);
-    EXPECT_LT(hierarchical.largest, 4);
+    EXPECT_LT(hierarchical.largest, 2);
     EXPECT_GT(flat.root_mean_square, 3 * hierarchical.root_mean_square);
     EXPECT_GT(flat.largest, 3 * hierarchical.largest);
 }
