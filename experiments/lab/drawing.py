@@ -1,0 +1,124 @@
+"""The look of the figures, and how they are written."""
+
+import textwrap
+from collections.abc import Iterable
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.image
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, StrMethodFormatter
+
+from .program import ROOT, ExperimentError
+from .statistics import Curve
+
+COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d31"]  # Okabe and Ito's
+MARKERS = "osD^vPX*"
+LARGEST_FILE = 300_000  # bytes
+RESOLUTIONS = (160, 120, 100, 80, 60)  # dots per inch; the first whose file is small enough
+
+COUNTS = ("rays", "elements")
+LABELS = {
+    "seconds": "time of the solver [s]",
+    "rays": "rays",
+    "elements": "elements",
+    "peak_mib": "peak memory [MiB]",
+    "relative_mse_flat": "relative MSE, flat shading",
+    "relative_mse_smooth": "relative MSE, smooth shading",
+    "perceptual_distance_flat": "perceptual distance, flat shading",
+    "perceptual_distance_smooth": "perceptual distance, smooth shading",
+    "flip_smooth": "ꟻLIP, smooth shading",
+}
+
+plt.rcParams.update(
+    {
+        "font.size": 9,
+        "axes.titlesize": 9,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "grid.color": "#dddddd",
+        "grid.linewidth": 0.6,
+        "legend.frameon": False,
+        "lines.linewidth": 1.4,
+        "lines.markersize": 4.5,
+        "svg.hashsalt": "interflect",  # the same figure, the same bytes
+    }
+)
+
+
+def panels(columns: int, rows: int = 1, *, size: tuple[float, float] = (3.1, 2.9)) -> tuple[Figure, list[Axes]]:
+    """A figure of panels, each `size` inches wide and high; they are listed row by row."""
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(size[0] * columns, size[1] * rows), layout="constrained", squeeze=False
+    )
+    return figure, list(axes.flat)
+
+
+def style_of(number: int) -> dict:
+    """Colour and marker of the number-th series, from 0."""
+    return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
+
+
+def draw_curve(axes: Axes, c: Curve, label: str, number: int, **style) -> None:
+    """A line through the means and its confidence band."""
+    style = style_of(number) | style
+    axes.plot(c.x, c.y, label=label, **style)
+    axes.fill_between(c.x, c.y / c.band, c.y * c.band, color=style["color"], alpha=0.18, linewidth=0)
+
+
+def logarithmic(axes: Axes, x: str, y: str) -> None:
+    """Both axes in logarithms, named by LABELS where the quantities are columns."""
+    axes.set(xscale="log", yscale="log", xlabel=LABELS.get(x, x), ylabel=LABELS.get(y, y))
+    for axis, quantity in ((axes.xaxis, x), (axes.yaxis, y)):
+        low, high = axis.get_view_interval()
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 30 * low else (1,)))
+        axis.set_major_formatter(EngFormatter(sep="") if quantity in COUNTS else StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def show_picture(axes: Axes, picture: str, title: str) -> None:
+    """A picture that `interflect render` made; its path as in the CSV."""
+    path = ROOT / picture
+    if not path.is_file():
+        raise ExperimentError(f"the picture {picture} is gone: run the experiment again without --only-draw")
+    axes.imshow(matplotlib.image.imread(path))
+    axes.set_title(title)
+    axes.axis("off")
+
+
+def save(figure: Figure, folder: Path, name: str, caption: str) -> None:
+    """Writes NAME.svg and NAME.png with the caption below, each within LARGEST_FILE."""
+    folder.mkdir(parents=True, exist_ok=True)
+    letters = int(figure.get_figwidth() * 15.5)
+    figure.text(
+        0.01, -0.015, textwrap.fill(" ".join(caption.split()), letters), va="top", fontsize=8.5, color="#333333"
+    )
+    for path, metadata in ((folder / f"{name}.svg", {"Date": None}), (folder / f"{name}.png", {"Software": None})):
+        for resolution in RESOLUTIONS:
+            figure.savefig(path, dpi=resolution, metadata=metadata, bbox_inches="tight", facecolor="white")
+            if path.stat().st_size <= LARGEST_FILE:
+                break
+        else:
+            raise ExperimentError(
+                f"{path} has more than {LARGEST_FILE} bytes even with {RESOLUTIONS[-1]} dots per inch"
+            )
+    plt.close(figure)
+
+
+def shared_legend(figure: Figure, axes: Axes, columns: int) -> None:
+    """One legend for all panels, above them."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns)
+
+
+def guide(axes: Axes, x: Iterable[float], y: float, slope: float, label: str) -> None:
+    """A grey line of that slope from y at the first x."""
+    x = np.asarray(list(x), dtype=float)
+    axes.plot(x, y * (x / x[0]) ** slope, color="#999999", linestyle=":", linewidth=1.2, label=label)

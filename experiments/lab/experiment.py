@@ -1,0 +1,74 @@
+"""An experiment: NAME.py beside NAME.toml, which say what to run and how to draw it."""
+
+import importlib
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from . import results
+from .program import ROOT, ExperimentError
+from .store import Store
+from .tasks import Entry
+
+FOLDER = ROOT / "experiments"
+PAPER = ["fig1-reference", "fig2-equal-rays", "fig3-distance", "fig4-unseen", "fig5-variants", "fig5-office"]
+BEYOND = ["world-size", "convergence", "points", "averaging"]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where results go."""
+
+    results: Path  # NAME.csv
+    figures: Path  # NAME.svg, NAME.png, tables
+
+    @staticmethod
+    def below(folder: Path) -> "Places":
+        return Places(folder / "results", folder / "figures")
+
+
+COMMITTED = Places(FOLDER / "results", ROOT / "docs/figures")
+
+
+class Experiment:
+    """Its module has `entries(config)`, the tasks, and `draw(config, rows, folder)`, which makes the figures."""
+
+    def __init__(self, name: str, config: Path | None = None, quick: bool = False):
+        self.name = name
+        self.module: ModuleType = importlib.import_module(name.replace("-", "_"))
+        self.config = read_config(config or FOLDER / f"{name}.toml", quick)
+
+    def entries(self) -> list[Entry]:
+        return self.module.entries(self.config)
+
+    def collect(self, store: Store, places: Places) -> None:
+        """Writes NAME.csv from tasks that are done, if there are any."""
+        rows = [{"series": entry.series, **store.row(entry.task)} for entry in self.entries()]
+        if rows:
+            results.write_csv(places.results / f"{self.name}.csv", rows)
+
+    def draw(self, places: Places) -> None:
+        """Makes the figures from NAME.csv, if the experiment has any entries."""
+        if not self.entries():
+            return
+        table = places.results / f"{self.name}.csv"
+        if not table.is_file():
+            raise ExperimentError(f"{table} is not there: run the experiment once without --only-draw")
+        self.module.draw(self.config, results.read_csv(table), places.figures)
+
+
+def read_config(path: Path, quick: bool) -> dict:
+    """What is in the file; for a quick run, the table `quick` lies over the rest."""
+    with path.open("rb") as file:
+        config = tomllib.load(file)
+    over = config.pop("quick", {})
+    return _laid_over(config, over) if quick else config
+
+
+def _laid_over(below: dict, above: dict) -> dict:
+    merged = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, dict) and isinstance(below.get(key), dict)
+        merged[key] = _laid_over(below[key], value) if both else value
+    return merged

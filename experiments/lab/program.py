@@ -1,0 +1,103 @@
+"""Runs the `interflect` command and tells what it cost and on what machine."""
+
+import hashlib
+import json
+import os
+import platform
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILT = "build/release/bin/interflect"
+SCENES = "$INTERFLECT_SCENES"  # in a path: the folder of scenes that are no part of this repository
+
+
+class ExperimentError(Exception):
+    """Something that the reader can mend; the message says how."""
+
+
+@dataclass(frozen=True)
+class Program:
+    path: Path
+    version: str  # and the last commit of its sources, where scripts/build made it
+    fingerprint: str  # of the executable: what another build found is never taken for this one's
+    machine: str
+
+
+@dataclass(frozen=True)
+class Finished:
+    output: str  # what it printed to stdout
+    seconds: float  # from start to end, reading the scene included
+    peak_mib: float  # largest resident memory
+
+
+def find_program() -> Program:
+    """The command that the environment variable INTERFLECT_COMMAND names, else the one that scripts/build makes."""
+    named = os.environ.get("INTERFLECT_COMMAND")
+    path = Path(named or ROOT / BUILT)
+    if not path.is_file():
+        raise ExperimentError(
+            f"{path} is not there: build it with scripts/build, or name another in INTERFLECT_COMMAND"
+        )
+    printed = subprocess.run([path, "--version"], capture_output=True, text=True, check=True).stdout
+    fingerprint = hashlib.sha256(path.read_bytes()).hexdigest()
+    version = printed.split()[-1] + ("" if named else _commit())
+    return Program(path, version, fingerprint, _machine())
+
+
+def expanded(text: str) -> str:
+    """With the folder that SCENES stands for: that of the environment variable, else ../shared/scenes."""
+    return text.replace(SCENES, os.environ.get(SCENES[1:], str(ROOT.parent / "shared/scenes")))
+
+
+def run(program: Program, arguments: list[str]) -> Finished:
+    """Runs `interflect ARGUMENTS`, with SCENES in them expanded, in the repository's root.
+
+    Raises ExperimentError with the command and the end of what it said, where it fails; KeyboardInterrupt where it was
+    interrupted.
+    """
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as messages:
+        begin = time.monotonic()
+        process = subprocess.Popen([program.path, *map(expanded, arguments)], cwd=ROOT, stdout=output, stderr=messages)
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = time.monotonic() - begin
+        process.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        messages.seek(0)
+        if process.returncode == 130:
+            raise KeyboardInterrupt
+        if process.returncode != 0:
+            said = "\n".join(messages.read().splitlines()[-5:])
+            raise ExperimentError(
+                f"interflect {' '.join(arguments)}\nended with exit code {process.returncode}:\n{said}"
+            )
+        return Finished(output.read(), seconds, usage.ru_maxrss / 1024)  # Linux counts in KiB
+
+
+def read_stats(path: Path) -> tuple[dict, dict]:
+    """What `solve --stats` wrote: its first line, and that of the last iteration."""
+    lines = path.read_text().splitlines()
+    return json.loads(lines[0]), json.loads(lines[-1])
+
+
+def _commit() -> str:
+    """The last commit of the program's sources, in parentheses; marked where they have changed since."""
+    sources = ["src", "apps", "cmake", "CMakeLists.txt", "CMakePresets.json"]
+
+    def git(*arguments: str) -> str:
+        command = ["git", *arguments, "--", *sources]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+
+    try:
+        return f" ({git('log', '-1', '--format=%h')}{' and changes' if git('status', '--porcelain') else ''})"
+    except (OSError, subprocess.CalledProcessError):
+        return ""  # not in a repository
+
+
+def _machine() -> str:
+    models = (line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name"))
+    model = next(models, platform.machine()).partition(":")[2].strip() or platform.machine()
+    return f"{model}, {os.cpu_count()} cores"

@@ -1,0 +1,79 @@
+"""Rows of results: as CSV files, by series and budget, and as Markdown tables."""
+
+import csv
+import math
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+
+from . import statistics
+from .store import COLUMNS
+
+Row = dict[str, str | float]
+
+TEXT = {"series", "scene", "view", "picture", "version", "command", "reference", "machine"}
+
+
+def write_csv(path: Path, rows: Iterable[dict]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def read_csv(path: Path) -> list[Row]:
+    """All columns but those of TEXT as numbers; nan where there is none."""
+
+    def value(column: str, text: str) -> str | float:
+        return text if column in TEXT else float(text or math.nan)
+
+    with path.open(newline="") as file:
+        return [{column: value(column, text) for column, text in row.items()} for row in csv.DictReader(file)]
+
+
+def grouped(rows: Iterable[Row], column: str) -> dict[str | float, list[Row]]:
+    """By the values of a column, in the order in which they are met."""
+    groups: dict[str | float, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(row[column], []).append(row)
+    return groups
+
+
+def values(rows: Iterable[Row], column: str) -> np.ndarray:
+    return np.array([row[column] for row in rows], dtype=float)
+
+
+def curve(rows: Iterable[Row], x: str, y: str) -> statistics.Curve:
+    """Of one series: the columns x and y over its budgets."""
+    budgets = grouped(sorted(rows, key=lambda row: row["budget"]), "budget").values()
+    return statistics.curve([(values(seeds, x), values(seeds, y)) for seeds in budgets])
+
+
+def write_table(path: Path, header: list[str], lines: Iterable[Iterable[str]]) -> None:
+    """A Markdown table, to be put into a text."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    rule = ["---"] * len(header)
+    path.write_text("".join(f"| {' | '.join(line)} |\n" for line in [header, rule, *lines]))
+
+
+COST_AND_ERRORS: dict[str, tuple[str, Callable[[np.ndarray], str]]] = {
+    "elements": ("elements", lambda v: f"{v.mean():,.0f}"),
+    "peak MiB": ("peak_mib", lambda v: f"{v.mean():,.0f}"),
+    "seconds": ("seconds", lambda v: f"{v.mean():.3g}"),
+    "relative MSE, flat": ("relative_mse_flat", lambda v: str(statistics.mean(v))),
+    "relative MSE, smooth": ("relative_mse_smooth", lambda v: str(statistics.mean(v))),
+    "perceptual distance": ("perceptual_distance_smooth", lambda v: str(statistics.mean(v))),
+    "ꟻLIP": ("flip_smooth", lambda v: str(statistics.mean(v))),
+}
+
+
+def write_summary(path: Path, rows: Iterable[Row]) -> None:
+    """A line for each series and budget: its cost and errors, means over the seeds with their confidence intervals."""
+    lines = []
+    for series, runs in grouped(rows, "series").items():
+        for budget, seeds in grouped(runs, "budget").items():
+            cells = [show(values(seeds, column)) for column, show in COST_AND_ERRORS.values()]
+            lines.append([str(series), f"{budget / 1e6:g} M", str(len(seeds)), *cells])
+    write_table(path, ["method", "rays", "seeds", *COST_AND_ERRORS], lines)

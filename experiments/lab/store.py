@@ -1,0 +1,107 @@
+"""Does tasks, and remembers what they found by their commands and the program's build."""
+
+import contextlib
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from .program import ROOT, Finished, Program, expanded, read_stats, run
+from .tasks import SHADINGS, Measure, Picture, Solve, Task, probe
+
+METRICS = ("relative_mse", "perceptual_distance", "flip")  # keys of `compare --json`
+COLUMNS = (
+    ["series", "scene", "view", "budget", "rays", "seed", "seconds", "elements", "peak_mib"]
+    + [f"{metric}_{shading}" for metric in METRICS for shading in SHADINGS]
+    + ["picture", "version", "command", "reference", "machine", "threads"]
+)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solution file, and what is known of the run that made it: values of COLUMNS."""
+
+    path: Path
+    row: dict
+
+
+class Store:
+    """A folder with KEY.json for every task that is done, and beside it the picture where the task is one."""
+
+    def __init__(self, program: Program, folder: Path):
+        self._program = program
+        self._folder = folder.resolve()
+        self._folder.mkdir(parents=True, exist_ok=True)
+
+    def has(self, task: Task) -> bool:
+        return self._path(task, "json").exists()
+
+    def row(self, task: Task) -> dict:
+        """The values of COLUMNS, but for `series`, of a task that is done."""
+        return json.loads(self._path(task, "json").read_text())
+
+    @contextlib.contextmanager
+    def solution(self, solve: Solve) -> Iterator[Solution]:
+        """Solves. The solution file is there while the `with` statement lasts: some have tens of megabytes."""
+        path, stats = self._path(solve, "h5"), self._path(solve, "stats")
+        try:
+            finished = self.run(solve.arguments(str(path), str(stats)))
+            header, last = read_stats(stats)
+            yield Solution(path, self._row(solve, finished, header, last))
+        finally:
+            path.unlink(missing_ok=True)
+            stats.unlink(missing_ok=True)
+
+    def do(self, task: Task, solution: Solution) -> None:
+        """Does a task of the solution's. What it needs of other solutions, a Measure's reference, must be done."""
+        found = self._draw(task, solution) if isinstance(task, Picture) else self._compare(task, solution)
+        path = self._path(task, "json")
+        unfinished = path.with_suffix(".part")
+        unfinished.write_text(json.dumps({**solution.row, "view": task.view, **found}, indent=1))
+        unfinished.replace(path)
+
+    def run(self, arguments: list[str]) -> Finished:
+        return run(self._program, arguments)
+
+    def _row(self, solve: Solve, finished: Finished, header: dict, last: dict) -> dict:
+        command = ["interflect", *solve.arguments("solution.h5", "stats.json")]
+        return {
+            "scene": solve.scene,
+            "budget": solve.rays,
+            "rays": last["rays"],
+            "seed": solve.seed,
+            "seconds": last["seconds"],
+            "elements": last["elements"],
+            "peak_mib": round(finished.peak_mib, 1),
+            "version": self._program.version,
+            "command": " ".join(command),
+            "machine": self._program.machine,
+            "threads": header["threads"],
+        }
+
+    def _draw(self, picture: Picture, solution: Solution) -> dict:
+        path = self._path(picture, picture.suffix)
+        self.run(picture.arguments(str(solution.path), str(path)))
+        return {"picture": os.path.relpath(path, ROOT)}
+
+    def _compare(self, measure: Measure, solution: Solution) -> dict:
+        found = {
+            "reference": f"{measure.reference.options} --rays {measure.reference.rays} --seed {measure.reference.seed}"
+        }
+        for shading in SHADINGS:
+            wanted = self._path(probe(measure.reference, measure.view, shading), "exr")
+            seen = solution.path.with_suffix(".exr")
+            self.run(probe(measure.solve, measure.view, shading).arguments(str(solution.path), str(seen)))
+            difference = json.loads(self.run(["compare", str(seen), str(wanted), "--json"]).output)
+            found |= {f"{metric}_{shading}": difference[metric] for metric in METRICS}
+            seen.unlink()
+        return found
+
+    def _path(self, value: Solve | Task, suffix: str) -> Path:
+        """Where what belongs to `value` is kept; elsewhere for another build or another content of the scene file."""
+        scene = Path(expanded((value if isinstance(value, Solve) else value.solve).scene))
+        content = hashlib.sha256(scene.read_bytes()).hexdigest() if scene.is_file() else ""
+        key = hashlib.sha256(f"{self._program.fingerprint}{content}{value}".encode()).hexdigest()[:20]
+        return self._folder / f"{key}.{suffix}"
