@@ -1,8 +1,14 @@
 """`compare` as a script uses it."""
 
+import struct
 import unittest
 
-from command import BAD_INPUT, LARGE, SMALL, VIEW, CommandTest, room
+from command import BAD_INPUT, LARGE, SMALL, VIEW, WRONG_USAGE, CommandTest, room
+
+
+def png_size(content):
+    """Width and height stand as big-endian numbers in the header chunk that begins every PNG file."""
+    return struct.unpack(">II", content[16:24])
 
 
 class Compare(CommandTest):
@@ -11,8 +17,8 @@ class Compare(CommandTest):
         self.write("room.mgf", room())
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "100k", "--mesh-size", "0.5")
 
-    def render(self, name, size=SMALL):
-        self.interflect("render", "room.h5", "-o", name, *VIEW, *size)
+    def render(self, name, size=SMALL, fov=45, options=()):
+        self.interflect("render", "room.h5", "-o", name, *VIEW, "--fov", fov, *size, *options)
 
     def test_equal_pictures(self):
         for kind in ("exr", "hdr", "png"):
@@ -24,6 +30,9 @@ class Compare(CommandTest):
                     "rmse": 0,
                     "relative_mse": 0,
                     "maximum": 0,
+                    "perceptual_distance": 0,
+                    "fov": 45,
+                    "flip": 0,
                     "blocks": [
                         {"block": block, "relative_rmse": 0, "trimmed_relative_rmse": 0} for block in (1, 5, 9)
                     ],
@@ -50,8 +59,64 @@ class Compare(CommandTest):
     def test_text_is_for_people(self):
         self.render("a.exr")
         text = self.interflect("compare", "a.exr", "a.exr").stdout
-        for words in ("ratio of mean luminances", "RMSE", "blocks of 5"):
+        for words in ("ratio of mean luminances", "RMSE", "blocks of 5", "FLIP", "perceptual distance", "45 degrees"):
             self.assertIn(words, text)
+
+    def test_field_of_view(self):
+        """As asked for, else as the .exr files say, the reference's first, else 45 degrees."""
+        self.render("wide.exr", fov=60)
+        self.render("narrow.exr", fov=30)
+        self.render("narrow.hdr", fov=30)
+        for pictures, fov in {
+            ("narrow.exr", "narrow.exr"): 30,
+            ("wide.exr", "narrow.hdr"): 60,
+            ("narrow.hdr", "wide.exr"): 60,
+            ("narrow.hdr", "narrow.hdr"): 45,
+            ("wide.exr", "wide.exr", "--fov", "20"): 20,
+        }.items():
+            self.assertEqual(self.json("compare", *pictures)["fov"], fov, pictures)
+        self.assertIn("--fov", self.interflect("compare", "wide.exr", "narrow.exr").stderr)
+        self.assertEqual(self.json("compare", "wide.exr", "narrow.exr")["fov"], 30)
+
+        pictures = ("narrow.hdr", "narrow.exr")
+        distances = [self.json("compare", *pictures, "--fov", fov)["perceptual_distance"] for fov in (0.5, 5, 50)]
+        self.assertEqual(len(set(distances)), 3)
+        for fov in ("0", "180", "nan", "wide"):
+            self.interflect("compare", *pictures, "--fov", fov, exit_code=WRONG_USAGE)
+
+    def test_perceptual_measures_rise_with_noise(self):
+        self.render("a.exr")
+        noisy = ("solve", "room.mgf", "-o", "room.h5", "--mesh-size", "0.5", "--seed", "2", "--rays")
+        found = []
+        for rays in ("20k", "2k"):
+            self.interflect(*noisy, rays)
+            self.render("b.exr", options=("--shading", "flat"))
+            found.append(self.json("compare", "b.exr", "a.exr"))
+        for measure in ("perceptual_distance", "flip"):
+            self.assertGreater(found[0][measure], 0)
+            self.assertGreater(found[1][measure], found[0][measure])
+
+    def test_difference_picture(self):
+        """As wide as the reference and higher by its legend; of equal pictures in one colour."""
+        self.render("a.exr")
+        self.render("b.exr", options=("--shading", "flat"))
+        shown = self.json("compare", "b.exr", "a.exr", "--difference", "b.png")
+        self.assertEqual(shown, self.json("compare", "b.exr", "a.exr"))
+        self.interflect("compare", "a.exr", "a.exr", "--difference", "a.png")
+        self.assertEqual(png_size(self.bytes("b.png")), png_size(self.bytes("a.png")))
+        width, height = png_size(self.bytes("b.png"))
+        self.assertEqual(width, 32)
+        self.assertGreater(height, 18)
+        self.assertNotEqual(self.bytes("a.png"), self.bytes("b.png"))
+
+    def test_difference_picture_that_cannot_be_drawn(self):
+        self.render("a.exr")
+        before = self.files()
+        for name, words in {"d.exr": ".png", "d.txt": "d.txt", "missing/d.png": "missing"}.items():
+            text = self.interflect("compare", "a.exr", "a.exr", "--difference", name, exit_code=BAD_INPUT).stderr
+            self.assertIn(words, text)
+        self.interflect("compare", "a.exr", "b.exr", "--difference", "d.png", exit_code=BAD_INPUT)
+        self.assertEqual(self.files(), before)
 
 
 if __name__ == "__main__":

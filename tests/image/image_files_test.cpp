@@ -195,6 +195,25 @@ TEST(ImageFiles, OpenExrSaysWhatItShows) {
     EXPECT_EQ(number("interflect.exposure"), -6.5f);
 }
 
+TEST(ImageFiles, FieldOfViewIsReadFromWhereItIsNoted) {
+    const TemporaryFolder folder;
+    ImageMetadata metadata;
+    for (const float fov : {0.5f, 60.0f}) {
+        metadata.view.fov = fov;
+        write_image(folder.path() / "a.exr", gradient(4, 3), metadata);
+        EXPECT_EQ(read_field_of_view(folder.path() / "a.exr"), fov);
+    }
+    write_image(folder.path() / "a.hdr", gradient(4, 3), metadata);
+    EXPECT_EQ(read_field_of_view(folder.path() / "a.hdr"), std::nullopt);
+
+    for (const float fov : {0.0f, 180.0f, std::numeric_limits<float>::quiet_NaN()}) {
+        metadata.view.fov = fov;
+        write_image(folder.path() / "a.exr", gradient(4, 3), metadata);
+        EXPECT_THROW(read_field_of_view(folder.path() / "a.exr"), InputError) << fov;
+    }
+    EXPECT_THROW(read_field_of_view(folder.path() / "b.exr"), InputError);
+}
+
 TEST(ImageFiles, OpenExrWithoutColourIsRefusedByItsChannels) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "depth.exr";

@@ -7,6 +7,9 @@
 #include <limits>
 
 #include "interflect/base/error.h"
+#include "interflect/image/flip.h"
+#include "interflect/image/perceptual.h"
+#include "interflect/image/tone_map.h"
 
 namespace interflect {
 namespace {
@@ -28,6 +31,8 @@ TEST(Compare, EqualImagesDoNotDiffer) {
         EXPECT_EQ(d.rmse, 0);
         EXPECT_EQ(d.relative_mse, 0);
         EXPECT_EQ(d.maximum, 0);
+        EXPECT_EQ(d.perceptual_distance, 0);
+        EXPECT_EQ(d.flip, 0);
         for (const BlockDifference& block : d.blocks) EXPECT_EQ(block.relative_rmse, 0);
     }
 }
@@ -93,6 +98,9 @@ TEST(Compare, DoesNotDependOnTheUnit) {
     EXPECT_NEAR(a.relative_mse, b.relative_mse, 1e-9);
     EXPECT_NEAR(a.blocks[0].relative_rmse, b.blocks[0].relative_rmse, 1e-9);
     EXPECT_NEAR(a.rmse, 1024 * b.rmse, 1e-6);
+    EXPECT_NEAR(a.perceptual_distance, b.perceptual_distance, 1e-9);
+    EXPECT_NEAR(a.flip, b.flip, 1e-5);
+    EXPECT_GT(a.flip, 0);
 }
 
 TEST(Compare, AveragesALargerImageToTheReferencesSize) {
@@ -100,7 +108,37 @@ TEST(Compare, AveragesALargerImageToTheReferencesSize) {
     image.at(2, 0) = grey(5);  // the right half's mean is 2
     Image reference(2, 1, grey(1));
     reference.at(1, 0) = grey(2);
-    EXPECT_EQ(compare(image, reference).maximum, 0);
+    const ImageDifference d = compare(image, reference);
+    EXPECT_EQ(d.maximum, 0);
+    EXPECT_EQ(d.perceptual_distance, 0);
+    EXPECT_EQ(d.flip, 0);
+    EXPECT_EQ(d.flip_map.width, 2);
+    EXPECT_EQ(d.flip_map.height, 1);
+}
+
+TEST(Compare, PerceptualDistanceIsThatOfTheFieldOfView) {
+    const Image reference = speckle(18, 9, 3, 1), image = speckle(18, 9, 3, 2);
+    EXPECT_EQ(compare(image, reference).perceptual_distance, perceptual_distance(image, reference, 45));
+    EXPECT_EQ(compare(image, reference, {.field_of_view = 3}).perceptual_distance,
+              perceptual_distance(image, reference, 3));
+    EXPECT_THROW(compare(image, reference, {.field_of_view = 180}), InputError);
+}
+
+/// Both with the reference's exposure: a darker image stays darker. A picture from a file of 8 bits is shown as it is.
+TEST(Compare, FlipIsThatOfWhatADisplayShows) {
+    const Image reference = speckle(18, 9, 300, 100), image = speckle(18, 9, 150, 50);
+    const float exposure = automatic_exposure(reference);
+    const Image map =
+        flip_map(tone_map(image, exposure, Tonemap::filmic), tone_map(reference, exposure, Tonemap::filmic));
+    const ImageDifference d = compare(image, reference);
+    EXPECT_EQ(d.flip_map.pixels, map.pixels);
+    double sum = 0;
+    for (const Rgb& pixel : map.pixels) sum += pixel.x;
+    EXPECT_NEAR(d.flip, sum / (18 * 9), 1e-9);
+    EXPECT_GT(d.flip, 0.1);
+
+    const Image shown = speckle(18, 9, 0.5f, 0.3f), expected(18, 9, grey(0.5f));
+    EXPECT_EQ(compare(shown, expected, {.tone_mapped = true}).flip_map.pixels, flip_map(shown, expected).pixels);
 }
 
 TEST(Compare, RefusesSizesThatAreNoWholeMultiple) {
@@ -122,6 +160,9 @@ TEST(Compare, CountsPixelsThatAreNotFinite) {
     const ImageDifference d = compare(image, reference);
     EXPECT_EQ(d.non_finite_pixels, 2);
     EXPECT_TRUE(std::isnan(d.rmse));
+    EXPECT_TRUE(std::isnan(d.perceptual_distance));
+    EXPECT_TRUE(std::isnan(d.flip));
+    EXPECT_TRUE(d.flip_map.pixels.empty());
     EXPECT_TRUE(std::isnan(d.blocks[1].relative_rmse));
 }
 
@@ -129,6 +170,7 @@ TEST(Compare, LightWhereTheReferenceIsBlackIsInfinitelyMuch) {
     const ImageDifference d = compare(Image(2, 2, grey(1)), Image(2, 2));
     EXPECT_TRUE(std::isinf(d.ratio_of_means));
     EXPECT_TRUE(std::isinf(d.relative_mse));
+    EXPECT_TRUE(std::isinf(d.perceptual_distance));
     EXPECT_EQ(d.rmse, 1);
 }
 

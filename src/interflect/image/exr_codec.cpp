@@ -19,6 +19,7 @@ namespace interflect::codecs {
 namespace {
 
 constexpr std::array<const char*, 3> channel_names = {"R", "G", "B"};
+constexpr const char* fov_attribute = "interflect.fov";
 
 void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     const auto text = [&](const char* name, const std::string& value) {
@@ -30,7 +31,7 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     vector("interflect.eye", metadata.view.eye);
     vector("interflect.look_at", metadata.view.look_at);
     vector("interflect.up", metadata.view.up);
-    number("interflect.fov", metadata.view.fov);
+    number(fov_attribute, metadata.view.fov);
     text("interflect.quantity", metadata.quantity);
     text("interflect.scene", metadata.scene);
     number("interflect.exposure", metadata.exposure);
@@ -78,6 +79,16 @@ Image read_exr(const std::filesystem::path& path) {
     file.setFrameBuffer(frame_buffer(image, window));
     file.readPixels(window.min.y, window.max.y);
     return image;
+}
+
+std::optional<float> read_exr_field_of_view(const std::filesystem::path& path) {
+    const Imf::InputFile file(path.c_str());
+    const auto* fov = file.header().findTypedAttribute<Imf::FloatAttribute>(fov_attribute);
+    if (!fov) return std::nullopt;
+    if (!(fov->value() > 0 && fov->value() < 180))
+        throw std::runtime_error(
+            fmt::format("its {} is {}, expected above 0 and below 180 degrees", fov_attribute, fov->value()));
+    return fov->value();
 }
 
 }  // namespace interflect::codecs

@@ -8,6 +8,12 @@
 
 namespace interflect {
 
+void require_same_size(const Image& image, const Image& reference) {
+    if (image.width != reference.width || image.height != reference.height || image.pixels.empty())
+        throw InputError(fmt::format("images of {} x {} and {} x {} pixels: expected the same size, with pixels",
+                                     image.width, image.height, reference.width, reference.height));
+}
+
 Image box_downsample(const Image& image, int factor) {
     if (factor < 1 || image.width % factor != 0 || image.height % factor != 0)
         throw InputError(

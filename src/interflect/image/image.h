@@ -29,6 +29,9 @@ struct Image {
     }
 };
 
+/// @throws InputError unless both images have the same size, and pixels.
+void require_same_size(const Image& image, const Image& reference);
+
 /// The image with every factor x factor block of pixels replaced by its mean.
 /// @throws InputError where width or height is no multiple of `factor`, or factor < 1.
 Image box_downsample(const Image& image, int factor);

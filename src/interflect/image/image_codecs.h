@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,5 +24,6 @@ Image decode_radiance(std::string_view bytes);
 
 void write_exr(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata);
 Image read_exr(const std::filesystem::path& path);
+std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);
 
 }  // namespace interflect::codecs

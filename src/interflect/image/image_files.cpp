@@ -57,6 +57,19 @@ Image read_as(ImageFormat format, const fs::path& path) {
     return codecs::read_exr(path);
 }
 
+/// What `read(format, path)` gives, or an error that names the file.
+template <class Read>
+auto read_with(const fs::path& path, const Read& read) {
+    const ImageFormat format = require_image_format(path);
+    if (!fs::exists(path)) throw InputError(path, 0, "there is no such file");
+    if (!fs::is_regular_file(path)) throw InputError(path, 0, "is not a file, expected an image");
+    try {
+        return read(format, path);
+    } catch (const std::exception& fault) {
+        throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
+    }
+}
+
 }  // namespace
 
 void codecs::require_allowed_size(std::int64_t width, std::int64_t height) {
@@ -91,15 +104,12 @@ void write_image(const fs::path& path, const Image& image, const ImageMetadata& 
     }
 }
 
-Image read_image(const fs::path& path) {
-    const ImageFormat format = require_image_format(path);
-    if (!fs::exists(path)) throw InputError(path, 0, "there is no such file");
-    if (!fs::is_regular_file(path)) throw InputError(path, 0, "is not a file, expected an image");
-    try {
-        return read_as(format, path);
-    } catch (const std::exception& fault) {
-        throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
-    }
+Image read_image(const fs::path& path) { return read_with(path, read_as); }
+
+std::optional<float> read_field_of_view(const fs::path& path) {
+    return read_with(path, [](ImageFormat format, const fs::path& file) {
+        return format == ImageFormat::exr ? codecs::read_exr_field_of_view(file) : std::nullopt;
+    });
 }
 
 }  // namespace interflect

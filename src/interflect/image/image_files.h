@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "interflect/image/image.h"
@@ -51,5 +52,10 @@ void write_image(const std::filesystem::path& path, const Image& image,
 /// short
 ///         or damaged, or claims more than most_image_pixels.
 Image read_image(const std::filesystem::path& path);
+
+/// The vertical field of view [degrees] that write_image() noted in an .exr file; none where there is no such note, as
+/// in all other formats.
+/// @throws InputError as read_image() does, and for a note that is not above 0 and below 180.
+std::optional<float> read_field_of_view(const std::filesystem::path& path);
 
 }  // namespace interflect

@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "interflect/base/error.h"
+#include "interflect/image/flip.h"
+#include "interflect/image/perceptual.h"
+#include "interflect/image/tone_map.h"
 
 namespace interflect {
 
@@ -88,10 +91,26 @@ void add_pixel_measures(const Image& image, const Image& reference, double dark,
     difference.relative_mse = relative_squares / count;
 }
 
+void add_flip(const Image& image, const Image& reference, bool tone_mapped, ImageDifference& difference) {
+    const float exposure = automatic_exposure(reference);
+    difference.flip_map =
+        tone_mapped ? flip_map(image, reference) : flip_map(tone_map(image, exposure), tone_map(reference, exposure));
+    double sum = 0;
+    for (const Rgb& pixel : difference.flip_map.pixels) sum += pixel.x;
+    difference.flip = sum / static_cast<double>(difference.flip_map.pixels.size());
+}
+
 ImageDifference not_a_number(std::int64_t non_finite_pixels) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    ImageDifference difference{nan, nan, nan, nan, {{{1, nan, nan}, {5, nan, nan}, {9, nan, nan}}}, non_finite_pixels};
-    return difference;
+    return {.ratio_of_means = nan,
+            .rmse = nan,
+            .relative_mse = nan,
+            .maximum = nan,
+            .perceptual_distance = nan,
+            .flip = nan,
+            .blocks = {{{1, nan, nan}, {5, nan, nan}, {9, nan, nan}}},
+            .non_finite_pixels = non_finite_pixels,
+            .flip_map = {}};
 }
 
 }  // namespace
@@ -113,6 +132,8 @@ ImageDifference compare(const Image& full_size_image, const Image& reference, co
     for (BlockDifference& blocks : difference.blocks)
         blocks = block_difference(block_means(found, image.width, image.height, blocks.block),
                                   block_means(expected, image.width, image.height, blocks.block), dark, blocks.block);
+    difference.perceptual_distance = perceptual_distance(image, reference, options.field_of_view);
+    add_flip(image, reference, options.tone_mapped, difference);
     return difference;
 }
 

@@ -22,19 +22,30 @@ struct ImageDifference {
     double rmse = 0;            ///< sqrt(mean of (a - b)^2) [unit of the images].
     /// Mean of (a - b)^2 / (b^2 + (0.01 m)^2); m is the reference's mean luminance, so that the unit does not matter.
     double relative_mse = 0;
-    double maximum = 0;  ///< Largest |a - b| [unit of the images].
+    double maximum = 0;              ///< Largest |a - b| [unit of the images].
+    double perceptual_distance = 0;  ///< Weighted by what the eye sees: perceptual.h.
+    double flip = 0;                 ///< Mean of flip_map.
     std::array<BlockDifference, 3> blocks{{{1, 0, 0}, {5, 0, 0}, {9, 0, 0}}};
     std::int64_t non_finite_pixels = 0;  ///< In either image; the measures are then not numbers.
+    /// What someone sees who flips between the two pictures on a display: flip.h. Of the reference's size; empty where
+    /// pixels are not finite.
+    Image flip_map;
 };
 
 struct CompareOptions {
     /// Divide the image by ratio_of_means first (which is still reported), so that only the shape counts.
     bool scale = false;
+    /// Of the pictures' view, vertical, full [degrees], in (0, 180); a View's own default. For perceptual_distance.
+    double field_of_view = 45;
+    /// The images are as a display shows them, in [0, 1], so that FLIP takes them as they are. Otherwise both are
+    /// tone-mapped for it, with the reference's automatic_exposure() and Tonemap::filmic.
+    bool tone_mapped = false;
 };
 
 /// Compares an image with a reference of the same size, or smaller by a whole factor: then each block of the image's
 /// pixels is averaged. Measures of the form 0 / 0 are 0 (equal), x / 0 is infinite.
-/// @throws InputError where the image's size is no whole multiple of the reference's.
+/// docs/metrics.md defines every measure.
+/// @throws InputError where the image's size is no whole multiple of the reference's, or an option is out of range.
 ImageDifference compare(const Image& image, const Image& reference, const CompareOptions& options = {});
 
 }  // namespace interflect
