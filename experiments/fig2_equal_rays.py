@@ -27,8 +27,8 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
             room gets its light from: look at how even the walls are, and at the shadows below the furniture.
             Elements: {counts[0]:,.0f} with, {counts[1]:,.0f} without, a ratio of {counts[0] / counts[1]:.3f} (the paper:
             48,702 of 324,606, 0.150).""",
-        "mesh": """The elements of the two solutions: near the eye and where much light arrives both are as fine; with
-            importance the mesh is coarser in the corners of the view that count for few pixels, and through the doorway.""",
+        "mesh": """The elements of the two solutions in the room that is seen. What importance saves is where it is not: most of the
+            elements without it are in the other eight rooms.""",
     }
     for shown, caption in captions.items():
         figure, axes = drawing.panels(2, size=(4.2, 2.6))

@@ -3,10 +3,11 @@
 import sys
 from pathlib import Path
 
+import fig5_variants
 from lab import results
 from lab.program import expanded
 from lab.results import Row
-from lab.tasks import Entry, ladder, reference_of
+from lab.tasks import Entry
 
 
 def entries(config: dict) -> list[Entry]:
@@ -14,7 +15,7 @@ def entries(config: dict) -> list[Entry]:
     if not scene.is_file():
         print(f"fig5-office is left out: there is no {scene} (INTERFLECT_SCENES names its folder)", file=sys.stderr)
         return []
-    return ladder(config, config["methods"], reference_of(config))
+    return fig5_variants.entries(config)
 
 
 def draw(config: dict, rows: list[Row], folder: Path) -> None:

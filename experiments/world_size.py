@@ -85,14 +85,16 @@ def draw_needs(axes, worlds: list[Need], cost: str, label: str, number: int) -> 
 
 def draw_errors(config: dict, rows: list[Row], folder: Path) -> None:
     """What the needs are read from: error against rays in each world."""
-    figure, axes = drawing.panels(len(config["worlds"]), size=(2.4, 2.7))
+    figure, axes = drawing.panels(len(config["worlds"]), size=(2.2, 2.7), share_y=True)
     for ax, world in zip(axes, config["worlds"]):
         here = results.grouped((row for row in rows if row["scene"] == world["scene"]), "series")
         for number, (name, runs) in enumerate(here.items()):
             drawing.draw_curve(ax, results.curve(runs, "rays", config["metric"]), str(name), number)
         ax.axhline(config["target"], color="#999999", linestyle=":")
-        drawing.logarithmic(ax, "rays", config["metric"])
         ax.set_title(f"{world['rooms']} rooms" if world["rooms"] > 1 else "1 room")
+    for ax in axes:
+        drawing.logarithmic(ax, "rays", config["metric"])
+        ax.label_outer()
     drawing.shared_legend(figure, axes[0], 3)
     caption = """Error of the view of one room against rays, by the size of the world around it; bands are 95% confidence
         intervals. Where a line crosses the dotted one, the rays of the other figure are read."""

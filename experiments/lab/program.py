@@ -4,13 +4,15 @@ import hashlib
 import json
 import os
 import platform
+import signal
 import subprocess
+import sys
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+INTERRUPTED = 130  # exit code of the command after Ctrl-C
 BUILT = "build/release/bin/interflect"
 SCENES = "$INTERFLECT_SCENES"  # in a path: the folder of scenes that are no part of this repository
 
@@ -59,22 +61,21 @@ def run(program: Program, arguments: list[str]) -> Finished:
     Raises ExperimentError with the command and the end of what it said, where it fails; KeyboardInterrupt where it was
     interrupted.
     """
-    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as messages:
-        begin = time.monotonic()
-        process = subprocess.Popen([program.path, *map(expanded, arguments)], cwd=ROOT, stdout=output, stderr=messages)
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = time.monotonic() - begin
-        process.returncode = os.waitstatus_to_exitcode(status)
-        output.seek(0)
-        messages.seek(0)
-        if process.returncode == 130:
-            raise KeyboardInterrupt
-        if process.returncode != 0:
-            said = "\n".join(messages.read().splitlines()[-5:])
-            raise ExperimentError(
-                f"interflect {' '.join(arguments)}\nended with exit code {process.returncode}:\n{said}"
-            )
-        return Finished(output.read(), seconds, usage.ru_maxrss / 1024)  # Linux counts in KiB
+    with tempfile.NamedTemporaryFile("r") as report:
+        launch = [sys.executable, "-I", "-S", Path(__file__).with_name("launch.py"), report.name]
+        command = [*launch, program.path, *map(expanded, arguments)]
+        process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            output, messages = process.communicate()
+        finally:
+            process.wait()  # on Ctrl-C the command ends by itself, and leaves nothing behind
+        cost = json.loads(report.read())
+    if cost["exit_code"] in (INTERRUPTED, -signal.SIGINT):
+        raise KeyboardInterrupt
+    if cost["exit_code"] != 0:
+        said = "\n".join(messages.splitlines()[-5:])
+        raise ExperimentError(f"interflect {' '.join(arguments)}\nended with exit code {cost['exit_code']}:\n{said}")
+    return Finished(output, cost["seconds"], cost["peak_mib"])
 
 
 def read_stats(path: Path) -> tuple[dict, dict]:

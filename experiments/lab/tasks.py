@@ -67,16 +67,10 @@ def with_iterations(options: str, rays: int, iterations: int | None) -> str:
 
 
 def ladder(config: dict, methods: list[dict], reference: Solve) -> list[Entry]:
-    """Measures each method at each of `budgets` with as many `seeds`, each a run of its own.
-
-    A method may have `budgets` and `seeds` of its own.
-    """
+    """Measures each method at each of the `budgets` with as many seeds as `seeds` says for it, in runs of their own."""
     entries = []
     for method in methods:
-        budgets, seeds = method.get("budgets", config["budgets"]), method.get("seeds", config["seeds"])
-        if len(budgets) != len(seeds):
-            raise ValueError(f"{method['name']}: {len(budgets)} budgets, but numbers of seeds for {len(seeds)}")
-        for rays, count in zip(budgets, seeds):
+        for rays, count in zip(config["budgets"], config["seeds"], strict=True):
             options = with_iterations(method["options"], rays, method.get("iterations"))
             for seed in range(1, count + 1):
                 solve = Solve(config["scene"], config["view"], options, rays, seed)

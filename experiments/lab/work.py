@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from .store import Store
 from .tasks import SHADINGS, Measure, Picture, Solve, Task, probe
 
-CALIBRATION_RAYS = 2_000_000
+CALIBRATION_RAYS = 4_000_000
 
 
 def with_references(tasks: Iterable[Task]) -> list[Task]:
@@ -32,7 +32,7 @@ class Clock:
 
     def __init__(self, store: Store, largest: Solve):
         """Calibrated by the run that will take longest, cut short."""
-        short = dataclasses.replace(largest, rays=min(largest.rays, CALIBRATION_RAYS))
+        short = dataclasses.replace(largest, rays=min(-(-largest.rays // 10), CALIBRATION_RAYS))
         begin = time.monotonic()
         with store.solution(short) as solution:
             self._seconds_per_ray = solution.row["seconds"] / short.rays
