@@ -113,7 +113,7 @@ TEST(Flip, FineDetailsCountLessFromFarAway) {
 TEST(Flip, RefusesWhatItCannotCompare) {
     EXPECT_THROW(flip_map(Image(3, 2), Image(2, 3)), InputError);
     EXPECT_THROW(flip_map(Image(), Image()), InputError);
-    for (const double pixels_per_degree : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    for (const double pixels_per_degree : {0.0, -1.0, 1001.0, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(flip_map(Image(3, 2), Image(3, 2), {pixels_per_degree}), InputError) << pixels_per_degree;
 }
 

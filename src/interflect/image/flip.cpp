@@ -22,6 +22,8 @@ namespace {
 using Imath::M33d;
 using Imath::V3d;
 
+constexpr double most_pixels_per_degree = 1000;  // the eye resolves an eighth of that
+
 // --- Colour spaces
 
 /// Linear Rec. 709 to CIE XYZ over that of white (D65): exact for the standard's primaries. Imath multiplies a row by a
@@ -90,10 +92,10 @@ Kernel normalised_kernel(int radius, const Function& function) {
     double above = 0, below = 0;
     for (int x = -radius; x <= radius; ++x) (function(x) > 0 ? above : below) += std::abs(function(x));
     Kernel kernel;
-    for (int x = -radius; x <= radius; ++x)
-        kernel.push_back(static_cast<float>(function(x) > 0 ? function(x) / above
-                                            : below > 0     ? function(x) / below
-                                                            : 0));
+    for (int x = -radius; x <= radius; ++x) {
+        const double weight = function(x);
+        kernel.push_back(weight == 0 ? 0.0f : static_cast<float>(weight / (weight > 0 ? above : below)));
+    }
     return kernel;
 }
 
@@ -126,9 +128,9 @@ Plane filter_columns(const Plane& plane, const Kernel& kernel) {
     Plane result(plane.width, plane.height);
     const int radius = radius_of(kernel);
     for_each_row(plane.height, [&](int y) {
-        for (int k = -radius; k <= radius; ++k)
-            add_scaled(result.row(y), kernel[static_cast<std::size_t>(k + radius)],
-                       plane.row(std::clamp(y + k, 0, plane.height - 1)).data());
+        for (int k = 0; k <= 2 * radius; ++k)
+            add_scaled(result.row(y), kernel[static_cast<std::size_t>(k)],
+                       plane.row(std::clamp(y + k - radius, 0, plane.height - 1)).data());
     });
     return result;
 }
@@ -166,7 +168,7 @@ Plane seen(const Plane& plane, std::span<const Gaussian> sensitivity, double pix
     std::vector<double> volumes;
     double volume = 0;
     const auto gaussian = [&](double b) {
-        return [=](int x) { return std::exp(-pi * pi * x * x / (b * pixels_per_degree * pixels_per_degree)); };
+        return [=](double x) { return std::exp(-pi * pi * x * x / (b * pixels_per_degree * pixels_per_degree)); };
     };
     for (const auto& [a, b] : sensitivity) {
         double sum = 0;
@@ -227,11 +229,11 @@ Features find_features(const Plane& achromatic_channel, double pixels_per_degree
     constexpr double width = 0.082;  // from peak to trough [degrees]
     const double deviation = 0.5 * width * pixels_per_degree;
     const int radius = static_cast<int>(std::ceil(3 * deviation));
-    const auto gaussian = [=](int x) { return std::exp(-x * x / (2 * deviation * deviation)); };
+    const auto gaussian = [=](double x) { return std::exp(-x * x / (2 * deviation * deviation)); };
     const Kernel blur = normalised_kernel(radius, gaussian);
-    const Kernel edge = normalised_kernel(radius, [=](int x) { return -x * gaussian(x); });
+    const Kernel edge = normalised_kernel(radius, [=](double x) { return -x * gaussian(x); });
     const Kernel point =
-        normalised_kernel(radius, [=](int x) { return (x * x / (deviation * deviation) - 1) * gaussian(x); });
+        normalised_kernel(radius, [=](double x) { return (x * x / (deviation * deviation) - 1) * gaussian(x); });
 
     Plane lightness = achromatic_channel;
     for (float& value : lightness.values) value = (value + 16) / 116;  // in [0, 1]
@@ -250,8 +252,9 @@ double feature_difference(const Features& a, const Features& b, std::size_t pixe
 Image flip_map(const Image& image, const Image& reference, const FlipOptions& options) {
     require_same_size(image, reference);
     const double pixels_per_degree = options.pixels_per_degree;
-    if (!(pixels_per_degree > 0))
-        throw InputError(fmt::format("{} pixels per degree: expected more than 0", pixels_per_degree));
+    if (!(pixels_per_degree > 0 && pixels_per_degree <= most_pixels_per_degree))
+        throw InputError(fmt::format("{} pixels per degree: expected above 0, at most {}", pixels_per_degree,
+                                     most_pixels_per_degree));
     const Opponent a = opponent_colours(image), b = opponent_colours(reference);
     const Features features_a = find_features(a[0], pixels_per_degree);
     const Features features_b = find_features(b[0], pixels_per_degree);

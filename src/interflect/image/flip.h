@@ -8,8 +8,8 @@ namespace interflect {
 
 /// How the pictures are looked at.
 struct FlipOptions {
-    /// Pixels of the display in one degree of what the observer sees, > 0. The default is the paper's: a display 0.7 m
-    /// wide, with 3840 pixels across, from 0.7 m away; 67.02.
+    /// Pixels of the display in one degree of what the observer sees, in (0, 1000]. The default is the paper's: a
+    /// display 0.7 m wide, with 3840 pixels across, from 0.7 m away; 67.02.
     double pixels_per_degree = 3840 * std::numbers::pi / 180;
 };
 
