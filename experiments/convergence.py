@@ -46,7 +46,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         line fitted to all its runs, with its 95% confidence interval: -0.5 is that of independent samples, steeper is
         better. {config['seeds'][0]} seeds a point; bands are 95% confidence intervals. Left, all methods have the same
         fixed mesh and err by noise alone; in the middle, a line that levels off has reached what its mesh smooths away.
-        Right, hr has no noise: its points are thresholds."""
+        Right, hr has no noise: its points are thresholds, and its rays only ask what is in sight."""
     drawing.save(figure, folder, "convergence", caption)
     results.write_table(folder / "convergence.md", ["scene", "method", "rays", "relative RMSE, flat", "slope"], lines)
 

@@ -38,19 +38,17 @@ class Experiment:
         self.name = name
         self.module: ModuleType = importlib.import_module(name.replace("-", "_"))
         self.config = read_config(config or FOLDER / f"{name}.toml", quick)
-
-    def entries(self) -> list[Entry]:
-        return self.module.entries(self.config)
+        self.entries: list[Entry] = self.module.entries(self.config)
 
     def collect(self, store: Store, places: Places) -> None:
         """Writes NAME.csv from tasks that are done, if there are any."""
-        rows = [{"series": entry.series, **store.row(entry.task)} for entry in self.entries()]
+        rows = [{"series": entry.series, **store.row(entry.task)} for entry in self.entries]
         if rows:
             results.write_csv(places.results / f"{self.name}.csv", rows)
 
     def draw(self, places: Places) -> None:
         """Makes the figures from NAME.csv, if the experiment has any entries."""
-        if not self.entries():
+        if not self.entries:
             return
         table = places.results / f"{self.name}.csv"
         if not table.is_file():

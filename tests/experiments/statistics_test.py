@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The statistics of the experiments, against known values."""
 
 import math
