@@ -14,14 +14,14 @@ def entries(config: dict) -> list[Entry]:
     }
     first = next(iter(solves.values()))
     reference = reference_of(config)
-    look = config["picture"]
+    above, look = config["overview_picture"], config["picture"]
     found = [
-        Entry("importance: overview", Picture(first, config["overview"], f"{look} --show importance")),
+        Entry("importance: overview", Picture(first, config["overview"], f"{above} --show importance")),
         Entry("reference: unseen", Picture(reference, config["unseen"], f"{look} --shading flat")),
     ]
     for name, solve in solves.items():
-        for place in ("overview", "unseen"):
-            found.append(Entry(f"{name}: {place}", Picture(solve, config[place], f"{look} --shading flat")))
+        for place, options in (("overview", above), ("unseen", look)):
+            found.append(Entry(f"{name}: {place}", Picture(solve, config[place], f"{options} --shading flat")))
         for place, view in (("seen", config["view"]), ("unseen", config["unseen"])):
             found.append(Entry(f"{name}: error {place}", Measure(solve, view, reference)))
     return found
@@ -34,7 +34,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
     def error(name: str, place: str) -> float:
         return by_name[f"{name}: error {place}"]["relative_mse_flat"]
 
-    figure, axes = drawing.panels(3, 2, size=(3.4, 2.2))
+    figure, axes = drawing.panels(3, 2, size=(3.4, 2.5))
     drawing.show_picture(axes[0], by_name["importance: overview"]["picture"], "importance")
     drawing.show_picture(axes[3], by_name["reference: unseen"]["picture"], "unseen room: reference")
     for ax, below, name in zip(axes[1:3], axes[4:6], names):
