@@ -39,6 +39,7 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
                        {"iterations", o.iterations},
                        {"rays_per_iteration", o.rays_per_iteration},
                        {"epsilon", o.epsilon},
+                       {"epsilon_decay", o.epsilon_decay},
                        {"min_area", o.smallest_area},
                        {"inherited_trust", o.inherited_trust},
                        {"defer_refinement", o.defer_refinement},

@@ -153,10 +153,17 @@ void SolverOptions::add_sampling(CLI::App& app) {
 void SolverOptions::add_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(refinement_group); };
     group(app.add_option("--epsilon", solve_.epsilon,
-                         "Power that may pass between two elements undivided, relative to what is seen (or emitted)")
+                         "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
+                         "once 20M rays are averaged")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(1e-15, 1e15)));
+    group(
+        app.add_option("--epsilon-decay", solve_.epsilon_decay,
+                       "That power falls as rays^-EXPONENT: the mesh gets finer as the noise falls; 0: as in the paper")
+            ->type_name("EXPONENT")
+            ->capture_default_str()
+            ->check(number_between(0, 1)));
     group(
         app.add_option("--min-area", solve_.smallest_area, "No element smaller than this [m2]; 0: by the scene's size")
             ->type_name("AREA")

@@ -48,6 +48,7 @@ class WrongUsage(CommandTest):
             "--curve-divisions": ("0", "x"),
             "--warm-up": ("-1",),
             "--epsilon": ("0", "-1", "nan", "small"),
+            "--epsilon-decay": ("-1", "1.5", "nan"),
             "--min-area": ("-1", "nan"),
             "--max-elements": ("0", "5G"),
             "--inherited-trust": ("-0.1", "1.1"),

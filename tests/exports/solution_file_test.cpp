@@ -49,6 +49,7 @@ SolvedScene refined_example() {
     options.method = find_method("ihsrr");
     options.views = {{solved.scene.views[0]}};
     options.epsilon = 1e-3;
+    options.epsilon_decay = 0;
     solved.solution = solve(solved.scene, RayCaster(solved.scene), options);
     return solved;
 }

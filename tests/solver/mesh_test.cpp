@@ -24,7 +24,8 @@ struct Room {
     float brightness = 1;       ///< Of all lights.
     int lamp_divisions = 1;     ///< Each way.
     float cellar_exitance = 0;  ///< The lamp's is 100.
-    double epsilon = 1e-5;
+    double epsilon = 1e-5, epsilon_decay = 0;
+    std::int64_t rays = 200'000;
     std::uint64_t seed = 1;
 };
 
@@ -62,8 +63,9 @@ Leaves leaves_of(const char* method, const Room& room) {
     options.method = find_method(method);
     const V3f eye(0.5f, 0.5f, 1.5f), look_at(3.5f, 2.5f, 0.8f);
     options.views = {{{"room", eye * room.metre, look_at * room.metre, {0, 0, 1}, 60}}};
-    options.rays = 200'000;
+    options.rays = room.rays;
     options.epsilon = room.epsilon;
+    options.epsilon_decay = room.epsilon_decay;
     options.smallest_area = std::pow(0.02 * room.metre, 2);
     options.seed = room.seed;
     const Solution solution = solve(scene, RayCaster(scene), options);

@@ -219,6 +219,7 @@ TEST(Solve, ListsAllOptionsOutOfRange) {
     options.iterations = -1;
     options.rays_per_iteration = -1;
     options.epsilon = 0;
+    options.epsilon_decay = 2;
     options.smallest_area = -1;
     options.most_elements = 3;
     options.alpha = 1.5;
@@ -227,8 +228,8 @@ TEST(Solve, ListsAllOptionsOutOfRange) {
     options.eye_rays = 0;
     const std::string message = error_of(colourful_box(), options);
     for (const char* name :
-         {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:", "epsilon:", "smallest_area:",
-          "most_elements:", "alpha:", "beta:", "inherited_trust:", "eye_rays:"})
+         {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:", "epsilon:", "epsilon_decay:",
+          "smallest_area:", "most_elements:", "alpha:", "beta:", "inherited_trust:", "eye_rays:"})
         EXPECT_THAT(message, HasSubstr(name));
 }
 

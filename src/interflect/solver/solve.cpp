@@ -28,6 +28,7 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require(o.iterations >= 0, "iterations: expected 0 or more");
     require(o.rays_per_iteration >= 0, "rays_per_iteration: expected 0 or more");
     require(o.epsilon > 0, "epsilon: expected more than 0");
+    require(o.epsilon_decay >= 0 && o.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
     require(o.smallest_area >= 0, "smallest_area: expected 0 or more");
     require(o.most_elements >= scene.patches.size() && o.most_elements < 0xfffffff0u,
             "most_elements: expected at least the number of patches and less than 2^32 - 16");
@@ -107,7 +108,8 @@ RgbD iterate(Run& run, IterationPlan& plan) {
     if (rays > 0) {
         TransportStep step = power_step(run.surfaces, solution, present_radiosity(run), combined, rays);
         const bool deferred = run.options.defer_refinement && plan.warms_up;
-        if (run.options.method.refines && !deferred) step.oracle = make_oracle(solution, step, run.smallest_element);
+        if (run.options.method.refines && !deferred)
+            step.oracle = make_oracle(solution, step, run.schedule.averaged_rays() + rays, run.smallest_element);
         const Received received = run_step(run, step);
         if (run.schedule.averaged_rays() > 0) estimate_error(run, received.irradiance, rays);
         merge(run, solution.irradiance, received.irradiance, plan);

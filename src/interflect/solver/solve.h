@@ -75,7 +75,12 @@ struct SolveOptions {
     /// Rays of each iteration; 0: begins small and grows with the rays already averaged. >= 0.
     std::int64_t rays_per_iteration = 0;
 
-    double epsilon = 5e-7;     ///< Threshold of the oracle, relative to the reference power (see reference_power); > 0.
+    /// Threshold of the oracle once 20 million rays are averaged, relative to the reference power (see
+    /// reference_power); > 0.
+    double epsilon = 1.5e-7;
+    /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
+    /// 1]. At 0 it is the same for all iterations, as in the paper.
+    double epsilon_decay = 0.5;
     double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
     std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].

@@ -1,5 +1,6 @@
 #include "interflect/solver/steps.h"
 
+#include <cmath>
 #include <utility>
 
 #include "interflect/solver/probabilities.h"
@@ -7,6 +8,9 @@
 namespace interflect {
 
 namespace {
+
+/// SolveOptions::epsilon is the threshold after so many rays.
+constexpr double rays_at_epsilon = 20e6;
 
 /// Sampling weights of a step that carries power: Eq. 3, 9, 10, and 11 where it carries importance too.
 std::vector<double> power_step_weights(const Solution& so_far, const Sampled& s, bool combined) {
@@ -65,11 +69,12 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
     return step;
 }
 
-Oracle make_oracle(const Solution& so_far, const TransportStep& step, double smallest_area) {
+Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64_t rays, double smallest_area) {
+    const double fall = std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.epsilon_decay);
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.epsilon * reference_power(so_far, step.radiosity) *
+    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.radiosity) *
                        (oracle.by_importance ? reference_importance(so_far, step.importance) : 1);
     oracle.smallest_area = static_cast<float>(smallest_area);
     return oracle;

@@ -27,7 +27,8 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
                               std::int64_t rays);
 
 /// The oracle of the run's method, Eq. 14 or 15, with the references below.
-Oracle make_oracle(const Solution& so_far, const TransportStep& step, double smallest_area);
+/// @param rays  That irradiance is the mean of, after this step; > 0. The more, the lower the threshold.
+Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64_t rays, double smallest_area);
 
 /// The power that the oracle's threshold is relative to [lm or W]. With a view: what leaves the surfaces it sees, as if
 /// all were as bright as they appear on average; so it does not depend on lights elsewhere, on how an emitter is

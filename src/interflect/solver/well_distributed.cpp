@@ -40,7 +40,7 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
     total_ += step.rays;
     step.quanta = quanta(step);
-    if (run.options.method.refines) step.oracle = make_oracle(run.solution, step, run.smallest_element);
+    if (run.options.method.refines) step.oracle = make_oracle(run.solution, step, total_, run.smallest_element);
 
     std::vector<std::uint64_t> used_before = run.streams.used;
     used_before.resize(run.forest->size(), 0);
