@@ -47,6 +47,8 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
                        {"iteration", o.separate_iterations ? "separate" : "combined"},
                        {"importance_storage", o.importance_at_elements ? "element" : "patch"},
                        {"importance_sampling", o.total_importance ? "total" : "indirect"},
+                       {"importance_smoothing", o.importance_smoothing},
+                       {"importance_exponent", o.importance_exponent},
                        {"alpha", o.alpha},
                        {"beta", o.beta},
                        {"views", views}};

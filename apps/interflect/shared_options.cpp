@@ -196,6 +196,16 @@ void SolverOptions::add_importance(CLI::App& app) {
                            {{"indirect", false}, {"total", true}},
                            "Rays start by indirect (Eq. 10) or total importance")
               ->default_str("indirect"));
+    group(app.add_option("--importance-smoothing", solve_.importance_smoothing,
+                         "How much of its parent's importance drives an element's rays; 0: as in the paper")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(app.add_option("--importance-exponent", solve_.importance_exponent,
+                         "Rays start by power times importance to this power; 1: as in the paper")
+              ->type_name("EXPONENT")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
     group(app.add_option("--alpha", solve_.alpha, "Share of the rays for importance")
               ->type_name("SHARE")
               ->capture_default_str()

@@ -49,6 +49,8 @@ class WrongUsage(CommandTest):
             "--warm-up": ("-1",),
             "--epsilon": ("0", "-1", "nan", "small"),
             "--epsilon-decay": ("-1", "1.5", "nan"),
+            "--importance-smoothing": ("-0.1", "1.1"),
+            "--importance-exponent": ("-0.1", "1.1"),
             "--min-area": ("-1", "nan"),
             "--max-elements": ("0", "5G"),
             "--inherited-trust": ("-0.1", "1.1"),

@@ -32,7 +32,7 @@ class Weights : public testing::Test {
         testing_support::add_rectangle(scene, {5, 0, 0}, {2, 0, 0}, {0, 1, 0}, 1);
         return scene;
     }
-    Sampled sampled() const { return {surfaces_, forest_, leaves_, radiosity_, view_, indirect_}; }
+    Sampled sampled() const { return {surfaces_, forest_, leaves_}; }
 
     const Scene scene_ = two_squares();
     const Surfaces surfaces_{scene_};
@@ -40,32 +40,32 @@ class Weights : public testing::Test {
     std::vector<std::uint32_t> leaves_;
     // By element: the divided square, the black one, the parts of the first.
     std::vector<Rgb> radiosity_{Rgb(9), Rgb(2), Rgb(1, 2, 3), Rgb(0), Rgb(0, 0, 1), Rgb(1)};
-    std::vector<float> view_{9, 1, 0, 2, 0, 0.5f}, indirect_{9, 0, 3, 1, 0, 0.25f};
+    std::vector<float> importance_{9, 1, 3, 3, 0, 0.75f};
 };
 
 TEST_F(Weights, OfPowerAreTheSumOfTheChannelsTimesTheArea) {
-    EXPECT_THAT(power_weights(sampled()), ElementsAre(12, 6, 0, 1, 3));
+    EXPECT_THAT(power_weights(sampled(), radiosity_), ElementsAre(12, 6, 0, 1, 3));
 }
 
 TEST_F(Weights, OfPowerAreFiniteForEveryFiniteRadiosity) {
     radiosity_.assign(6, Rgb(std::numeric_limits<float>::max()));
-    for (const double w : power_weights(sampled())) EXPECT_TRUE(std::isfinite(w));
+    for (const double w : power_weights(sampled(), radiosity_)) EXPECT_TRUE(std::isfinite(w));
 }
 
-TEST_F(Weights, OfImportanceAreWhatIsReflectedOfAllOfIt) {
-    EXPECT_THAT(importance_weights(sampled()), ElementsAre(0, 1.5, 1.5, 0, 0.375));
+TEST_F(Weights, OfImportanceAreWhatIsReflectedOfIt) {
+    EXPECT_THAT(reflected_importance_weights(sampled(), importance_), ElementsAre(0, 1.5, 1.5, 0, 0.375));
 }
 
-TEST_F(Weights, OfPowerAndImportanceTakeAllOfItOrWithoutTheEyesOrTheEyesAlone) {
-    EXPECT_THAT(total_importance_weights(sampled()), ElementsAre(12, 18, 0, 0, 2.25));
-    EXPECT_THAT(indirect_importance_weights(sampled()), ElementsAre(0, 18, 0, 0, 0.75));
-    EXPECT_THAT(view_weights(sampled()), ElementsAre(12, 0, 0, 0, 1.5));
+TEST_F(Weights, OfPowerThatIsDrivenAreTheProduct) {
+    EXPECT_THAT(driven_weights(sampled(), radiosity_, importance_), ElementsAre(12, 18, 0, 0, 2.25));
 }
 
-TEST_F(Weights, OfImportanceAreZeroWithoutAView) {
-    view_.clear(), indirect_.clear();
-    EXPECT_THAT(importance_weights(sampled()), ElementsAre(0, 0, 0, 0, 0));
-    EXPECT_THAT(indirect_importance_weights(sampled()), ElementsAre(0, 0, 0, 0, 0));
+TEST_F(Weights, AreDrivenByImportanceAsItIsUnlessItIsSmoothed) {
+    EXPECT_EQ(driving_importance(forest_, importance_, 0, 1), importance_);
+    EXPECT_THAT(driving_importance(forest_, importance_, 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
+    EXPECT_THAT(driving_importance(forest_, importance_, 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
+    EXPECT_THAT(driving_importance(forest_, importance_, 0.5, 0.5),
+                ElementsAre(3, 1, std::sqrt(6.0f), std::sqrt(6.0f), std::sqrt(4.5f), std::sqrt(4.875f)));
 }
 
 TEST(MixIn, AddsAShareOfADistribution) {

@@ -225,11 +225,12 @@ TEST(Solve, ListsAllOptionsOutOfRange) {
     options.alpha = 1.5;
     options.beta = -0.1;
     options.inherited_trust = 2;
+    options.importance_smoothing = options.importance_exponent = -0.5;
     options.eye_rays = 0;
     const std::string message = error_of(colourful_box(), options);
-    for (const char* name :
-         {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:", "epsilon:", "epsilon_decay:",
-          "smallest_area:", "most_elements:", "alpha:", "beta:", "inherited_trust:", "eye_rays:"})
+    for (const char* name : {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:",
+                             "epsilon:", "epsilon_decay:", "smallest_area:", "most_elements:", "alpha:", "beta:",
+                             "inherited_trust:", "importance_smoothing:", "importance_exponent:", "eye_rays:"})
         EXPECT_THAT(message, HasSubstr(name));
 }
 

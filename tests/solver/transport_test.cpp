@@ -30,7 +30,7 @@ struct Room {
         TransportStep step;
         step.leaves = forest.leaves();
         step.radiosity = radiosity(surfaces, forest, std::vector<Rgb>(forest.size(), Rgb(1)));
-        step.q = power_weights({surfaces, forest, step.leaves, step.radiosity, no_importance, no_importance});
+        step.q = power_weights({surfaces, forest, step.leaves}, step.radiosity);
         step.rays = rays;
         return step;
     }
@@ -51,7 +51,6 @@ struct Room {
     const Surfaces surfaces{scene};
     const RayCaster ray_caster{scene};
     ElementForest forest;
-    const std::vector<float> no_importance;
 };
 
 SampleStreams streams_of(std::uint64_t seed) { return {PointSet::sobol, seed}; }

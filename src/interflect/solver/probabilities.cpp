@@ -1,5 +1,6 @@
 #include "interflect/solver/probabilities.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace interflect {
@@ -14,35 +15,32 @@ std::vector<double> for_leaves(const Sampled& s, const Weight& weight) {
     return w;
 }
 
-double at(const std::vector<float>& values, std::uint32_t e) { return values.empty() ? 0.0 : values[e]; }
-
-double radiosity_sum(const Sampled& s, std::uint32_t e) { return channel_sum(RgbD(s.radiosity[e])); }
+double radiosity_sum(const Rgb& b) { return channel_sum(RgbD(b)); }
 
 }  // namespace
 
-std::vector<double> power_weights(const Sampled& s) {
-    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(s, e); });
+std::vector<double> power_weights(const Sampled& s, const std::vector<Rgb>& radiosity) {
+    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(radiosity[e]); });
 }
 
-std::vector<double> importance_weights(const Sampled& s) {
+std::vector<double> reflected_importance_weights(const Sampled& s, const std::vector<float>& importance) {
     return for_leaves(s, [&](std::uint32_t e) {
-        return s.surfaces.mean_reflectance(s.forest.patch(e)) *
-               (at(s.view_importance, e) + at(s.indirect_importance, e));
+        return static_cast<double>(s.surfaces.mean_reflectance(s.forest.patch(e))) * importance[e];
     });
 }
 
-std::vector<double> total_importance_weights(const Sampled& s) {
-    return for_leaves(s, [&](std::uint32_t e) {
-        return radiosity_sum(s, e) * (at(s.view_importance, e) + at(s.indirect_importance, e));
-    });
+std::vector<double> driven_weights(const Sampled& s, const std::vector<Rgb>& radiosity,
+                                   const std::vector<float>& importance) {
+    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(radiosity[e]) * importance[e]; });
 }
 
-std::vector<double> indirect_importance_weights(const Sampled& s) {
-    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(s, e) * at(s.indirect_importance, e); });
-}
-
-std::vector<double> view_weights(const Sampled& s) {
-    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(s, e) * at(s.view_importance, e); });
+std::vector<float> driving_importance(const ElementForest& forest, std::vector<float> importance, double from_parent,
+                                      double exponent) {
+    const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
+    for (std::uint32_t e = forest.patch_count(); e < forest.size(); ++e)
+        importance[e] += share * (importance[forest.parent(e)] - importance[e]);
+    for (float& psi : importance) psi = std::pow(psi, power);
+    return importance;
 }
 
 void mix_in(std::vector<double>& q, const std::vector<double>& weights, double share) {

@@ -35,6 +35,8 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require(o.alpha >= 0 && o.alpha <= 1, "alpha: expected 0 to 1");
     require(o.beta >= 0 && o.beta <= 1, "beta: expected 0 to 1");
     require(o.inherited_trust >= 0 && o.inherited_trust <= 1, "inherited_trust: expected 0 to 1");
+    require(o.importance_smoothing >= 0 && o.importance_smoothing <= 1, "importance_smoothing: expected 0 to 1");
+    require(o.importance_exponent >= 0 && o.importance_exponent <= 1, "importance_exponent: expected 0 to 1");
     require(o.eye_rays > 0, "eye_rays: expected more than 0");
     require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
             "importance: a method that keeps every ray needs rays of equal power, which importance does not give");

@@ -12,19 +12,26 @@ namespace {
 /// SolveOptions::epsilon is the threshold after so many rays.
 constexpr double rays_at_epsilon = 20e6;
 
+/// What drives the rays of power, of every element: what is seen, or total or indirect importance.
+std::vector<float> driver(const Solution& so_far) {
+    const SolveOptions& o = so_far.options;
+    const std::vector<float>& psi = importance_use(so_far) == ImportanceUse::direct ? so_far.view_importance
+                                    : o.total_importance                            ? total_importance(so_far)
+                                                                                    : so_far.indirect_importance;
+    return driving_importance(*so_far.forest, psi, o.importance_smoothing, o.importance_exponent);
+}
+
 /// Sampling weights of a step that carries power: Eq. 3, 9, 10, and 11 where it carries importance too.
-std::vector<double> power_step_weights(const Solution& so_far, const Sampled& s, bool combined) {
-    const ImportanceUse use = importance_use(so_far);
-    if (use == ImportanceUse::off) return power_weights(s);
+std::vector<double> power_step_weights(const Solution& so_far, const Sampled& s, const std::vector<Rgb>& radiosity,
+                                       bool combined) {
+    const std::vector<double> by_power = power_weights(s, radiosity);
+    if (importance_use(so_far) == ImportanceUse::off) return by_power;
     const SolveOptions& o = so_far.options;
     const double for_power = combined ? 1 - o.alpha : 1;
     std::vector<double> q(s.leaves.size(), 0.0);
-    const std::vector<double> driven = use == ImportanceUse::direct ? view_weights(s)
-                                       : o.total_importance         ? total_importance_weights(s)
-                                                                    : indirect_importance_weights(s);
-    mix_in(q, driven, for_power * (1 - o.beta));
-    mix_in(q, power_weights(s), for_power * o.beta);
-    if (combined) mix_in(q, importance_weights(s), o.alpha);
+    mix_in(q, driven_weights(s, radiosity, driver(so_far)), for_power * (1 - o.beta));
+    mix_in(q, by_power, for_power * o.beta);
+    if (combined) mix_in(q, reflected_importance_weights(s, total_importance(so_far)), o.alpha);
     return q;
 }
 
@@ -44,9 +51,7 @@ TransportStep power_step(const Surfaces& surfaces, const Solution& so_far, std::
                          std::int64_t rays) {
     TransportStep step;
     step.leaves = so_far.forest->leaves();
-    step.q = power_step_weights(
-        so_far, {surfaces, *so_far.forest, step.leaves, radiosity, so_far.view_importance, so_far.indirect_importance},
-        combined);
+    step.q = power_step_weights(so_far, {surfaces, *so_far.forest, step.leaves}, radiosity, combined);
     step.rays = rays;
     step.radiosity = std::move(radiosity);
     step.importance = total_importance(so_far);
@@ -59,9 +64,7 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
                               std::int64_t rays) {
     TransportStep step;
     step.leaves = so_far.forest->leaves();
-    const std::vector<Rgb> no_radiosity;
-    const std::vector<float> no_bounces;
-    step.q = importance_weights({surfaces, *so_far.forest, step.leaves, no_radiosity, importance, no_bounces});
+    step.q = reflected_importance_weights({surfaces, *so_far.forest, step.leaves}, importance);
     step.rays = rays;
     step.importance = std::move(importance);
     step.carries_importance = true;
