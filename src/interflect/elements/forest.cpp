@@ -39,10 +39,8 @@ std::vector<std::uint32_t> ElementForest::leaves() const {
     return leaves;
 }
 
-std::uint32_t ElementForest::leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit) const {
-    const bool triangle = geometry_[root].is_triangle();
-    Cell cell;
-    std::uint32_t e = root;
+std::uint32_t ElementForest::leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit) const {
+    const bool triangle = geometry_[patch_[e]].is_triangle();
     for (std::uint32_t child = first_child(e); child < limit; child = first_child(e)) {
         const unsigned k = cell.child_at(p, triangle);
         cell = cell.child(k, triangle);

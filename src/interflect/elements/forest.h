@@ -44,7 +44,11 @@ class ElementForest {
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
     std::vector<std::uint32_t> leaves() const;  ///< In ascending order.
     /// The leaf under `root` that holds a point of its patch, among elements below `limit` (all of them by default).
-    std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const;
+    std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
+        return leaf_below(root, Cell(), p, limit);
+    }
+    /// The same below any element and its cell, which holds the point.
+    std::uint32_t leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
     /// Makes the children of `e` unless it has some; any number of threads may call it at the same time.
     /// @return  The first child; none where the forest is full or `e` is at the deepest level.

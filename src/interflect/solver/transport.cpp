@@ -106,7 +106,13 @@ class Descent {
         return go_to(v, child == none ? forest_.subdivide(v.element) : child, p);
     }
 
-    std::uint32_t old_leaf_at(std::uint32_t patch, Parameters p) const { return forest_.leaf_at(patch, p, old_size_); }
+    /// The leaf that holds p, an old element, above or below an element that holds it too.
+    std::uint32_t old_leaf_at(const Visit& v, Parameters p) const {
+        std::uint32_t e = v.element;
+        if (e < old_size_) return forest_.leaf_below(e, v.cell, p, old_size_);
+        while (e >= old_size_) e = forest_.parent(e);
+        return e;
+    }
     const ElementForest& forest() const { return forest_; }
 
   private:
@@ -151,8 +157,8 @@ void find_way_to_leaf(const Descent& descent, std::uint32_t leaf, std::vector<Vi
 /// @param way     Of the shooter, to the leaf that the ray starts on.
 /// @param x, y    The parameters of the ray's two ends on their patches.
 /// @param patch   That is hit. @return The element of it that receives.
-std::uint32_t find_receiver(const Descent& descent, const Oracle& oracle, std::span<const Visit> way, Parameters x,
-                            std::uint32_t patch, Parameters y, const Rgb& reflectance) {
+Visit find_receiver(const Descent& descent, const Oracle& oracle, std::span<const Visit> way, Parameters x,
+                    std::uint32_t patch, Parameters y, const Rgb& reflectance) {
     Visit shooter = way[0], receiver = descent.root(patch);
     std::size_t depth = 0;
     while (!oracle.accepts(shooter.party, receiver.party, reflectance * shooter.radiosity, receiver.importance)) {
@@ -166,7 +172,7 @@ std::uint32_t find_receiver(const Descent& descent, const Oracle& oracle, std::s
             break;
         }
     }
-    return receiver.element;
+    return receiver;
 }
 
 /// What one ray of each leaf carries, and all of them together.
@@ -222,9 +228,15 @@ struct Tally {
     std::int64_t escaped_rays = 0;
 };
 
-void accumulate(FixedPoint::Value& sum, const FixedPoint::Value& term) {
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += term[c];
-}
+/// One task's rays, hits and where what they carry arrives; one a thread, reused.
+struct Batch {
+    std::vector<Ray> rays = std::vector<Ray>(batch_rays);
+    std::vector<Parameters> origins = std::vector<Parameters>(batch_rays);
+    std::vector<Hit> hits = std::vector<Hit>(batch_rays);
+    std::vector<Visit> way;
+    std::vector<std::uint32_t> receivers, leaves;  // of power and of importance
+    PointBlock points;
+};
 
 /// Everything that the receiving side of a step looks at.
 struct Receiving {
@@ -234,45 +246,52 @@ struct Receiving {
     const Carried& carried;
     Sums& sums;
 
-    /// Hands what the rays of leaf number s bring to where they arrive.
-    void operator()(std::size_t s, std::span<const Ray> rays, std::span<const Parameters> origins,
-                    std::span<const Hit> hits, std::vector<Visit>& way, Tally& tally) const {
+    /// Hands what the rays of leaf number s, a part of the batch, bring to where they arrive. Sums are added to in a
+    /// loop of their own: an atomic addition waits for all memory accesses under way, those of the walks down the
+    /// trees.
+    void operator()(std::size_t s, Batch& batch, std::size_t begin, std::size_t end, Tally& tally) const {
+        find_receivers(s, batch, begin, end, tally);
+        if (!carried.power.empty()) {
+            const FixedPoint::Value power = sums.power_unit.from(carried.power[s]);
+            for (const std::uint32_t e : batch.receivers) add_concurrently(sums.power[e], power);
+            for (std::size_t c = 0; c < 3; ++c)
+                tally.escaped[c] += static_cast<std::int64_t>(end - begin - batch.receivers.size()) * power[c];
+        }
+        if (carried.importance.empty()) return;
+        const std::int64_t importance = sums.importance_unit.from(carried.importance[s]);
+        for (const std::uint32_t e : batch.leaves) add_concurrently(sums.importance[e], importance);
+    }
+
+  private:
+    void find_receivers(std::size_t s, Batch& batch, std::size_t begin, std::size_t end, Tally& tally) const {
         const ElementForest& forest = descent.forest();
-        const bool carries_power = !carried.power.empty(), carries_importance = !carried.importance.empty();
-        if (step.oracle.refines) find_way_to_leaf(descent, step.leaves[s], way);
-        const FixedPoint::Value power = carries_power ? sums.power_unit.from(carried.power[s]) : FixedPoint::Value{};
-        const std::int64_t importance = carries_importance ? sums.importance_unit.from(carried.importance[s]) : 0;
-        for (std::size_t r = 0; r < rays.size(); ++r) {
-            const std::uint32_t patch = hits[r].patch;
+        const bool refines = step.oracle.refines && !carried.power.empty();
+        const bool needs_leaf = !refines || (step.carries_importance && !step.importance_at_patches);
+        batch.receivers.clear();
+        batch.leaves.clear();
+        if (refines) find_way_to_leaf(descent, step.leaves[s], batch.way);
+        for (std::size_t r = begin; r < end; ++r) {
+            const std::uint32_t patch = batch.hits[r].patch;
             if (patch == none) {
                 ++tally.escaped_rays;
-                accumulate(tally.escaped, power);
                 continue;
             }
-            Parameters y;
-            if (step.oracle.refines || !forest.is_leaf(patch))
-                y = forest.geometry(patch).parameters_of(rays[r].origin + hits[r].distance * rays[r].direction);
-            if (carries_power) {
-                const std::uint32_t receiver =
-                    step.oracle.refines
-                        ? find_receiver(descent, step.oracle, way, origins[r], patch, y, surfaces.reflectance(patch))
-                        : descent.old_leaf_at(patch, y);
-                add_concurrently(sums.power[receiver], power);
+            if (!refines && forest.is_leaf(patch)) {
+                batch.receivers.push_back(patch);
+                batch.leaves.push_back(patch);
+                continue;
             }
-            if (carries_importance)
-                add_concurrently(sums.importance[step.importance_at_patches ? patch : descent.old_leaf_at(patch, y)],
-                                 importance);
+            const Ray& ray = batch.rays[r];
+            const Parameters y =
+                forest.geometry(patch).parameters_of(ray.origin + batch.hits[r].distance * ray.direction);
+            const Visit v = refines ? find_receiver(descent, step.oracle, batch.way, batch.origins[r], patch, y,
+                                                    surfaces.reflectance(patch))
+                                    : descent.root(patch);
+            const std::uint32_t leaf = needs_leaf ? descent.old_leaf_at(v, y) : patch;
+            batch.receivers.push_back(refines ? v.element : leaf);
+            batch.leaves.push_back(step.importance_at_patches ? patch : leaf);
         }
     }
-};
-
-/// One task's rays and hits; one a thread, reused.
-struct Batch {
-    std::vector<Ray> rays = std::vector<Ray>(batch_rays);
-    std::vector<Parameters> origins = std::vector<Parameters>(batch_rays);
-    std::vector<Hit> hits = std::vector<Hit>(batch_rays);
-    std::vector<Visit> way;
-    PointBlock points;
 };
 
 /// Puts what arrived at elements that have been renumbered where it belongs.
@@ -325,9 +344,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
         ray_caster.trace(rays, hits);
         Tally tally;
         plan.for_each_source(first, last, [&](std::size_t s, std::int64_t from, std::int64_t to) {
-            const auto offset = static_cast<std::size_t>(from - first), length = static_cast<std::size_t>(to - from);
-            receive(s, rays.subspan(offset, length), origins.subspan(offset, length), hits.subspan(offset, length),
-                    batch.way, tally);
+            receive(s, batch, static_cast<std::size_t>(from - first), static_cast<std::size_t>(to - first), tally);
         });
         add_concurrently(sums.escaped, tally.escaped);
         add_concurrently(sums.escaped_rays, tally.escaped_rays);
