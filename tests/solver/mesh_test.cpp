@@ -119,5 +119,16 @@ TEST_P(Mesh, FollowsTheThreshold) {
     EXPECT_GT(leaves_of(GetParam(), {.epsilon = 0.8e-5}).room / expected, 1 + 2 * tolerance);
 }
 
+// Seen to fail when the threshold stays.
+TEST_P(Mesh, GetsFinerAsRaysAreGathered) {
+    // With a decay of 1/2, epsilon is the threshold at 20 million rays: ten times that at 200,000, when all are traced.
+    const double expected = leaves_of(GetParam(), {.epsilon = 1e-5}).room;
+    EXPECT_NEAR(leaves_of(GetParam(), {.epsilon = 1e-6, .epsilon_decay = 0.5}).room / expected, 1, 0.25);
+    // Half of the threshold makes many more elements; four times the rays by themselves make few.
+    const double with_more_rays = leaves_of(GetParam(), {.epsilon = 1e-5, .rays = 800'000}).room;
+    EXPECT_GT(leaves_of(GetParam(), {.epsilon = 1e-6, .epsilon_decay = 0.5, .rays = 800'000}).room,
+              1.15 * with_more_rays);
+}
+
 }  // namespace
 }  // namespace interflect
