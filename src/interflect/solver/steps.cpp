@@ -24,7 +24,7 @@ std::vector<float> driver(const Solution& so_far) {
 /// Sampling weights of a step that carries power: Eq. 3, 9, 10, and 11 where it carries importance too.
 std::vector<double> power_step_weights(const Solution& so_far, const Sampled& s, const std::vector<Rgb>& radiosity,
                                        bool combined) {
-    const std::vector<double> by_power = power_weights(s, radiosity);
+    std::vector<double> by_power = power_weights(s, radiosity);
     if (importance_use(so_far) == ImportanceUse::off) return by_power;
     const SolveOptions& o = so_far.options;
     const double for_power = combined ? 1 - o.alpha : 1;
