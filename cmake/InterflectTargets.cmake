@@ -33,5 +33,9 @@ function(interflect_folder name)
   list(TRANSFORM arg_USES PREPEND interflect_)
   target_link_libraries(${target} PUBLIC ${arg_USES} ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:interflect_options>
                                          ${arg_PRIVATE_LINKS})
+  if(CMAKE_CXX_COMPILER_ID MATCHES Clang)  # GCC 12 has false alarms in what is precompiled
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <memory> <span>
+                              <string> <vector> <ImathVec.h>)
+  endif()
   set_property(GLOBAL APPEND PROPERTY interflect_targets ${target})
 endfunction()
