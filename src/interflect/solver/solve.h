@@ -76,7 +76,7 @@ struct SolveOptions {
     std::int64_t rays_per_iteration = 0;
 
     /// Threshold of the oracle once 20 million rays are averaged, relative to the reference power (see
-    /// reference_power); > 0.
+    /// reference_power); > 0. Scheme::links takes it as it is.
     double epsilon = 1.5e-7;
     /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
     /// 1]. At 0 it is the same for all iterations, as in the paper.
