@@ -28,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct BenchArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
@@ -114,7 +114,7 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     return m;
 }
 
-void run(const Options& options) {
+void run(const BenchArguments& options) {
     const ThreadLimit limit(options.threads);
     Scene scene = options.scene.load();
     SolveOptions solve_options;
@@ -173,7 +173,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchArguments>();
     CLI::App& command = *app.add_subcommand("bench", "Measure the solver's rays a second beside the ray tracer's own");
     options->scene.add_to(command);
     options->mesh.add_to(command);

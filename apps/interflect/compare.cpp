@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CompareArguments {
     std::filesystem::path image, reference;
     std::optional<double> field_of_view;  // [degrees]
     bool scale = false;
@@ -61,7 +61,7 @@ void print_text(const ImageDifference& d, double field_of_view) {
 }
 
 /// As asked for, else that of the reference, else that of the image, else the default.
-double field_of_view(const Options& options) {
+double field_of_view(const CompareArguments& options) {
     if (options.field_of_view) return *options.field_of_view;
     const std::optional<float> image = read_field_of_view(options.image);
     const std::optional<float> reference = read_field_of_view(options.reference);
@@ -82,7 +82,7 @@ void write_difference(PendingFile& file, const ImageDifference& difference) {
 
 bool is_tone_mapped(const std::filesystem::path& path) { return needs_tone_mapping(require_image_format(path)); }
 
-void run(const Options& options) {
+void run(const CompareArguments& options) {
     std::optional<PendingFile> difference_file;
     if (options.difference) {
         if (!is_tone_mapped(*options.difference))
@@ -105,7 +105,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_compare(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CompareArguments>();
     CLI::App& command = *app.add_subcommand("compare", "Measure how a picture differs from a reference");
     command.add_option("IMAGE", options->image, "Picture (.exr .hdr .png)")->required()->type_name("FILE");
     command.add_option("REFERENCE", options->reference, "Reference: as large, or smaller by a whole factor")

@@ -22,7 +22,7 @@ namespace interflect::command {
 
 namespace {
 
-struct Options {
+struct RenderArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
@@ -54,7 +54,8 @@ struct Picture {
     std::int64_t non_finite_pixels = 0;
 };
 
-Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view, const Options& options) {
+Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
     Rendering rendering =
         render(solved.scene, *solved.solution.forest, ray_caster, view, solved.solution.irradiance, options.render);
     Picture picture;
@@ -70,7 +71,7 @@ Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const
 
 /// In false colours for people, as numbers in formats to measure with.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                      const Options& options) {
+                      const RenderArguments& options) {
     const EyeSampling sampling{options.size.width, options.size.height, options.render.samples, options.render.seed};
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling);
     const bool for_people = needs_tone_mapping(require_image_format(options.output));
@@ -79,7 +80,7 @@ Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, co
 }
 
 void write_picture(PendingFile& output, const Picture& picture, const View& view, const SolvedScene& solved,
-                   const Options& options) {
+                   const RenderArguments& options) {
     write_image(output.temporary_path(), picture.image,
                 {view, picture.quantity, solved.scene.name, INTERFLECT_VERSION, solved.solution.options.seed,
                  picture.exposure});
@@ -90,7 +91,7 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
 }
 
 /// Everything that can be refused is refused before the first ray.
-void run(Options& options, int& exit_code) {
+void run(RenderArguments& options, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     require_image_format(options.output);
     PendingFile output(options.output);
@@ -122,7 +123,7 @@ void run(Options& options, int& exit_code) {
 }  // namespace
 
 void add_render(CLI::App& app, int& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RenderArguments>();
     CLI::App& command = *app.add_subcommand("render", "Draw a view of a solution, or of a scene after solving it");
     options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
     command.add_option("-o,--output", options->output, "Picture to write: .png .jpg .exr .hdr")

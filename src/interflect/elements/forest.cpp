@@ -1,34 +1,32 @@
 #include "interflect/elements/forest.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
-#include <numeric>
 #include <thread>
+#include <tuple>
 
 namespace interflect {
 
 ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
-    : first_child_(capacity), parent_(capacity), patch_(capacity), path_(capacity), area_(capacity) {
+    : patch_count_(static_cast<std::uint32_t>(scene.patches.size())),
+      nodes_(capacity),
+      blocks_((capacity - scene.patches.size()) / 4) {
     assert(capacity >= scene.patches.size() && capacity < being_made);
     geometry_.reserve(scene.patches.size());
     for (const Patch& p : scene.patches) geometry_.emplace_back(scene, p);
-    for (std::uint32_t i = 0; i < patch_count(); ++i) {
-        first_child_[i] = none;
-        parent_[i] = none;
-        patch_[i] = i;
-        path_[i] = 1;
-        area_[i] = geometry_[i].area();
-    }
+    for (std::uint32_t i = 0; i < patch_count(); ++i) nodes_[i] = {none, geometry_[i].area()};
     size_ = patch_count();
 }
 
-int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path_[e]) - 1) / 2; }
+int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path(e)) - 1) / 2; }
 
 Cell ElementForest::cell(std::uint32_t e) const {
-    const bool triangle = geometry_[patch_[e]].is_triangle();
+    const bool triangle = geometry_[patch(e)].is_triangle();
+    const std::uint32_t way = path(e);
     Cell cell;
-    for (int digit = level(e) - 1; digit >= 0; --digit) cell = cell.child(path_[e] >> (2 * digit) & 3u, triangle);
+    for (int digit = level(e) - 1; digit >= 0; --digit) cell = cell.child(way >> (2 * digit) & 3u, triangle);
     return cell;
 }
 
@@ -40,7 +38,7 @@ std::vector<std::uint32_t> ElementForest::leaves() const {
 }
 
 std::uint32_t ElementForest::leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit) const {
-    const bool triangle = geometry_[patch_[e]].is_triangle();
+    const bool triangle = geometry_[patch(e)].is_triangle();
     for (std::uint32_t child = first_child(e); child < limit; child = first_child(e)) {
         const unsigned k = cell.child_at(p, triangle);
         cell = cell.child(k, triangle);
@@ -50,7 +48,7 @@ std::uint32_t ElementForest::leaf_below(std::uint32_t e, Cell cell, Parameters p
 }
 
 std::uint32_t ElementForest::subdivide(std::uint32_t e) {
-    std::atomic_ref<std::uint32_t> slot(first_child_[e]);
+    std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child);
     std::uint32_t state = none;
     if (level(e) >= deepest_level || !slot.compare_exchange_strong(state, being_made, std::memory_order_acquire)) {
         while (state == being_made) {  // another thread is at it, for some tens of nanoseconds
@@ -65,18 +63,14 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
         slot.store(none, std::memory_order_release);
         return none;
     }
-    const PatchGeometry& geometry = geometry_[patch_[e]];
+    const PatchGeometry& geometry = geometry_[patch(e)];
     const Cell parent = cell(e);
+    blocks_[(first - patch_count()) / 4] = {e, patch(e), path(e)};
     for (std::uint32_t k = 0; k < 4; ++k) {
-        const std::uint32_t c = first + k;
         const Cell cell = parent.child(k, geometry.is_triangle());
-        first_child_[c] = none;
-        parent_[c] = e;
-        patch_[c] = patch_[e];
-        path_[c] = path_[e] << 2 | k;
         // Exact: the jacobian is linear, so its mean over the cell is its value at the centre.
-        area_[c] = geometry.jacobian(cell.centre(geometry.is_triangle())) * cell.size * cell.size *
-                   (geometry.is_triangle() ? 0.5f : 1.0f);
+        const float area = geometry.jacobian(cell.centre(geometry.is_triangle())) * cell.size * cell.size;
+        nodes_[first + k] = {none, geometry.is_triangle() ? 0.5f * area : area};
     }
     slot.store(first, std::memory_order_release);
     return first;
@@ -84,35 +78,32 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
 
 std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
     const std::uint32_t last = size();
-    std::vector<std::uint32_t> blocks((last - first) / 4);  // old first elements of the blocks, in their new order
-    for (std::uint32_t b = 0; b < blocks.size(); ++b) blocks[b] = first + 4 * b;
-    std::sort(blocks.begin(), blocks.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const int level_a = level(a), level_b = level(b);
-        if (level_a != level_b) return level_a < level_b;
-        if (patch_[a] != patch_[b]) return patch_[a] < patch_[b];
-        return path_[a] < path_[b];
+    const auto number = [&](std::uint32_t e) { return (e - patch_count()) / 4; };  // of a block
+    struct Siblings {
+        Block block;
+        std::array<Node, 4> nodes;
+        std::uint32_t first;  // their old number
+    };
+    std::vector<Siblings> made;
+    made.reserve((last - first) / 4);
+    for (std::uint32_t e = first; e < last; e += 4)
+        made.push_back({blocks_[number(e)], {nodes_[e], nodes_[e + 1], nodes_[e + 2], nodes_[e + 3]}, e});
+    std::sort(made.begin(), made.end(), [](const Siblings& a, const Siblings& b) {
+        const auto key = [](const Siblings& s) {
+            return std::tuple(std::bit_width(s.block.parent_path), s.block.patch, s.block.parent_path);
+        };
+        return key(a) < key(b);
     });
 
     std::vector<std::uint32_t> renumbered(last - first);
-    struct Element {
-        std::uint32_t first_child, parent, patch, path;
-        float area;
-    };
-    std::vector<Element> moved(last - first);
-    for (std::uint32_t i = 0; i < moved.size(); ++i) {
-        const std::uint32_t old = blocks[i / 4] + i % 4;
-        renumbered[old - first] = first + i;
-        moved[i] = {first_child_[old], parent_[old], patch_[old], path_[old], area_[old]};
-    }
+    for (std::uint32_t i = 0; i < renumbered.size(); ++i) renumbered[made[i / 4].first + i % 4 - first] = first + i;
     const auto new_number = [&](std::uint32_t e) { return e == none || e < first ? e : renumbered[e - first]; };
-    for (std::uint32_t i = 0; i < moved.size(); ++i) {
-        const std::uint32_t e = first + i;
-        first_child_[e] = new_number(moved[i].first_child);
-        parent_[e] = new_number(moved[i].parent);
-        patch_[e] = moved[i].patch;
-        path_[e] = moved[i].path;
-        area_[e] = moved[i].area;
-        if (i % 4 == 0) first_child_[parent_[e]] = e;
+    for (std::uint32_t e = first; e < last; e += 4) {
+        const Siblings& s = made[(e - first) / 4];
+        const std::uint32_t parent = new_number(s.block.parent);
+        blocks_[number(e)] = {parent, s.block.patch, s.block.parent_path};
+        for (std::uint32_t k = 0; k < 4; ++k) nodes_[e + k] = {new_number(s.nodes[k].first_child), s.nodes[k].area};
+        nodes_[parent].first_child = e;
     }
     return renumbered;
 }

@@ -13,8 +13,9 @@
 namespace interflect {
 
 /// Quadtrees of elements over the patches of a scene: element i < patch_count() is patch i whole; children come in
-/// blocks of four, after their parents. Structure of arrays with 32-bit indices, 20 bytes an element. Threads may
-/// subdivide while others walk the trees; what they made gets its final numbers in put_in_order().
+/// blocks of four, after their parents. 32-bit indices; 11 bytes an element: what the way down a tree looks at for
+/// each, the rest for each block. Threads may subdivide while others walk the trees; what they made gets its final
+/// numbers in put_in_order().
 class ElementForest {
   public:
     /// Finest level: an element's side is then 2^-15 of its patch's.
@@ -23,22 +24,26 @@ class ElementForest {
     /// One element a patch. @param capacity  Most elements ever, >= the number of patches and < 2^32 - 1.
     ElementForest(const Scene& scene, std::size_t capacity);
 
-    std::uint32_t patch_count() const { return static_cast<std::uint32_t>(geometry_.size()); }
+    std::uint32_t patch_count() const { return patch_count_; }
     std::uint32_t size() const { return size_.load(std::memory_order_acquire); }
-    std::size_t capacity() const { return area_.capacity(); }
+    std::size_t capacity() const { return nodes_.capacity(); }
 
-    std::uint32_t patch(std::uint32_t e) const { return patch_[e]; }
-    std::uint32_t parent(std::uint32_t e) const { return parent_[e]; }  ///< none for a root.
-    float area(std::uint32_t e) const { return area_[e]; }              ///< [m^2]
-    int level(std::uint32_t e) const;                                   ///< 0 for a root.
+    std::uint32_t patch(std::uint32_t e) const { return is_root(e) ? e : block_of(e).patch; }
+    std::uint32_t parent(std::uint32_t e) const {
+        return is_root(e) ? none : block_of(e).parent;
+    }                                                             ///< none for a root.
+    float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
+    int level(std::uint32_t e) const;                             ///< 0 for a root.
     /// The way from the root: 1, then two binary digits a level, the child's number.
-    std::uint32_t path(std::uint32_t e) const { return path_[e]; }
+    std::uint32_t path(std::uint32_t e) const {
+        return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
+    }
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
 
     /// The first of four children; none for a leaf.
     std::uint32_t first_child(std::uint32_t e) const {
-        const std::uint32_t child = std::atomic_ref(first_child_[e]).load(std::memory_order_acquire);
+        const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
     }
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
@@ -62,13 +67,25 @@ class ElementForest {
   private:
     static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are on their way; none: there are none
 
-    std::vector<PatchGeometry> geometry_;  // of each patch
-    std::atomic<std::uint32_t> size_{0};
-    mutable StableArray<std::uint32_t> first_child_;
-    StableArray<std::uint32_t> parent_, patch_, path_;
-    StableArray<float> area_;
-};
+    struct Node {
+        std::uint32_t first_child;
+        float area;
+    };
+    /// What four siblings have in common.
+    struct Block {
+        std::uint32_t parent, patch, parent_path;
+    };
 
+    bool is_root(std::uint32_t e) const { return e < patch_count(); }
+    const Block& block_of(std::uint32_t e) const { return blocks_[(e - patch_count()) / 4]; }
+    std::uint32_t number_in_block(std::uint32_t e) const { return (e - patch_count()) % 4; }
+
+    std::vector<PatchGeometry> geometry_;  // of each patch
+    std::uint32_t patch_count_;
+    std::atomic<std::uint32_t> size_{0};
+    mutable StableArray<Node> nodes_;
+    StableArray<Block> blocks_;
+};
 /// Makes the values of a new element those of its parent, for all elements from `first` on: nothing recorded is lost.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {

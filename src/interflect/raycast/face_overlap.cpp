@@ -16,7 +16,7 @@ using V3d = Imath::V3d;
 /// Cosine of the angle between normals above which two faces can be said to lie in one plane at all: what stands
 /// upright on a face and is lower than the tolerance does not coincide with it. Generous, for small faces' normals are
 /// noisy.
-constexpr double same_plane_cosine = 0.7;
+constexpr double least_facing = 0.7;
 
 /// Faces of one task of the search.
 constexpr std::size_t search_grain = 1024;
@@ -107,7 +107,7 @@ class LargerFace {
             if (lies_outside(shared, inside_[i])) return false;  // as most neighbours do
         const V3d area = area_vector(shared);
         const double facing = area.dot(plane_.normal);
-        if (!is_smaller(face, area.length()) || std::abs(facing) < same_plane_cosine * area.length()) return false;
+        if (!is_smaller(face, area.length()) || std::abs(facing) < least_facing * area.length()) return false;
         if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
         for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i) shared = clipped(shared, inside_[i]);
         const auto end = shared.corners.begin() + static_cast<std::ptrdiff_t>(shared.count);

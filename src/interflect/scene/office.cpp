@@ -18,7 +18,7 @@ using namespace building;
 
 constexpr float aisle = 1.5f;                         // between the desks and the walls all round [m]
 constexpr float desk_pitch = 1.7f, row_pitch = 2.2f;  // [m]
-constexpr float luminaire_pitch = 2.6f;               // [m]
+constexpr float office_luminaire_pitch = 2.6f;        // [m]
 constexpr float share_of_extra_doors = 0.3f;
 
 void require_valid(const OfficeOptions& options) {
@@ -52,7 +52,7 @@ void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnis
 }
 
 /// What stands along the walls of a room with that many rows of desks.
-std::vector<const Furniture*> wall_furniture(std::uint32_t desk_rows) {
+std::vector<const Furniture*> furniture_along_walls(std::uint32_t desk_rows) {
     std::vector<const Furniture*> pieces;
     for (std::uint32_t row = 0; row < desk_rows; ++row) {
         pieces.push_back(row % 2 == 0 ? &bookcase : &cabinet);
@@ -80,11 +80,11 @@ Scene make_office(const OfficeOptions& options) {
         const Room& room = plan.rooms[i];
         const LookOut look_out = building::look_out(plan, i);
         Furnisher furnisher(scene, palette, i, random);
-        furnisher.add_luminaires(room, plan.room_height, luminaire_pitch, false);
+        furnisher.add_luminaires(room, plan.room_height, office_luminaire_pitch, false);
         add_desks(room, options, furnisher);
         FloorSpace floor(plan, room);
         floor.reserve(look_out.standing_room);
-        for (const Furniture* piece : wall_furniture(options.desk_rows))
+        for (const Furniture* piece : furniture_along_walls(options.desk_rows))
             if (const auto place = floor.against_wall(*piece, random)) furnisher.add(*piece, *place);
         if (i < most_room_views) scene.views.push_back(look_out.view);
     }

@@ -11,9 +11,9 @@ namespace interflect {
 
 /// One end of an interaction, as the oracle sees it.
 struct Party {
-    V3f centre;      ///< [m]
-    V3f normal;      ///< Unit length.
-    float area = 0;  ///< [m^2]
+    V3f centre{0, 0, 0};  ///< [m]
+    V3f normal{0, 0, 0};  ///< Unit length.
+    float area = 0;       ///< [m^2]
 };
 
 /// Cheap upper estimate of the form factor from receiver to shooter: the solid angle of a disk of the shooter's area,

@@ -26,9 +26,18 @@ constexpr double sum_headroom = 0x1p16;
 constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 
 /// Keys of the random numbers, so that no two purposes share one.
-enum class Purpose : std::uint64_t { light = 1, importance, pilot, batch, allocation, emission, survival, reflection };
+enum class WalkPurpose : std::uint64_t {
+    light = 1,
+    importance,
+    pilot,
+    batch,
+    allocation,
+    emission,
+    survival,
+    reflection
+};
 
-constexpr std::uint64_t sub_key(std::uint64_t key, Purpose purpose, std::uint64_t index = 0) {
+constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uint64_t index = 0) {
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
@@ -99,7 +108,7 @@ class PathBatch {
         const double q_sum = std::accumulate(q.begin(), q.end(), 0.0);
         if (!(q_sum > 0)) return;
         quantum_ = q_sum / static_cast<double>(paths);
-        first_path_ = allocate_rays(q, paths, random_double(sub_key(key, Purpose::allocation), 0));
+        first_path_ = allocate_rays(q, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
     }
 
     const Sums& follow() {
@@ -118,8 +127,8 @@ class PathBatch {
         for (std::uint64_t bounce = 1; !w.particles.empty(); ++bounce) {
             ray_caster_.trace(w.rays, w.hits);
             score(w);
-            survive(random_double(sub_key(key_, Purpose::survival, task), bounce), w);
-            reflect(mix(sub_key(key_, Purpose::reflection, task), bounce), w);
+            survive(random_double(sub_key(key_, WalkPurpose::survival, task), bounce), w);
+            reflect(mix(sub_key(key_, WalkPurpose::reflection, task), bounce), w);
         }
     }
 
@@ -137,8 +146,8 @@ class PathBatch {
             const double share = quantum_ / cargo_.density[s] / static_cast<double>(channel_sum(cargo_.emitted[s]));
             std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(cargo_.emitted[s]) * share)});
             shoot_rays(forest_.geometry(s), Cell(), ray_caster_.lift(), first_points_,
-                       sub_key(key_, Purpose::emission, s), static_cast<std::uint64_t>(from - first_path_[s]), w.points,
-                       std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
+                       sub_key(key_, WalkPurpose::emission, s), static_cast<std::uint64_t>(from - first_path_[s]),
+                       w.points, std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
             from = to;
         }
     }
@@ -228,12 +237,12 @@ Arrived walk(Run& run, const Cargo& cargo, std::int64_t rays, PathSeries& series
     std::int64_t pilot_rays = 0;
     if (series.batches == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
-        pilot_rays = follow_paths(run, cargo, paths, sub_key(series.key, Purpose::pilot)).rays;
+        pilot_rays = follow_paths(run, cargo, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
         series.rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(paths);
     }
     const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
     const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
-    Arrived arrived = follow_paths(run, cargo, at_least_one, sub_key(series.key, Purpose::batch, series.batches++));
+    Arrived arrived = follow_paths(run, cargo, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches++));
     series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
     arrived.rays += pilot_rays;
     return arrived;
@@ -293,7 +302,8 @@ Cargo importance_from_the_eyes(const Run& run) {
 }  // namespace
 
 RandomWalks::RandomWalks(Run& run)
-    : light_{sub_key(run.options.seed, Purpose::light)}, importance_{sub_key(run.options.seed, Purpose::importance)} {
+    : light_{sub_key(run.options.seed, WalkPurpose::light)},
+      importance_{sub_key(run.options.seed, WalkPurpose::importance)} {
     walk_importance(run, std::min(run.schedule.start_rays(), lacking_importance(run, run.options.rays)));
     run.schedule.began_with(0, run.importance_rays);
 }

@@ -42,6 +42,7 @@ struct TransportStep {
     std::vector<Rgb> quanta;
     /// psi of every element, as the oracle weighs receivers and as it is shot on; empty where neither is asked for.
     std::vector<float> importance;
+    bool carries_power() const { return !radiosity.empty(); }
     bool carries_importance = false;
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;

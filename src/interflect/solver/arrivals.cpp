@@ -1,0 +1,25 @@
+#include "interflect/solver/arrivals.h"
+
+#include <bit>
+#include <utility>
+
+namespace interflect {
+
+Arrivals::Arrivals(std::vector<Load> loads, std::size_t elements, std::size_t capacity)
+    : loads_(std::move(loads)), sums_(capacity), region_shift_(static_cast<int>(std::bit_width(elements / regions))) {}
+
+void Arrivals::Sorter::hand_on(std::size_t region) {
+    Lot& lot = lots_[region];
+    const std::scoped_lock lock(arrivals_->at_work_[region]);
+    for (std::size_t i = 0; i < lot.count; ++i) {
+        const Arrival& a = lot.arrivals[i];
+        const Load& load = arrivals_->loads_[a.source];
+        Load& sum = arrivals_->sums_[a.element];
+        const std::int64_t power = -static_cast<std::int64_t>(a.power);  // a mask: all ones or all zeros
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += load[c] & power;
+        sum[3] += load[3] & -static_cast<std::int64_t>(a.importance);
+    }
+    lot.count = 0;
+}
+
+}  // namespace interflect
