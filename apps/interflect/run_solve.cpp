@@ -99,6 +99,8 @@ void log_outcome(const Solution& solution) {
                      ? fmt::format(", {:.2g}% of the rays left the scene",
                                    100.0 * static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays))
                      : "");
+    if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.most_elements)
+        spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements", last.elements);
 }
 
 }  // namespace

@@ -172,7 +172,8 @@ void SolverOptions::add_refinement(CLI::App& app) {
     group(add_parsed(app, "--max-elements", solve_.most_elements, parse_element_count, "Refinement ends there")
               ->type_name("COUNT")
               ->default_str("67M"));
-    group(app.add_flag("--defer-refinement", solve_.defer_refinement, "No refinement during the warm-up ('dr')"));
+    group(app.add_flag("--defer-refinement", solve_.defer_refinement,
+                       "No refinement during the warm-up ('dr'); there is one with --warm-up"));
     group(app.add_option("--inherited-trust", solve_.inherited_trust,
                          "How much its parent's past counts for a new element; 1: as in the paper")
               ->type_name("SHARE")

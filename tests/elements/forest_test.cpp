@@ -126,6 +126,18 @@ TEST(Forest, IsTheSameWhateverTheOrderOfSubdivision) {
     EXPECT_EQ(described(a), described(b));
 }
 
+TEST(Forest, TakesBackTheLastSiblings) {
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, capacity), smaller(scene, capacity);
+    smaller.subdivide(1);
+    const std::uint32_t child = forest.subdivide(1);
+    forest.subdivide(child + 3);
+    EXPECT_EQ(forest.drop_last_siblings(), child + 3);
+    EXPECT_EQ(described(forest), described(smaller));
+    EXPECT_TRUE(forest.is_leaf(child + 3));
+    EXPECT_EQ(forest.subdivide(child + 3), child + 4) << "and makes them again";
+}
+
 TEST(Forest, RefusesWhatDoesNotFit) {
     const Scene scene = three_shapes();
     ElementForest full(scene, scene.patches.size() + 4);

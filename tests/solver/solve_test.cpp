@@ -96,6 +96,23 @@ TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
     }
 }
 
+TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
+    const Scene scene = furnished_room();
+    SolveOptions options;
+    options.method = find_method("hsrr");
+    options.rays = 60'000;
+    options.most_elements = 3 * scene.patches.size();
+    const Solution expected = solved_on_threads(1, scene, options);
+    EXPECT_LE(expected.forest->size(), options.most_elements);
+    EXPECT_GT(expected.forest->size() + 4, options.most_elements);
+    for (const int threads : {2, 3}) {
+        const Solution s = solved_on_threads(threads, scene, options);
+        ASSERT_EQ(s.forest->size(), expected.forest->size());
+        for (std::uint32_t e = 0; e < s.forest->size(); ++e) ASSERT_EQ(s.forest->parent(e), expected.forest->parent(e));
+        EXPECT_EQ(s.irradiance, expected.irradiance) << threads;
+    }
+}
+
 TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
     const Scene scene = colourful_box();
     for (const std::int64_t rays : {1, 2, 7, 1000, 123'457}) {

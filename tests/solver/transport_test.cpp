@@ -88,6 +88,19 @@ TEST(Transport, LosesNothingWhileTheMeshGrowsAndAfterwards) {
     }
 }
 
+TEST(Transport, LosesNothingWhereTheMeshMayNotGrowAnyFurther) {
+    Room room(colourful_box());
+    const std::uint32_t patches = room.forest.size();
+    SampleStreams streams = streams_of(1);
+    const RgbD radiated = room.radiated_power();
+    for (int i = 0; i < 2; ++i) {
+        TransportStep step = room.refining_step(0.01f);
+        step.oracle.most_elements = patches + 9;
+        expect_balance(room, room.receive(streams, step), radiated);
+        EXPECT_EQ(room.forest.size(), patches + 8) << "whole blocks of four";
+    }
+}
+
 TEST(Transport, GivesInnerElementsTheMeanOfTheirChildren) {
     Room room(furnished_room());
     SampleStreams streams = streams_of(1);

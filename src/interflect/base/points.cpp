@@ -10,18 +10,18 @@ namespace interflect {
 
 namespace {
 
-constexpr int bits = 32;
-using Directions = std::array<std::uint32_t, bits>;
+constexpr int word_bits = 32;
+using Directions = std::array<std::uint32_t, word_bits>;
 
 /// Direction numbers of one dimension, from its primitive polynomial of degree `degree` with inner coefficients
 /// `inner` and the first odd numbers m (Joe and Kuo 2008); bit-reversed: digit 1 of the point is the lowest bit.
 constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::array<std::uint32_t, 3> m) {
-    std::array<std::uint32_t, bits> v{};  // v[i] = m[i] * 2^(31 - i)
-    for (int i = 0; i < bits; ++i) {
+    std::array<std::uint32_t, word_bits> v{};  // v[i] = m[i] * 2^(31 - i)
+    for (int i = 0; i < word_bits; ++i) {
         if (degree == 0) {
-            v[i] = 1u << (bits - 1 - i);
+            v[i] = 1u << (word_bits - 1 - i);
         } else if (i < degree) {
-            v[i] = m[i] << (bits - 1 - i);
+            v[i] = m[i] << (word_bits - 1 - i);
         } else {
             v[i] = v[i - degree] ^ (v[i - degree] >> degree);
             for (int k = 1; k < degree; ++k)
@@ -29,9 +29,9 @@ constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::arra
         }
     }
     Directions reversed{};
-    for (int i = 0; i < bits; ++i)
-        for (int b = 0; b < bits; ++b)
-            if ((v[i] >> b) & 1u) reversed[i] |= 1u << (bits - 1 - b);
+    for (int i = 0; i < word_bits; ++i)
+        for (int b = 0; b < word_bits; ++b)
+            if ((v[i] >> b) & 1u) reversed[i] |= 1u << (word_bits - 1 - b);
     return reversed;
 }
 
@@ -88,9 +88,9 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
     }
     // A sequence has 2^32 points; then the next one, scrambled anew, takes over.
     for (std::size_t begin = 0; begin < count;) {
-        const std::uint64_t index = first + begin, left = (std::uint64_t{1} << bits) - (index & 0xffffffffu);
+        const std::uint64_t index = first + begin, left = (std::uint64_t{1} << word_bits) - (index & 0xffffffffu);
         const auto run = static_cast<std::size_t>(std::min<std::uint64_t>(left, count - begin));
-        fill_sobol(mix(key, index >> bits), static_cast<std::uint32_t>(index), begin, run, block);
+        fill_sobol(mix(key, index >> word_bits), static_cast<std::uint32_t>(index), begin, run, block);
         begin += run;
     }
 }

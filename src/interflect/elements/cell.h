@@ -17,17 +17,16 @@ struct Cell {
     /// = 0, 1, 2 keep the corner at v0, v1, v2; k = 3 is the central one.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
-        if (triangle && k == 3) return {u + half, v + half, -half};
-        return {(k & 1u) ? u + half : u, (k & 2u) ? v + half : v, half};
+        const bool central = triangle && k == 3;
+        return {(k & 1u) ? u + half : u, (k & 2u) ? v + half : v, central ? -half : half};
     }
 
     /// Which child holds a point of this cell; points on a border go to one of the neighbours, always the same.
     unsigned child_at(Parameters p, bool triangle) const {
-        const float s = (p.u - u) / size, t = (p.v - v) / size;
+        const float per_size = 1 / size;  // exact: a power of two
+        const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;
         if (!triangle) return (s >= 0.5f ? 1u : 0u) + (t >= 0.5f ? 2u : 0u);
-        if (s >= 0.5f) return 1;
-        if (t >= 0.5f) return 2;
-        return s + t < 0.5f ? 0 : 3;
+        return s >= 0.5f ? 1 : t >= 0.5f ? 2 : s + t < 0.5f ? 0 : 3;
     }
 };
 

@@ -108,4 +108,11 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
     return renumbered;
 }
 
+std::uint32_t ElementForest::drop_last_siblings() {
+    const std::uint32_t parent = this->parent(size() - 1);
+    nodes_[parent].first_child = none;
+    size_ -= 4;
+    return parent;
+}
+
 }  // namespace interflect

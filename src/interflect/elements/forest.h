@@ -40,6 +40,13 @@ class ElementForest {
     }
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
+    /// Tells the processor that a patch will be asked for its geometry and its children.
+    void prefetch(std::uint32_t patch) const {
+        const char* geometry = reinterpret_cast<const char*>(&geometry_[patch]);
+        __builtin_prefetch(geometry);
+        __builtin_prefetch(geometry + 64);
+        __builtin_prefetch(&nodes_[patch]);
+    }
 
     /// The first of four children; none for a leaf.
     std::uint32_t first_child(std::uint32_t e) const {
@@ -63,6 +70,10 @@ class ElementForest {
     /// and path. Call while no thread uses the forest.
     /// @return  Their new numbers: element first + i becomes renumbered[i].
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
+
+    /// Takes back the last four siblings, which must be leaves: their parent is one again. Call while no thread uses
+    /// the forest, and it is in order. @return  The parent.
+    std::uint32_t drop_last_siblings();
 
   private:
     static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are on their way; none: there are none

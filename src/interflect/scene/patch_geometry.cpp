@@ -53,8 +53,6 @@ PatchGeometry::PatchGeometry(const Scene& scene, const Patch& patch) : triangle_
 
 V3f PatchGeometry::centre() const { return triangle_ ? origin_ + (edge_u_ + edge_v_) / 3.0f : point({0.5f, 0.5f}); }
 
-V3f PatchGeometry::point(Parameters p) const { return origin_ + p.u * edge_u_ + p.v * edge_v_ + (p.u * p.v) * twist_; }
-
 float PatchGeometry::jacobian(Parameters p) const { return jacobian_[0] + p.u * jacobian_[1] + p.v * jacobian_[2]; }
 
 Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner, float size) const {

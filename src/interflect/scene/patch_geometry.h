@@ -24,7 +24,7 @@ class PatchGeometry {
     bool is_triangle() const { return triangle_; }
     V3f centre() const;  ///< Mean of the vertices [m].
 
-    V3f point(Parameters p) const;
+    V3f point(Parameters p) const { return origin_ + p.u * edge_u_ + p.v * edge_v_ + (p.u * p.v) * twist_; }
 
     /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the area of the
     /// patch, or of the part of it that corner + size (s, t) covers, where (s, t) runs over the patch's parameter

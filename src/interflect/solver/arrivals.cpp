@@ -11,6 +11,7 @@ Arrivals::Arrivals(std::vector<Load> loads, std::size_t elements, std::size_t ca
 void Arrivals::Sorter::hand_on(std::size_t region) {
     Lot& lot = lots_[region];
     const std::scoped_lock lock(arrivals_->at_work_[region]);
+    for (std::size_t i = 0; i < lot.count; ++i) __builtin_prefetch(&arrivals_->sums_[lot.arrivals[i].element], 1);
     for (std::size_t i = 0; i < lot.count; ++i) {
         const Arrival& a = lot.arrivals[i];
         const Load& load = arrivals_->loads_[a.source];

@@ -23,7 +23,7 @@ inline float form_factor_estimate(const Party& shooter, const Party& receiver) {
     const V3f d = receiver.centre - shooter.centre;
     const float d2 = d.length2();
     const float f = shooter.area / (std::numbers::pi_v<float> * d2 + shooter.area);
-    const float per_distance = d2 > 0 ? 1 / std::sqrt(d2) : 0;
+    const float per_distance = 1 / std::sqrt(std::max(d2, std::numeric_limits<float>::min()));
     const float least = std::min(1.0f, 2 * f);
     return f * std::clamp(shooter.normal.dot(d) * per_distance, least, 1.0f) *
            std::clamp(-receiver.normal.dot(d) * per_distance, least, 1.0f);
@@ -36,14 +36,16 @@ struct Oracle {
     double threshold = 0;  ///< P_eps, times psi_max where importance decides too [lm or W].
     bool by_importance = false;
     float smallest_area = 0;  ///< An element of less than four times this is not subdivided [m^2].
+    /// The forest grows to no more than this. What a step makes beyond it is dropped at the step's end, the last first
+    /// in the forest's order: so which elements there are does not depend on which thread was first.
+    std::size_t most_elements = std::numeric_limits<std::size_t>::max();
 
     /// Eq. 14 (by_importance == false) and Eq. 15, Prikryl et al. 2000; of the channels the largest decides.
     /// @param reflected  rho_i B_j, the receiver's reflectance times the shooter's radiosity [lm/m^2 or W/m^2].
     /// @param importance psi_i of the receiver; not used unless by_importance.
     bool accepts(const Party& shooter, const Party& receiver, const Rgb& reflected, float importance) const {
-        const double power =
-            static_cast<double>(largest_channel(reflected)) * receiver.area * form_factor_estimate(shooter, receiver);
-        return (by_importance ? power * importance : power) <= threshold;
+        const double power = static_cast<double>(largest_channel(reflected)) * receiver.area;
+        return (by_importance ? power * importance : power) * form_factor_estimate(shooter, receiver) <= threshold;
     }
 };
 

@@ -17,7 +17,9 @@ bool Descent::go_down(Visit& v, Parameters p) const { return go_to(v, forest_.fi
 
 bool Descent::subdivide(Visit& v, Parameters p) const {
     const std::uint32_t child = forest_.first_child(v.element);
-    return go_to(v, child == none ? forest_.subdivide(v.element) : child, p);
+    if (child != none) return go_to(v, child, p);
+    const bool may_grow = old_size_ + std::size_t{4} <= step_.oracle.most_elements;
+    return may_grow && go_to(v, forest_.subdivide(v.element), p);
 }
 
 bool Descent::go_to(Visit& v, std::uint32_t first_child, Parameters p) const {
@@ -56,6 +58,8 @@ void Receiver::take(std::uint32_t s, std::span<const Ray> rays, std::span<const 
         pair.way_end = static_cast<std::uint32_t>(ways_.size());
         pair.shooter = ways_[pair.way];
     }
+    for (const Hit& hit : hits)
+        if (hit.patch != none) forest.prefetch(hit.patch);
     for (std::size_t r = 0; r < rays.size(); ++r) {
         const std::uint32_t patch = hits[r].patch;
         if (patch == none) {

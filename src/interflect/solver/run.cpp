@@ -23,6 +23,15 @@ double smallest_area(const Scene& scene, const SolveOptions& options) {
     return std::pow(box.size().length() / diagonal_over_smallest, 2);
 }
 
+/// A step of rays may make more elements than are kept at its end (Oracle::most_elements): addresses are set aside for
+/// as many as no step of a second or two makes.
+std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
+    constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
+    if (!options.method.refines) return scene.patches.size();
+    if (options.method.scheme == Scheme::links) return options.most_elements;
+    return std::min(largest, options.most_elements + excess);
+}
+
 /// How many rays each bounce of the incremental start gets: in proportion to what is left to shoot; but if all bounces
 /// to come decay alike, they must do with half of the budget.
 class BounceBudget {
@@ -109,7 +118,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
       ray_caster(caster),
       options(o),
       monitor(m),
-      forest(std::make_shared<ElementForest>(scene, o.method.refines ? o.most_elements : scene.patches.size())),
+      forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
       view(o.views, *forest, caster, o.eye_rays, o.seed),
       smallest_element(smallest_area(scene, o)),
       streams(o.points, o.seed),

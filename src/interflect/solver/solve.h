@@ -82,7 +82,7 @@ struct SolveOptions {
     /// 1]. At 0 it is the same for all iterations, as in the paper.
     double epsilon_decay = 0.5;
     double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
-    std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there.
+    std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
     /// At 1 all elements are averaged alike, as in the paper.
     double inherited_trust = 0.1;

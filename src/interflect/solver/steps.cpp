@@ -80,6 +80,7 @@ Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64
     oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.radiosity) *
                        (oracle.by_importance ? reference_importance(so_far, step.importance) : 1);
     oracle.smallest_area = static_cast<float>(smallest_area);
+    oracle.most_elements = so_far.options.most_elements;
     return oracle;
 }
 

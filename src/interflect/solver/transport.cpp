@@ -154,6 +154,15 @@ void renumber(Arrivals& arrivals, std::uint32_t first, const std::vector<std::ui
     for (std::size_t i = 0; i < moved.size(); ++i) arrivals[first + i] = moved[i];
 }
 
+/// Keeps the forest within the oracle's limit; what arrived at elements that are dropped arrives at their parents.
+void drop_excess(ElementForest& forest, Arrivals& arrivals, std::size_t most_elements, std::uint32_t old_size) {
+    while (forest.size() > std::max<std::size_t>(most_elements, old_size)) {
+        const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
+        for (std::uint32_t e = first; e < first + 4; ++e)
+            for (std::size_t c = 0; c < arrivals[e].size(); ++c) arrivals[parent][c] += arrivals[e][c];
+    }
+}
+
 }  // namespace
 
 std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t ray_count, double offset) {
@@ -216,6 +225,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     ++streams.allocations;
 
     renumber(arrivals, descent.old_size(), forest.put_in_order(descent.old_size()));
+    drop_excess(forest, arrivals, step.oracle.most_elements, descent.old_size());
     if (step.carries_power()) {
         received.irradiance.resize(forest.size());
         for (std::uint32_t e = 0; e < forest.size(); ++e) {

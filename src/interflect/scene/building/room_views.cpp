@@ -23,7 +23,7 @@ constexpr float bird_distance = 1.1f;  // from the plan's middle, of its diagona
 struct Corner {
     float x, y;
 };
-constexpr std::array<Corner, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+constexpr std::array<Corner, 4> room_corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
 V2f eye_in(const Room& room, const Corner& corner) {
     return {corner.x < 0 ? room.x.low + eye_to_wall : room.x.high - eye_to_wall,
@@ -53,9 +53,10 @@ float doorway_in_sight(const FloorPlan& plan, const Room& room, const Corner& co
 
 LookOut look_out(const FloorPlan& plan, std::uint32_t index) {
     const Room& room = plan.rooms[index];
-    const Corner& corner = *std::max_element(corners.begin(), corners.end(), [&](const Corner& a, const Corner& b) {
-        return doorway_in_sight(plan, room, a) < doorway_in_sight(plan, room, b);
-    });
+    const Corner& corner =
+        *std::max_element(room_corners.begin(), room_corners.end(), [&](const Corner& a, const Corner& b) {
+            return doorway_in_sight(plan, room, a) < doorway_in_sight(plan, room, b);
+        });
     const V2f eye = eye_in(room, corner), aim = opposite_corner(room, corner);
     LookOut result;
     result.view = {
