@@ -37,5 +37,6 @@ function(interflect_folder name)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <memory> <span>
                               <string> <vector> <ImathVec.h>)
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${INTERFLECT_UNITY})
   set_property(GLOBAL APPEND PROPERTY interflect_targets ${target})
 endfunction()

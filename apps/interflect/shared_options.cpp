@@ -197,8 +197,9 @@ void SolverOptions::add_importance(CLI::App& app) {
                            {{"indirect", false}, {"total", true}},
                            "Rays start by indirect (Eq. 10) or total importance")
               ->default_str("indirect"));
-    group(app.add_option("--importance-smoothing", solve_.importance_smoothing,
-                         "How much of its parent's importance drives an element's rays; 0: as in the paper")
+    group(app.add_option(
+                 "--importance-smoothing", solve_.importance_smoothing,
+                 "How much of its parent's importance drives an element's rays and refinement; 0: as in the paper")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
@@ -215,7 +216,8 @@ void SolverOptions::add_importance(CLI::App& app) {
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--eye-rays", solve_.eye_rays, "Rays that find what a view shows, per view")
+    group(app.add_option("--eye-rays", solve_.eye_rays,
+                         "Rays that find what a view shows at first, per view; more follow as rays are averaged")
               ->capture_default_str()
               ->check(CLI::Range(1, 1 << 28)));
 }

@@ -64,7 +64,10 @@ class Accepts : public testing::Test {
     const Party shooter_ = party(ceiling_at(1)), receiver_ = party(floor_tile);
     const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // of what Rgb(2, 7, 1) brings to 1 m^2
     bool accepts(double threshold, bool by_importance, float importance) const {
-        return Oracle{true, threshold, by_importance, 0}.accepts(shooter_, receiver_, {2, 7, 1}, importance);
+        Oracle oracle;
+        oracle.threshold = threshold;
+        oracle.by_importance = by_importance;
+        return oracle.accepts(shooter_, receiver_, {2, 7, 1}, importance);
     }
 };
 

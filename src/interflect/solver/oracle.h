@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "interflect/base/colour.h"
 
@@ -40,12 +41,15 @@ struct Oracle {
     /// in the forest's order: so which elements there are does not depend on which thread was first.
     std::size_t most_elements = std::numeric_limits<std::size_t>::max();
 
+    /// psi of every element as the step finds it, by which receivers are weighed; empty unless by_importance.
+    std::vector<float> importance;
+
     /// Eq. 14 (by_importance == false) and Eq. 15, Prikryl et al. 2000; of the channels the largest decides.
     /// @param reflected  rho_i B_j, the receiver's reflectance times the shooter's radiosity [lm/m^2 or W/m^2].
-    /// @param importance psi_i of the receiver; not used unless by_importance.
-    bool accepts(const Party& shooter, const Party& receiver, const Rgb& reflected, float importance) const {
+    /// @param psi        psi_i of the receiver; not used unless by_importance.
+    bool accepts(const Party& shooter, const Party& receiver, const Rgb& reflected, float psi) const {
         const double power = static_cast<double>(largest_channel(reflected)) * receiver.area;
-        return (by_importance ? power * importance : power) * form_factor_estimate(shooter, receiver) <= threshold;
+        return (by_importance ? power * psi : power) * form_factor_estimate(shooter, receiver) <= threshold;
     }
 };
 

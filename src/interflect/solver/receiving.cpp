@@ -37,7 +37,7 @@ void Descent::enter(Visit& v, std::uint32_t element, const Cell& cell) const {
     v.party.centre = v.geometry->point(cell.centre(v.geometry->is_triangle()));
     if (element >= old_size_) return;
     if (step_.carries_power()) v.radiosity = step_.radiosity[element];
-    if (!step_.importance.empty()) v.importance = step_.importance[element];
+    if (step_.oracle.by_importance) v.importance = step_.oracle.importance[element];
 }
 
 std::uint32_t Descent::old_leaf_at(const Visit& v, Parameters p) const {

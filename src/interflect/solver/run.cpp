@@ -119,7 +119,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
       options(o),
       monitor(m),
       forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
-      view(o.views, *forest, caster, o.eye_rays, o.seed),
+      view(o.views, o.seed),
       smallest_element(smallest_area(scene, o)),
       streams(o.points, o.seed),
       schedule(o, scene.patches.size()) {
@@ -129,6 +129,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
     history.assign(forest->size(), 0.0f);
     variance.assign(forest->size(), 0.0f);
     solution.emitted_power = integral(*forest, radiosity(surfaces, *forest, solution.irradiance));
+    view.look(*forest, caster, o.eye_rays);
     if (view.empty()) return;
     solution.view_importance = view.per_area(*forest, !o.importance_at_elements);
     solution.indirect_importance.assign(forest->size(), 0.0f);
@@ -155,6 +156,15 @@ Received run_step(Run& run, const TransportStep& step) {
     inherit(*run.forest, before, run.solution.indirect_importance);
     run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);
     return received;
+}
+
+void look_closer(Run& run) {
+    constexpr std::int64_t rays_per_eye_ray = 64, most_eye_rays = 1 << 22;
+    if (run.view.empty()) return;
+    const std::int64_t wanted = std::min(run.schedule.averaged_rays() / rays_per_eye_ray, most_eye_rays);
+    if (wanted < 2 * run.view.rays()) return;
+    run.view.look(*run.forest, run.ray_caster, static_cast<int>((wanted - run.view.rays()) / run.view.views()));
+    run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);
 }
 
 void start_incrementally(Run& run) {

@@ -24,7 +24,7 @@ struct Run {
     const SolveOptions& options;
     const Monitor& monitor;
     const std::shared_ptr<ElementForest> forest;
-    const ViewImportance view;
+    ViewImportance view;
     const double smallest_element;  // [m^2]
     SampleStreams streams;
     Schedule schedule;
@@ -45,6 +45,10 @@ std::vector<Rgb> present_radiosity(Run& run);
 
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest.
 Received run_step(Run& run, const TransportStep& step);
+
+/// Adds eye rays in proportion to the rays that have been averaged: as the mesh gets finer, what an eye sees of each
+/// element must be known as well.
+void look_closer(Run& run);
 
 /// Follows importance, then light, bounce by bounce, shooting only what has not been shot: an estimate of all bounces
 /// in which no ray is thrown away ('incremental shooting', Neumann et al. 1995). The mesh stays as it is.

@@ -163,6 +163,7 @@ Solution iterate_until_done(const Scene& scene, const RayCaster& ray_caster, con
             if (plan.rays == 0) break;
             run.solution.interrupted = run.stop_is_asked_for();
             if (run.solution.interrupted) break;
+            look_closer(run);
             const RgbD escaped_power = iterate_once(run, plan);
             run.schedule.done(plan);
             report(run, iteration, escaped_power);

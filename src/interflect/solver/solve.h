@@ -91,11 +91,12 @@ struct SolveOptions {
     bool separate_iterations = false;    ///< Importance and power in steps of their own ('si'), or combined ('ci').
     bool importance_at_elements = true;  ///< Importance is kept by leaves ('hi'), or by patches.
     bool total_importance = false;       ///< Eq. 9 in place of Eq. 10.
-    /// How importance drives rays (see driving_importance); in [0, 1]. 0 and 1: as in the paper.
-    double importance_smoothing = 0.75, importance_exponent = 0.75;
+    /// How importance drives rays, and the first of them the oracle too (see driving_importance); in [0, 1]. 0 and 1:
+    /// as in the paper.
+    double importance_smoothing = 0.9, importance_exponent = 0.75;
     double alpha = 0.1;      ///< Share of the rays for importance, Eq. 11; in [0, 1].
     double beta = 0.1;       ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
-    int eye_rays = 1 << 16;  ///< Rays that find V, per view; > 0.
+    int eye_rays = 1 << 16;  ///< Rays that find V at first, per view; > 0. More follow as the run goes on.
 };
 
 /// Where a run stands after an iteration; counts since its start.

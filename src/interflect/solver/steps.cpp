@@ -54,7 +54,7 @@ TransportStep power_step(const Surfaces& surfaces, const Solution& so_far, std::
     step.q = power_step_weights(so_far, {surfaces, *so_far.forest, step.leaves}, radiosity, combined);
     step.rays = rays;
     step.radiosity = std::move(radiosity);
-    step.importance = total_importance(so_far);
+    if (combined) step.importance = total_importance(so_far);
     step.carries_importance = combined;
     step.importance_at_patches = !so_far.options.importance_at_elements;
     return step;
@@ -77,8 +77,13 @@ Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.radiosity) *
-                       (oracle.by_importance ? reference_importance(so_far, step.importance) : 1);
+    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.radiosity);
+    if (oracle.by_importance) {
+        // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
+        oracle.importance =
+            driving_importance(*so_far.forest, total_importance(so_far), so_far.options.importance_smoothing, 1);
+        oracle.threshold *= reference_importance(so_far, oracle.importance);
+    }
     oracle.smallest_area = static_cast<float>(smallest_area);
     oracle.most_elements = so_far.options.most_elements;
     return oracle;

@@ -40,8 +40,7 @@ struct TransportStep {
     /// What one ray of each leaf carries, same size as leaves; empty: B_s A_s / (N q_s), which makes the estimate
     /// unbiased.
     std::vector<Rgb> quanta;
-    /// psi of every element, as the oracle weighs receivers and as it is shot on; empty where neither is asked for.
-    std::vector<float> importance;
+    std::vector<float> importance;  ///< psi of every element, as it is shot on; empty unless that is asked for.
     bool carries_power() const { return !radiosity.empty(); }
     bool carries_importance = false;
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.

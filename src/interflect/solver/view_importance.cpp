@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/raycast/camera.h"
 
@@ -28,28 +29,38 @@ std::vector<Ray> eye_rays(const WeightedView& w, int rays, std::uint64_t key) {
 
 }  // namespace
 
-ViewImportance::ViewImportance(std::span<const WeightedView> views, const ElementForest& forest,
-                               const RayCaster& ray_caster, int rays_per_view, std::uint64_t seed) {
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        const std::vector<Ray> rays = eye_rays(views[v], rays_per_view, mix(seed, v));
+void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view) {
+    constexpr std::size_t batch_rays = 4096;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        const std::vector<Ray> rays = eye_rays(views_[v], rays_per_view, mix(mix(seed_, v), looks_));
         std::vector<Hit> hits(rays.size());
-        ray_caster.trace(rays, hits);
+        parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
+            ray_caster.trace(std::span(rays).subspan(begin, end - begin), std::span(hits).subspan(begin, end - begin));
+        });
+        const auto share = static_cast<float>(views_[v].weight * rays_per_view / static_cast<double>(rays.size()));
         for (std::size_t r = 0; r < rays.size(); ++r) {
-            if (hits[r].patch == none) continue;
+            const std::uint32_t patch = hits[r].patch;
+            if (patch == none) continue;
             const V3f y = rays[r].origin + hits[r].distance * rays[r].direction;
-            points_.push_back({hits[r].patch, forest.geometry(hits[r].patch).parameters_of(y),
-                               static_cast<float>(views[v].weight / static_cast<double>(rays.size()))});
+            points_.push_back({patch, forest.geometry(patch).parameters_of(y), share, patch});
+            shares_ += share;
         }
+        rays_ += rays_per_view;
     }
-    double sum = 0;
-    for (const Point& p : points_) sum += p.share;
-    for (Point& p : points_) p.share = static_cast<float>(p.share / sum);
+    ++looks_;
 }
 
-std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) const {
+std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
+    constexpr std::size_t batch_points = 4096;
+    if (!at_patches)
+        parallel_for_ranges(points_.size(), batch_points, [&](std::size_t begin, std::size_t end) {
+            for (Point& p : std::span(points_).subspan(begin, end - begin))
+                if (!forest.is_leaf(p.leaf)) p.leaf = forest.leaf_below(p.leaf, forest.cell(p.leaf), p.parameters);
+        });
     std::vector<float> v(forest.size(), 0.0f);
-    for (const Point& p : points_) v[at_patches ? p.patch : forest.leaf_at(p.patch, p.parameters)] += p.share;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) v[e] /= forest.area(e);
+    for (const Point& p : points_) v[at_patches ? p.patch : p.leaf] += p.share;
+    const double per_share = 1 / shares_;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) v[e] = static_cast<float>(v[e] * per_share / forest.area(e));
     push(forest, v);
     pull(forest, v);
     return v;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -17,26 +18,36 @@ struct WeightedView {
     float aspect = 16.0f / 9;  ///< Width over height of the picture.
 };
 
-/// Where eyes look: the points that eye rays hit, spread evenly over the picture. Kept as points, so that they can be
-/// handed to elements anew whenever the mesh has changed.
+/// Where eyes look: the points that eye rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
+/// that they can be handed to elements anew whenever the mesh has changed.
 class ViewImportance {
   public:
-    /// @param rays_per_view  Jittered eye rays, one to a cell of the picture plane; about this many.
-    ViewImportance(std::span<const WeightedView> views, const ElementForest& forest, const RayCaster& ray_caster,
-                   int rays_per_view, std::uint64_t seed);
+    ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
+        : views_(views.begin(), views.end()), seed_(seed) {}
 
-    bool empty() const { return points_.empty(); }
+    /// Traces more eye rays on all threads, jittered, one to a cell of the picture plane; about so many for each view.
+    void look(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view);
+
+    bool empty() const { return points_.empty(); }  ///< No eye sees anything.
+    std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
+    std::int64_t views() const { return std::ssize(views_); }
     /// v = V / A of every element [1/m^2]: V is the share of the picture through which an eye sees the element,
     /// weighted over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
     /// @param at_patches  Spread each patch's V evenly over it.
-    std::vector<float> per_area(const ElementForest& forest, bool at_patches) const;
+    std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
   private:
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;  // of all pictures
+        float share;         // of all pictures, times shares_
+        std::uint32_t leaf;  // that holds it, when last looked up
     };
+    std::vector<WeightedView> views_;
+    std::uint64_t seed_;
+    std::uint64_t looks_ = 0;
+    std::int64_t rays_ = 0;
+    double shares_ = 0;
     std::vector<Point> points_;
 };
 
