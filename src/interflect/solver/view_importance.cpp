@@ -30,11 +30,11 @@ std::vector<Ray> eye_rays(const WeightedView& w, int rays, std::uint64_t key) {
 }  // namespace
 
 void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view) {
-    constexpr std::size_t batch_rays = 4096;
+    constexpr std::size_t rays_at_once = 4096;
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const std::vector<Ray> rays = eye_rays(views_[v], rays_per_view, mix(mix(seed_, v), looks_));
         std::vector<Hit> hits(rays.size());
-        parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(rays.size(), rays_at_once, [&](std::size_t begin, std::size_t end) {
             ray_caster.trace(std::span(rays).subspan(begin, end - begin), std::span(hits).subspan(begin, end - begin));
         });
         const auto share = static_cast<float>(views_[v].weight * rays_per_view / static_cast<double>(rays.size()));
@@ -51,9 +51,9 @@ void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_cast
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
-    constexpr std::size_t batch_points = 4096;
+    constexpr std::size_t points_at_once = 4096;
     if (!at_patches)
-        parallel_for_ranges(points_.size(), batch_points, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(points_.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
             for (Point& p : std::span(points_).subspan(begin, end - begin))
                 if (!forest.is_leaf(p.leaf)) p.leaf = forest.leaf_below(p.leaf, forest.cell(p.leaf), p.parameters);
         });
