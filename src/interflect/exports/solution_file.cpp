@@ -79,12 +79,18 @@ template <class T>
 std::vector<T> read_array(hid_t file, const std::string& name, std::size_t columns) {
     const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "an array is missing");
     const Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
+    // HDF5 sets memory aside for numbers as large as the file says they are.
+    const Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
+    if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
     std::array<hsize_t, 2> size{0, 1};
     const int rank = H5Sget_simple_extent_ndims(space);
     if (rank != (columns == 1 ? 1 : 2)) throw std::runtime_error("array '" + name + "' has the wrong rank");
     H5Sget_simple_extent_dims(space, size.data(), nullptr);
+    // What a damaged file says of its arrays may be anything: no memory for more than it holds.
+    hsize_t file_size = 0;
+    require(H5Fget_filesize(file, &file_size), "cannot tell the file's size");
     if (size[1] != columns || size[0] > largest_array / columns ||
-        size[0] * columns * sizeof(T) > H5Dget_storage_size(set))
+        size[0] * columns * sizeof(T) > std::min(H5Dget_storage_size(set), file_size))
         throw std::runtime_error("array '" + name + "' has an unexpected size");
     std::vector<T> data(size[0] * columns);
     if (!data.empty())
