@@ -1,12 +1,15 @@
 #include "interflect/solver/arrivals.h"
 
 #include <bit>
+#include <stdexcept>
 #include <utility>
 
 namespace interflect {
 
 Arrivals::Arrivals(std::vector<Load> loads, std::size_t elements, std::size_t capacity)
-    : loads_(std::move(loads)), sums_(capacity), region_shift_(static_cast<int>(std::bit_width(elements / regions))) {}
+    : loads_(std::move(loads)), sums_(capacity), region_shift_(static_cast<int>(std::bit_width(elements / regions))) {
+    if (loads_.size() > most_sources) throw std::length_error("the mesh has more than 2^30 leaves");
+}
 
 void Arrivals::Sorter::hand_on(std::size_t region) {
     Lot& lot = lots_[region];

@@ -19,6 +19,7 @@ class Arrivals {
 
     /// @param loads     What one ray of each source carries.
     /// @param elements  Of the forest so far. @param capacity  Most elements ever.
+    /// @throws std::length_error for more than 2^30 sources.
     Arrivals(std::vector<Load> loads, std::size_t elements, std::size_t capacity);
 
     Load& operator[](std::size_t element) { return sums_[element]; }
@@ -28,11 +29,10 @@ class Arrivals {
       public:
         explicit Sorter(Arrivals& arrivals) : arrivals_(&arrivals) {}
 
-        /// @param source  < 2^30.
         void add(std::uint32_t element, std::uint32_t source, bool power, bool importance) {
             const std::size_t region = element >> arrivals_->region_shift_ & (regions - 1);
             Lot& lot = lots_[region];
-            lot.arrivals[lot.count++] = {element, source & 0x3fffffffu, power, importance};
+            lot.arrivals[lot.count++] = {element, source & (most_sources - 1), power, importance};
             if (lot.count == lot.arrivals.size()) hand_on(region);
         }
         /// To be called when all has been added.
@@ -58,6 +58,7 @@ class Arrivals {
 
   private:
     static constexpr std::size_t regions = 64;
+    static constexpr std::uint32_t most_sources = 1u << 30;  // an Arrival has as many bits for them
 
     std::vector<Load> loads_;
     StableArray<Load> sums_;
