@@ -47,11 +47,13 @@ TEST(ViewImportance, FollowsTheMesh) {
     ViewImportance view(views, 1), later(views, 1);
     view.look(box.forest, box.ray_caster, 10'000);
     view.per_area(box.forest, false);
-    box.forest.subdivide(box.forest.subdivide(wall_x0) + 3);
+    const std::uint32_t grandchild = box.forest.subdivide(box.forest.subdivide(wall_x0) + 3);
     later.look(box.forest, box.ray_caster, 10'000);
     const std::vector<float> v = view.per_area(box.forest, false);
     EXPECT_EQ(v, later.per_area(box.forest, false));
     EXPECT_NEAR(box.share(v, wall_x0), 1, 1e-6);
+    EXPECT_GT(v[grandchild], 1) << "at the middle of the wall, where the view looks";
+    EXPECT_EQ(v[grandchild + 3], 0) << "in its corner";
     EXPECT_EQ(view.per_area(box.forest, true)[box.forest.first_child(wall_x0)], v[wall_x0]) << "even over the patch";
 }
 

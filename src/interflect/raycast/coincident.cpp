@@ -57,7 +57,7 @@ CoincidentFaces::Winner::Winner(const Scene& scene, std::uint32_t face, float ma
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const std::size_t a = i % vertices.size(),
                           b = (i + 1) % vertices.size();  // a triangle's first edge comes twice
-        const V3d along(V3d(vertices[b]) - V3d(vertices[a]));
+        const V3d along = V3d(vertices[b]) - V3d(vertices[a]);
         const V3d inward = V3d(normal).cross(along).normalized();
         edges[i] = {V3f(inward), static_cast<float>(inward.dot(V3d(vertices[a]) - V3d(origin))) - margin};
     }
