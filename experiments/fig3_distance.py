@@ -42,6 +42,6 @@ def write_ratios(config: dict, series: dict[str | float, list[Row]], folder: Pat
     lines = []
     for time in times:
         ratios = [ratio_at(*curves[d], time) for d in DISTANCES]
-        lines.append([f"{time:.2g}", *(f"{r.value:.2f} ({r.low:.2f} to {r.high:.2f})" for r in ratios)])
+        lines.append([f"{time:.2g}", *map(str, ratios)])
     header = ["seconds", *(f"ratio of {drawing.LABELS[d]}" for d in DISTANCES)]
     results.write_table(folder / "fig3-distance-ratios.md", header, lines)

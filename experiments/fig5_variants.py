@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+import numpy as np
 from lab import drawing, results
 from lab.results import Row
+from lab.statistics import mean_ratio
 from lab.tasks import Entry, ladder, reference_of
 
 DISTANCE = "perceptual_distance_smooth"
@@ -46,3 +48,28 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
             {', '.join(f'{budget / 1e6:g}' for budget in config['budgets'])} million rays."""
         drawing.save(figure, folder, name, caption)
     results.write_summary(folder / "fig5-variants.md", rows)
+    write_effects(names, rows, folder)
+
+
+# What a variant's name tells: what it has, and what it has instead or without.
+EFFECTS = {
+    "separate over combined": ("si", "ci"),
+    "with hi over without": ("+hi", ""),
+    "with dr over without": ("+dr", ""),
+}
+
+
+def write_effects(names: list[str], rows: list[Row], folder: Path) -> None:
+    """What one choice does to the distance while the others stay: of each two variants, and the mean over all seeds."""
+    lines = []
+    for effect, (has, instead) in EFFECTS.items():
+        pairs = [(name, name.replace(has, instead)) for name in names if has in name]
+        for budget, runs in results.grouped(rows, "budget").items():
+            distance = {(row["series"], row["seed"]): row[DISTANCE] for row in runs}
+            seeds = sorted({seed for _, seed in distance})
+            ratios = np.array([[distance[a, seed] / distance[b, seed] for a, b in pairs] for seed in seeds])
+            each = [f"{a} / {b}: {mean_ratio(column).value:.2f}" for (a, b), column in zip(pairs, ratios.T)]
+            of_seeds = np.exp(np.log(ratios).mean(axis=1))
+            lines.append([effect, f"{budget / 1e6:g} M", str(mean_ratio(of_seeds)), ", ".join(each)])
+    header = ["choice", "rays", f"ratio of {drawing.LABELS[DISTANCE]}", "of each two variants"]
+    results.write_table(folder / "fig5-variants-effects.md", header, lines)

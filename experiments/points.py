@@ -29,9 +29,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         ax.set_title(title)
         ax.legend()
         for rays in config["budgets"]:
-            ratio = ratio_at(sobol, random, rays)
-            cells = [f"{rays / 1e6:g} M", f"{ratio.value:.2f} ({ratio.low:.2f} to {ratio.high:.2f})"]
-            lines.append([title, *cells])
+            lines.append([title, f"{rays / 1e6:g} M", str(ratio_at(sobol, random, rays))])
     caption = f"""Error against rays with scrambled Sobol' points and with pseudo-random numbers: the gap is what even
         spreading of starting points and directions gains. {config['seeds'][0]} seeds a point; bands are 95% confidence
         intervals."""

@@ -104,6 +104,9 @@ class Ratio:
     low: float
     high: float
 
+    def __str__(self) -> str:
+        return f"{self.value:.2f}" + ("" if math.isnan(self.low) else f" ({self.low:.2f} to {self.high:.2f})")
+
 
 def ratio_at(numerator: Curve, denominator: Curve, x: float) -> Ratio:
     """Of two curves at the same x, interpolated in logarithms."""
@@ -116,6 +119,13 @@ def ratio_at(numerator: Curve, denominator: Curve, x: float) -> Ratio:
     error = math.hypot(at(numerator, numerator.spread), at(denominator, denominator.spread))
     half_width = student_t(degrees) * error if degrees else math.nan
     return Ratio(math.exp(value), math.exp(value - half_width), math.exp(value + half_width))
+
+
+def mean_ratio(ratios: np.ndarray) -> Ratio:
+    """Geometric mean of ratios that were measured independently, with its confidence interval."""
+    logs = np.log(ratios)
+    m = mean(logs)
+    return Ratio(math.exp(m.value), math.exp(m.value - m.half_width), math.exp(m.value + m.half_width))
 
 
 @dataclass(frozen=True)

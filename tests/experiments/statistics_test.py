@@ -2,6 +2,7 @@
 
 import math
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
+import fig5_variants
 from lab import statistics
 
 
@@ -90,6 +92,37 @@ class Curve(unittest.TestCase):
         self.assertAlmostEqual(ratio.value, 2)
         self.assertAlmostEqual(math.log(ratio.high / ratio.value), 2.776 * 0.05, delta=1e-4)
         self.assertAlmostEqual(ratio.high / ratio.value, ratio.value / ratio.low)
+
+
+    def test_mean_ratio(self):
+        # Logarithms 1, 2, 3: mean 2, standard error 1 / sqrt(3); t(2) = 4.303.
+        ratio = statistics.mean_ratio(np.exp([1.0, 2.0, 3.0]))
+        self.assertAlmostEqual(math.log(ratio.value), 2)
+        self.assertAlmostEqual(math.log(ratio.high), 2 + 4.303 / math.sqrt(3), delta=1e-3)
+        self.assertAlmostEqual(math.log(ratio.low), 2 - 4.303 / math.sqrt(3), delta=1e-3)
+        self.assertEqual(str(statistics.mean_ratio(np.array([0.5]))), "0.50")
+
+
+class Effects(unittest.TestCase):
+    def test_of_each_choice(self):
+        factors = {"si": 3, "ci": 2, "hi": 5, "dr": 0.5}
+        names = ["si", "si+dr", "si+hi", "si+dr+hi", "ci", "ci+dr", "ci+hi", "ci+dr+hi"]
+        rows = [
+            {
+                "series": name,
+                "budget": 1e6,
+                "seed": seed,
+                fig5_variants.DISTANCE: math.prod(factors[f] for f in name.split("+")),
+            }
+            for name in names
+            for seed in (1, 2)
+        ]
+        with tempfile.TemporaryDirectory() as folder:
+            fig5_variants.write_effects(names, rows, Path(folder))
+            lines = (Path(folder) / "fig5-variants-effects.md").read_text().splitlines()[2:]
+        cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+        self.assertEqual([c[2] for c in cells], ["1.50 (1.50 to 1.50)", "5.00 (5.00 to 5.00)", "0.50 (0.50 to 0.50)"])
+        self.assertEqual([c[3].count("1.50") for c in cells], [4, 0, 0])
 
 
 class Crossing(unittest.TestCase):
