@@ -29,7 +29,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         ("meshes that are refined", config["scene"], config["hierarchical"]),
         (f"{small['scene']}, beside deterministic links", small["scene"], small["methods"] + small["links"]),
     ]
-    figure, axes = drawing.panels(len(panels), size=(3.4, 3.3))
+    figure, axes = drawing.panels(len(panels), size=(3.4, 4.3))
     lines = []
     for ax, (title, scene, methods) in zip(axes, panels):
         for number, method in enumerate(methods):
@@ -41,7 +41,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         drawing.logarithmic(ax, "rays", "relative RMSE, flat shading")
         drawing.guide(ax, config["budgets"], ax.get_ylim()[1], -0.5, "slope -1/2")
         ax.set_title(title)
-        ax.legend(fontsize=7.5)
+        ax.legend(fontsize=7.5, loc="upper center", bbox_to_anchor=(0.5, -0.2))
     caption = f"""Relative root mean square error of the picture against rays. The number beside a method is the slope of the
         line fitted to all its runs, with its 95% confidence interval: -0.5 is that of independent samples, steeper is
         better. {config['seeds'][0]} seeds a point; bands are 95% confidence intervals. Left, all methods have the same

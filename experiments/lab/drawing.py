@@ -93,7 +93,7 @@ def logarithmic(axes: Axes, x: str, y: str) -> None:
     axes.set(xscale="log", yscale="log", xlabel=LABELS.get(x, x), ylabel=LABELS.get(y, y))
     for axis, quantity in ((axes.xaxis, x), (axes.yaxis, y)):
         low, high = axis.get_view_interval()
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 30 * low else (1,)))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 60 * low else (1,)))
         axis.set_major_formatter(EngFormatter(sep="") if quantity in COUNTS else StrMethodFormatter("{x:g}"))
         axis.set_minor_formatter(NullFormatter())
 

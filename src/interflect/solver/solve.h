@@ -77,10 +77,10 @@ struct SolveOptions {
 
     /// Threshold of the oracle once 20 million rays are averaged, relative to the reference power (see
     /// reference_power); > 0. Scheme::links takes it as it is.
-    double epsilon = 1.5e-7;
+    double epsilon = 4e-8;
     /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
     /// 1]. At 0 it is the same for all iterations, as in the paper.
-    double epsilon_decay = 0.5;
+    double epsilon_decay = 0.75;
     double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
     std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
