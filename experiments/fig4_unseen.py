@@ -10,7 +10,7 @@ from lab.tasks import Entry, Measure, Picture, Solve, reference_of
 def entries(config: dict) -> list[Entry]:
     solves = {
         method["name"]: Solve(config["scene"], config["view"], method["options"], config["rays"], config["seed"])
-        for method in config["methods"]
+        for method in config["methods"] + config["also"]
     }
     first = next(iter(solves.values()))
     reference = reference_of(config)
@@ -19,9 +19,11 @@ def entries(config: dict) -> list[Entry]:
         Entry("importance: overview", Picture(first, config["overview"], f"{above} --show importance")),
         Entry("reference: unseen", Picture(reference, config["unseen"], f"{look} --shading flat")),
     ]
-    for name, solve in solves.items():
+    for method in config["methods"]:
         for place, options in (("overview", above), ("unseen", look)):
-            found.append(Entry(f"{name}: {place}", Picture(solve, config[place], f"{options} --shading flat")))
+            picture = Picture(solves[method["name"]], config[place], f"{options} --shading flat")
+            found.append(Entry(f"{method['name']}: {place}", picture))
+    for name, solve in solves.items():
         for place, view in (("seen", config["view"]), ("unseen", config["unseen"])):
             found.append(Entry(f"{name}: error {place}", Measure(solve, view, reference)))
     return found
@@ -43,13 +45,15 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         title = f"unseen room, {name}: relative MSE {error(name, 'unseen'):.3g}"
         drawing.show_picture(below, by_name[f"{name}: unseen"]["picture"], title)
     caption = f"""The maze without furniture from above: the importance of the view from one room, the hierarchical
-        solution that it drives, and that on fixed elements, {config['rays'] / 1e6:g} million rays each. Below, a room that
-        the view does not see: with a hierarchy its error is coarseness, on fixed elements it is noise."""
+        solution that it drives, and that on fixed elements, {config['rays'] / 1e6:g} million rays each, all of which follow
+        importance. Below, a room that the view does not see: with a hierarchy its error is coarseness, on fixed elements
+        it is noise. The rooms on the right have no importance at all and stay dark, which is why by default a share of the
+        rays follows power alone."""
     drawing.save(figure, folder, "fig4-unseen", caption)
 
     lines = []
-    for name in names:
-        row = by_name[f"{name}: overview"]
+    for name in names + [method["name"] for method in config["also"]]:
+        row = by_name[f"{name}: error seen"]
         cells = [f"{row['elements']:,.0f}", f"{row['seconds']:.1f}"]
         lines.append([name, *cells, *(f"{error(name, place):.3g}" for place in ("seen", "unseen"))])
     header = ["method", "elements", "seconds", "relative MSE, seen room", "relative MSE, unseen room"]
