@@ -93,7 +93,6 @@ class Curve(unittest.TestCase):
         self.assertAlmostEqual(math.log(ratio.high / ratio.value), 2.776 * 0.05, delta=1e-4)
         self.assertAlmostEqual(ratio.high / ratio.value, ratio.value / ratio.low)
 
-
     def test_mean_ratio(self):
         # Logarithms 1, 2, 3: mean 2, standard error 1 / sqrt(3); t(2) = 4.303.
         ratio = statistics.mean_ratio(np.exp([1.0, 2.0, 3.0]))
