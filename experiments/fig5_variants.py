@@ -32,12 +32,12 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         "the paper's best, and the program's schedule": config["best"] + [m["name"] for m in config["methods"]],
     }
     for x, name in (("seconds", "fig5-variants"), ("rays", "fig5-variants-rays")):
-        figure, axes = drawing.panels(len(chosen), share_y=True)
+        figure, axes = drawing.panels(len(chosen), size=(3.1, 3.9), share_y=True)
         for ax, (title, shown) in zip(axes, chosen.items()):
             for number, series_name in enumerate(shown):
                 drawing.draw_curve(ax, results.curve(series[series_name], x, DISTANCE), series_name, number)
             ax.set_title(title)
-            ax.legend(fontsize=8)
+            ax.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.2))
         for ax in axes:
             drawing.logarithmic(ax, x, DISTANCE)
             ax.label_outer()
