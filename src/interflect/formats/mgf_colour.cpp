@@ -138,13 +138,13 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
         luminance = largest;
     }
     V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
-    constexpr double rounding = 1e-15;  // where 1 is white
+    constexpr double least_channel = 1e-15;  // where 1 is white
     // The adaptation keeps Y of neutral only, so first come into the gamut, then set the luminance.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
     rgb = with_saturation(rgb, in_gamut);
     for (int c = 0; c < 3; ++c)
-        if (rgb[c] < rounding) rgb[c] = 0;  // the channel on the border
+        if (rgb[c] < least_channel) rgb[c] = 0;  // the channel on the border
     rgb /= interflect::luminance(RgbD(rgb));
     if (luminance > 0) {
         const double under_bound = smallest_saturation(rgb, largest / luminance);
