@@ -11,7 +11,8 @@ endif()
 
 add_library(interflect_options INTERFACE)
 target_compile_features(interflect_options INTERFACE cxx_std_20)
-target_compile_options(interflect_options INTERFACE ${interflect_warnings})
+# Without errno, and traps that nobody sets, square roots and choices become vector code.
+target_compile_options(interflect_options INTERFACE ${interflect_warnings} -fno-math-errno -fno-trapping-math)
 if(INTERFLECT_ARCH)
   target_compile_options(interflect_options INTERFACE -march=${INTERFLECT_ARCH})
 endif()

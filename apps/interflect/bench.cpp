@@ -69,9 +69,9 @@ Workload typical_workload(const Scene& scene, const RayCaster& ray_caster, const
     Workload work{Surfaces(scene), solve(scene, ray_caster, options), {}, {options.points, options.seed}, {}};
     if (!(channel_sum(work.solution.emitted_power) > 0))
         throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
-    work.step = power_step(work.surfaces, work.solution,
-                           radiosity(work.surfaces, *work.solution.forest, work.solution.irradiance),
-                           importance_use(work.solution) == ImportanceUse::full, options.rays);
+    const Light light(work.surfaces, work.solution.irradiance);
+    const bool combined = importance_use(work.solution) == ImportanceUse::full;
+    work.step = power_step(work.surfaces, work.solution, light, combined, options.rays);
     work.rays = transport_rays(*work.solution.forest, ray_caster, work.step, work.streams);
     return work;
 }

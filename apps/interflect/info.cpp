@@ -10,6 +10,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/shared_options.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/memory.h"
 
 namespace interflect::command {
 
@@ -65,7 +66,12 @@ Json json_of(const Vector& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
-Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string>& outside) {
+Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string>& outside, const MemoryNeed& need) {
+    const Json memory{{"scene", need.scene},
+                      {"ray_tracer", need.ray_tracer},
+                      {"patches", need.patches},
+                      {"per_element", MemoryNeed::per_element},
+                      {"at_least", need.with(scene.patches.size())}};
     Json views = Json::array(), warnings = Json::array(), emitters = Json::array();
     for (const View& v : scene.views)
         views.push_back({{"name", v.name},
@@ -90,6 +96,7 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
             {"emitted_power", json_of(s.emitted_power)},
             {"emitters", emitters},
             {"views", views},
+            {"memory", memory},
             {"files", scene.files},
             {"files_outside", outside},
             {"warnings", warnings}};
@@ -107,7 +114,10 @@ std::string text_of(const Vector& v) {
     return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);
 }
 
-void print_text(const Scene& scene, const Summary& s, const std::vector<std::string>& outside) {
+/// [MiB], rounded up.
+std::size_t mebibytes(std::size_t bytes) { return (bytes + (1 << 20) - 1) >> 20; }
+
+void print_text(const Scene& scene, const Summary& s, const std::vector<std::string>& outside, const MemoryNeed& need) {
     fmt::print("{}\n", scene.name);
     fmt::print("  patches   {} ({} triangles; {} on two-sided faces)\n", scene.patches.size(), s.triangles,
                s.two_sided);
@@ -123,6 +133,9 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     for (const View& v : scene.views)
         fmt::print("  view      {}: eye {}, look at {}, up {}, fov {:.4g}\n", v.name, text_of(v.eye),
                    text_of(v.look_at), text_of(v.up), v.fov);
+    fmt::print("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements\n",
+               mebibytes(need.with(scene.patches.size())), mebibytes(need.scene), mebibytes(need.ray_tracer),
+               mebibytes(need.patches), mebibytes(1'000'000 * MemoryNeed::per_element));
     fmt::print("  files     {}\n", scene.files.size());
     for (const std::string& file : outside) fmt::print("  outside   {}: not in the scene's own folder\n", file);
 }
@@ -142,10 +155,11 @@ void add_info(CLI::App& app) {
         const Scene scene = options->scene.load();
         const Summary summary = summarise(scene);
         const std::vector<std::string> outside = outside_files(scene, options->scene.path);
+        const MemoryNeed need = memory_need(scene, RayCaster(scene));
         if (options->json)
-            std::cout << to_json(scene, summary, outside).dump(2) << '\n';
+            std::cout << to_json(scene, summary, outside, need).dump(2) << '\n';
         else
-            print_text(scene, summary, outside);
+            print_text(scene, summary, outside, need);
     });
 }
 

@@ -28,19 +28,27 @@ bool take(std::string_view& text, char c) {
     return true;
 }
 
-}  // namespace
-
-std::int64_t parse_count(const std::string& text) {
-    const char* expected = "a number above 0, such as 500000, 20M or 1.5G";
+/// Reads a number from 1 to 10^18 that may end in k, M, G or T for powers of `thousand`.
+std::int64_t take_all(const std::string& text, double thousand, const char* expected) {
     std::string_view rest = text;
     double number = 0;
     if (!take_number(rest, number)) refuse(text, expected);
     // npos + 1 is 0: an unknown suffix.
     const std::size_t power = rest.empty() ? 0 : std::string_view("kMGT").find(rest.front()) + 1;
     if (rest.size() > 1 || (power == 0 && !rest.empty())) refuse(text, expected);
-    number *= std::pow(1000.0, static_cast<double>(power));
+    number *= std::pow(thousand, static_cast<double>(power));
     if (!(number >= 1) || number > 1e18) refuse(text, expected);
     return std::llround(number);
+}
+
+}  // namespace
+
+std::int64_t parse_count(const std::string& text) {
+    return take_all(text, 1000, "a number above 0, such as 500000, 20M or 1.5G");
+}
+
+std::size_t parse_memory(const std::string& text) {
+    return static_cast<std::size_t>(take_all(text, 1024, "a number of bytes above 0, such as 800M or 16G"));
 }
 
 std::size_t parse_element_count(const std::string& text) {

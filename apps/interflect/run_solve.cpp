@@ -2,7 +2,9 @@
 
 #include <spdlog/spdlog.h>
 #include <tbb/info.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,12 +13,18 @@
 #include "apps/interflect/progress.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/memory.h"
 
 namespace interflect::command {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// What the machine has [bytes].
+std::size_t machine_memory() {
+    return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
 
 Json json_of(const RgbD& c) { return Json::array({c.x, c.y, c.z}); }
 
@@ -100,15 +108,20 @@ void log_outcome(const Solution& solution) {
                                    100.0 * static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays))
                      : "");
     if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.most_elements)
-        spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements", last.elements);
+        spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements or --memory",
+                     last.elements);
 }
 
 }  // namespace
 
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,
                    const SolverOptions& command) {
     std::optional<PendingFile> stats;
     if (!command.stats.empty()) stats.emplace(command.stats);
+    SolveOptions options = asked_for;
+    const std::size_t bytes = command.memory > 0 ? command.memory : machine_memory() / 10 * 9;
+    options.most_elements =
+        std::min(options.most_elements, elements_within(memory_need(scene, ray_caster), bytes, scene));
     Solution solution;
     {
         const StopOnInterrupt stop_on_interrupt;

@@ -172,6 +172,10 @@ void SolverOptions::add_refinement(CLI::App& app) {
     group(add_parsed(app, "--max-elements", solve_.most_elements, parse_element_count, "Refinement ends there")
               ->type_name("COUNT")
               ->default_str("67M"));
+    group(add_parsed(app, "--memory", memory, parse_memory,
+                     "Refinement ends before the process takes more than this (k, M, G: powers of 1024)")
+              ->type_name("BYTES")
+              ->default_str("9/10 of the machine's"));
     group(app.add_flag("--defer-refinement", solve_.defer_refinement,
                        "No refinement during the warm-up ('dr'); there is one with --warm-up"));
     group(app.add_option("--inherited-trust", solve_.inherited_trust,

@@ -48,7 +48,8 @@ struct ViewOptions {
 
 /// How to solve.
 struct SolverOptions {
-    int threads = 0;  ///< 0: as many as the machine has.
+    int threads = 0;         ///< 0: as many as the machine has.
+    std::size_t memory = 0;  ///< Limit of the process [bytes]; 0: nine tenths of the machine's.
     std::filesystem::path stats;
 
     void add_to(CLI::App& app);

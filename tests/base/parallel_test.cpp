@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <vector>
 
@@ -20,6 +21,20 @@ TEST(ParallelForRanges, CoversEachIndexOnceInAlignedRanges) {
         EXPECT_EQ(misaligned, 0) << count;
         for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(visits[i], 1) << i << " of " << count;
     }
+}
+
+TEST(ParallelSum, AddsInTheOrderOfTheRanges) {
+    EXPECT_EQ(parallel_sum(0, 64, 0.0, [](std::size_t, std::size_t) { return 1.0; }), 0);
+    const auto term = [](std::size_t i) { return 1.0 / static_cast<double>(i + 1); };
+    const auto some = [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t i = begin; i < end; ++i) sum += term(i);
+        return sum;
+    };
+    double expected = 0;
+    for (std::size_t begin = 0; begin < 100'001; begin += 64)
+        expected += some(begin, std::min<std::size_t>(begin + 64, 100'001));
+    EXPECT_EQ(parallel_sum(100'001, 64, 0.0, some), expected) << "to the last bit";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <thread>
@@ -151,6 +152,37 @@ TEST(Forest, RefusesWhatDoesNotFit) {
     for (int level = 0; level < ElementForest::deepest_level; ++level) e = deep.subdivide(e);
     EXPECT_EQ(deep.level(e), ElementForest::deepest_level);
     EXPECT_EQ(deep.subdivide(e), none);
+}
+
+TEST(Forest, GoesFromTheRootsToTheLeavesAndBackPastNoGeneration) {
+    const Scene scene = three_shapes();
+    ElementForest forest(scene, 1 << 20);
+    std::mt19937 random(6);
+    for (unsigned batch = 0; batch < 4; ++batch) {  // the last one is not put in order
+        const std::uint32_t first = forest.size();
+        for (int i = 0; i < 20'000; ++i) forest.subdivide(static_cast<std::uint32_t>(random()) % forest.size());
+        if (batch == 3) break;
+        forest.put_in_order(first);
+        if (batch == 1)
+            for (int i = 0; i < 6'000; ++i) forest.drop_last_siblings();
+    }
+    std::vector<std::uint32_t> depth(forest.size(), 0), height(forest.size(), 0);
+    std::atomic<std::uint32_t> visits{0};
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        for (std::uint32_t e = first; e < first + 4; ++e) depth[e] = depth[forest.parent(first)] + 1;
+        ++visits;
+    });
+    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+        for (std::uint32_t e = first; e < first + 4; ++e)
+            height[forest.parent(first)] = std::max(height[forest.parent(first)], height[e] + 1);
+        ++visits;
+    });
+    EXPECT_EQ(visits, 2 * (forest.size() - forest.patch_count()) / 4);
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        ASSERT_EQ(depth[e], forest.level(e));
+        ASSERT_EQ(height[e] > 0, !forest.is_leaf(e));
+        ASSERT_TRUE(e < forest.patch_count() || height[forest.parent(e)] > height[e]);
+    }
 }
 
 TEST(Forest, PushAndPullKeepTheIntegral) {

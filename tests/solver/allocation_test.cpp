@@ -6,24 +6,40 @@
 #include <numeric>
 #include <random>
 
-#include "interflect/solver/transport.h"
+#include "interflect/solver/ray_allocation.h"
 
 namespace interflect {
 namespace {
 
-std::vector<double> some_weights() {
+std::vector<float> some_weights() {
     std::mt19937_64 random(1);
-    std::lognormal_distribution<double> weight(0, 3);
-    std::vector<double> q(1000);
+    std::lognormal_distribution<float> weight(0, 3);
+    std::vector<float> q(1000);
     for (std::size_t s = 0; s < q.size(); ++s) q[s] = s % 3 == 0 ? 0 : weight(random);
     return q;
+}
+
+/// The first ray of every source, and the number of all.
+std::vector<std::int64_t> allocate_rays(const std::vector<float>& q, std::int64_t rays, double offset) {
+    const RayAllocation allocation(q, rays, offset);
+    std::vector<std::int64_t> first(q.size() + 1, 0);
+    std::int64_t given = 0;
+    const auto note = [&](std::size_t s, std::int64_t first_of_s, std::int64_t from, std::int64_t to) {
+        EXPECT_EQ(first_of_s, given);
+        EXPECT_EQ(from, given);
+        EXPECT_GT(to, from);
+        given = first[s + 1] = to;
+    };
+    allocation.for_each_source(0, rays, note);
+    for (std::size_t s = 0; s < q.size(); ++s) first[s + 1] = std::max(first[s], first[s + 1]);
+    return first;
 }
 
 /// The largest number below 1: no random offset is larger.
 const double largest_offset = std::nextafter(1.0, 0.0);
 
 TEST(AllocateRays, GivesEachSourceItsShareRoundedUpOrDown) {
-    const std::vector<double> q = some_weights();
+    const std::vector<float> q = some_weights();
     const double sum = std::accumulate(q.begin(), q.end(), 0.0);
     for (const std::int64_t rays :
          {std::int64_t{1}, std::int64_t{7}, std::int64_t{12'345}, std::int64_t{1'000'000'000'000}})
@@ -42,7 +58,7 @@ TEST(AllocateRays, GivesEachSourceItsShareRoundedUpOrDown) {
 }
 
 TEST(AllocateRays, GivesTheExactShareInTheMeanOverOffsets) {
-    const std::vector<double> q{0.1, 3.7, 0, 1.9, 0.003};
+    const std::vector<float> q{0.1f, 3.7f, 0, 1.9f, 0.003f};
     constexpr std::int64_t rays = 10;
     constexpr int offsets = 10'000;
     const double sum = std::accumulate(q.begin(), q.end(), 0.0);
@@ -56,8 +72,32 @@ TEST(AllocateRays, GivesTheExactShareInTheMeanOverOffsets) {
 
 TEST(AllocateRays, GivesNothingToSourcesWithoutWeight) {
     for (const double offset : {0.0, 0.5, largest_offset})
-        EXPECT_EQ(allocate_rays(std::vector<double>{0, 0, 5, 0}, 100, offset),
-                  (std::vector<std::int64_t>{0, 0, 0, 100, 100}));
+        EXPECT_EQ(allocate_rays({0, 0, 5, 0}, 100, offset), (std::vector<std::int64_t>{0, 0, 0, 100, 100}));
+}
+
+TEST(AllocateRays, NamesTheSourcesOfAnyRange) {
+    const std::vector<float> q = some_weights();
+    constexpr std::int64_t rays = 5000;
+    const RayAllocation allocation(q, rays, 0.3);
+    const std::vector<std::int64_t> first = allocate_rays(q, rays, 0.3);
+    for (const std::int64_t length : {1, 7, 1000})
+        for (std::int64_t begin = 0; begin + length <= rays; begin += 37) {
+            std::int64_t next = begin;
+            allocation.for_each_source(begin, begin + length,
+                                       [&](std::size_t s, std::int64_t first_of_s, std::int64_t from, std::int64_t to) {
+                                           EXPECT_EQ(first_of_s, first[s]);
+                                           EXPECT_EQ(from, next);
+                                           EXPECT_LE(to, first[s + 1]);
+                                           next = to;
+                                       });
+            EXPECT_EQ(next, begin + length);
+        }
+}
+
+TEST(AllocateRays, GivesNobodyAnyWhereAllWeightsAre0) {
+    const RayAllocation allocation(std::vector<float>(3, 0.0f), 100, 0.5);
+    EXPECT_EQ(allocation.q_sum(), 0);
+    EXPECT_EQ(allocation.block_count(), 0u);
 }
 
 }  // namespace

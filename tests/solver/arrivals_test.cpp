@@ -14,12 +14,13 @@ namespace {
 using Load = Arrivals::Load;
 
 TEST(Arrivals, GivesEachElementThePartsOfTheLoadsThatArriveThere) {
-    Arrivals arrivals({{1, 10, 100, 1000}, {2, 20, 200, 2000}}, 3, 5);
+    Arrivals arrivals(3, 5);
     Arrivals::Sorter sorter(arrivals);
-    sorter.add(0, 0, true, true);
-    sorter.add(0, 1, true, false);
-    sorter.add(2, 1, false, true);
-    sorter.add(4, 0, true, false);  // made since the step began
+    const std::uint32_t a = sorter.add_source({1, 10, 100, 1000}), b = sorter.add_source({2, 20, 200, 2000});
+    sorter.add(0, a, true, true);
+    sorter.add(0, b, true, false);
+    sorter.add(2, b, false, true);
+    sorter.add(4, a, true, false);  // made since the step began
     sorter.hand_on_all();
     EXPECT_EQ(arrivals[0], (Load{3, 30, 300, 1000}));
     EXPECT_EQ(arrivals[1], (Load{0, 0, 0, 0}));
@@ -32,14 +33,16 @@ TEST(Arrivals, AreTheSameWhateverThreadsBringThem) {
     std::vector<Load> loads;
     for (std::int64_t s = 0; s < static_cast<std::int64_t>(sources); ++s) loads.push_back({s, 3 * s, -s, 1 + s});
     std::vector<Load> expected(elements, Load{});
-    Arrivals arrivals(loads, elements, elements);
+    Arrivals arrivals(elements, elements);
     const auto element = [](std::size_t ray) { return static_cast<std::uint32_t>(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
         for (std::size_t c = 0; c < 4; ++c) expected[element(ray)][c] += loads[ray % sources][c];
     parallel_for_ranges(rays, 10'000, [&](std::size_t begin, std::size_t end) {
         Arrivals::Sorter sorter(arrivals);
-        for (std::size_t ray = begin; ray < end; ++ray)
-            sorter.add(element(ray), static_cast<std::uint32_t>(ray % sources), true, true);
+        for (std::size_t ray = begin; ray < end; ++ray) {
+            sorter.add(element(ray), sorter.add_source(loads[ray % sources]), true, true);
+            sorter.forget_sources();
+        }
         sorter.hand_on_all();
     });
     for (std::size_t e = 0; e < elements; ++e) EXPECT_EQ(arrivals[e], expected[e]) << e;

@@ -34,7 +34,7 @@ const Pair perpendicular_squares{
 /// Two squares, each lit on one side; `from` is patch 0.
 Scene scene_of(const Pair& pair) {
     Scene scene;
-    add_material(scene, {0, 0, 0}, {0, 0, 0});
+    add_material(scene, {0, 0, 0}, {1, 1, 1});
     for (const Rectangle& r : {pair.from, pair.to}) add_rectangle(scene, V3f(r.corner), V3f(r.u), V3f(r.v), 0);
     return scene;
 }
@@ -54,12 +54,13 @@ double received_share(const Pair& pair, PointSet set, std::uint64_t seed, std::i
     const Scene scene = scene_of(pair);
     ElementForest forest(scene, 2);
     SampleStreams streams(set, seed);
+    const Surfaces surfaces(scene);
+    const std::vector<Rgb> darkness(2, Rgb(0));
     TransportStep step;  // the squares are of 1 m^2: power and radiosity are the same number
-    step.leaves = forest.leaves();
     step.q = {1, 0};
     step.rays = rays;
-    step.radiosity = std::vector<Rgb>(2, Rgb(1));
-    return transport(Surfaces(scene), forest, RayCaster(scene), step, streams).irradiance[1].x;
+    step.light = Light(surfaces, darkness);
+    return transport(surfaces, forest, RayCaster(scene), step, streams).irradiance[1].x;
 }
 
 TEST_P(TwoSquares, RandomRaysHitWithTheFormFactorsProbability) {

@@ -62,24 +62,23 @@ TEST(FormFactorEstimates, AreFiniteWhereTheCentresMeet) {
 class Accepts : public testing::Test {
   protected:
     const Party shooter_ = party(ceiling_at(1)), receiver_ = party(floor_tile);
-    const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // of what Rgb(2, 7, 1) brings to 1 m^2
-    bool accepts(double threshold, bool by_importance, float importance) const {
+    const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // of what 7 lm/m^2 bring to 1 m^2
+    bool accepts(double threshold, float importance) const {
         Oracle oracle;
         oracle.threshold = threshold;
-        oracle.by_importance = by_importance;
-        return oracle.accepts(shooter_, receiver_, {2, 7, 1}, importance);
+        return oracle.accepts(shooter_, receiver_, 7, importance);
     }
 };
 
-TEST_F(Accepts, PowerUpToTheThresholdInTheLargestChannel) {
-    EXPECT_TRUE(accepts(1.001 * power_, false, 5));
-    EXPECT_FALSE(accepts(0.999 * power_, false, 0));
+TEST_F(Accepts, PowerUpToTheThreshold) {
+    EXPECT_TRUE(accepts(1.001 * power_, 1));
+    EXPECT_FALSE(accepts(0.999 * power_, 1));
 }
 
-TEST_F(Accepts, PowerTimesImportanceWhereImportanceDecides) {
-    EXPECT_TRUE(accepts(1.001 * 5 * power_, true, 5));
-    EXPECT_FALSE(accepts(0.999 * 5 * power_, true, 5));
-    EXPECT_TRUE(accepts(0, true, 0)) << "what nobody sees stays whole";
+TEST_F(Accepts, PowerTimesImportance) {
+    EXPECT_TRUE(accepts(1.001 * 5 * power_, 5));
+    EXPECT_FALSE(accepts(0.999 * 5 * power_, 5));
+    EXPECT_TRUE(accepts(0, 0)) << "what nobody sees stays whole";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tests/support/scenes.h"
@@ -20,10 +21,7 @@ using testing::ElementsAre;
 /// 2 m^2.
 class Weights : public testing::Test {
   protected:
-    Weights() {
-        forest_.subdivide(0);
-        leaves_ = forest_.leaves();
-    }
+    Weights() { forest_.subdivide(0); }
     static Scene two_squares() {
         Scene scene;
         testing_support::add_material(scene, {0.25f, 0.5f, 0.75f}, Rgb(0));
@@ -32,48 +30,70 @@ class Weights : public testing::Test {
         testing_support::add_rectangle(scene, {5, 0, 0}, {2, 0, 0}, {0, 1, 0}, 1);
         return scene;
     }
-    Sampled sampled() const { return {surfaces_, forest_, leaves_}; }
+    Sampled sampled() const {
+        return {surfaces_, forest_, Light(surfaces_, irradiance_), Importance(importance_), importance_};
+    }
+    template <class Weight>
+    std::vector<double> of_leaves(const Weight& weight) const {
+        std::vector<double> weights;
+        for (const std::uint32_t leaf : forest_.leaves()) weights.push_back(std::invoke(weight, sampled(), leaf));
+        return weights;
+    }
 
     const Scene scene_ = two_squares();
     const Surfaces surfaces_{scene_};
     ElementForest forest_{scene_, 6};
-    std::vector<std::uint32_t> leaves_;
     // By element: the divided square, the black one, the parts of the first.
-    std::vector<Rgb> radiosity_{Rgb(9), Rgb(2), Rgb(1, 2, 3), Rgb(0), Rgb(0, 0, 1), Rgb(1)};
+    std::vector<Rgb> irradiance_{Rgb(9), Rgb(2), Rgb(4, 4, 4), Rgb(0), Rgb(0, 0, 4), Rgb(4)};
     std::vector<float> importance_{9, 1, 3, 3, 0, 0.75f};
 };
 
 TEST_F(Weights, OfPowerAreTheSumOfTheChannelsTimesTheArea) {
-    EXPECT_THAT(power_weights(sampled(), radiosity_), ElementsAre(12, 6, 0, 1, 3));
+    EXPECT_THAT(of_leaves(&Sampled::power), ElementsAre(6, 6, 0, 3, 6));
 }
 
 TEST_F(Weights, OfPowerAreFiniteForEveryFiniteRadiosity) {
-    radiosity_.assign(6, Rgb(std::numeric_limits<float>::max()));
-    for (const double w : power_weights(sampled(), radiosity_)) EXPECT_TRUE(std::isfinite(w));
+    irradiance_.assign(6, Rgb(std::numeric_limits<float>::max()));
+    for (const double w : of_leaves(&Sampled::power)) EXPECT_TRUE(std::isfinite(w));
 }
 
 TEST_F(Weights, OfImportanceAreWhatIsReflectedOfIt) {
-    EXPECT_THAT(reflected_importance_weights(sampled(), importance_), ElementsAre(0, 1.5, 1.5, 0, 0.375));
+    EXPECT_THAT(of_leaves(&Sampled::importance), ElementsAre(0, 1.5, 1.5, 0, 0.375));
 }
 
 TEST_F(Weights, OfPowerThatIsDrivenAreTheProduct) {
-    EXPECT_THAT(driven_weights(sampled(), radiosity_, importance_), ElementsAre(12, 18, 0, 0, 2.25));
+    EXPECT_THAT(of_leaves(&Sampled::driven_power), ElementsAre(6, 18, 0, 0, 4.5));
+}
+
+TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
+    using testing::FloatNear;
+    EXPECT_THAT(mixture(sampled(), {.power = 0.42}), ElementsAre(0, FloatNear(0.12f, 1e-7f), FloatNear(0.12f, 1e-7f), 0,
+                                                                 FloatNear(0.06f, 1e-7f), FloatNear(0.12f, 1e-7f)));
+    const std::vector<float> q = mixture(sampled(), {.power = 0.21, .driven_power = 0.285, .importance = 0.3375});
+    EXPECT_THAT(
+        q, ElementsAre(0, FloatNear(0.06f + 0.06f, 1e-7f), FloatNear(0.06f + 0.18f + 0.15f, 1e-7f),
+                       FloatNear(0.15f, 1e-7f), FloatNear(0.03f, 1e-7f), FloatNear(0.06f + 0.045f + 0.0375f, 1e-7f)));
+}
+
+TEST_F(Weights, ThatAre0EverywhereLeaveTheirShareToTheOthers) {
+    importance_.assign(6, 0.0f);
+    EXPECT_EQ(mixture(sampled(), {.power = 0.5, .driven_power = 0.3, .importance = 0.2}),
+              mixture(sampled(), {.power = 0.5}));
+}
+
+TEST_F(Weights, AreFiniteShares) {
+    irradiance_.assign(6, Rgb(std::numeric_limits<float>::max()));
+    float sum = 0;
+    for (const float q : mixture(sampled(), {.power = 1})) sum += q;
+    EXPECT_FLOAT_EQ(sum, 1);
 }
 
 TEST_F(Weights, AreDrivenByImportanceAsItIsUnlessItIsSmoothed) {
-    EXPECT_EQ(driving_importance(forest_, importance_, 0, 1), importance_);
-    EXPECT_THAT(driving_importance(forest_, importance_, 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
-    EXPECT_THAT(driving_importance(forest_, importance_, 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
-    EXPECT_THAT(driving_importance(forest_, importance_, 0.5, 0.5),
+    EXPECT_EQ(driving_importance(forest_, Importance(importance_), 0, 1), importance_);
+    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
+    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
+    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 0.5, 0.5),
                 ElementsAre(3, 1, std::sqrt(6.0f), std::sqrt(6.0f), std::sqrt(4.5f), std::sqrt(4.875f)));
-}
-
-TEST(MixIn, AddsAShareOfADistribution) {
-    std::vector<double> q(2, 0.0);
-    mix_in(q, {30, 10}, 0.8);
-    mix_in(q, {0, 0}, 0.1);  // is no distribution: its share goes to the others
-    mix_in(q, {0, 7}, 0.1);
-    EXPECT_THAT(q, ElementsAre(testing::DoubleNear(0.6, 1e-15), testing::DoubleNear(0.3, 1e-15)));
 }
 
 }  // namespace

@@ -126,6 +126,13 @@ class ErrorEstimates : public testing::Test {
         return values;
     }
 
+    static ErrorEstimate::Sums sums(const std::vector<double>& weights, const std::vector<double>& mean,
+                                    const std::vector<double>& fresh) {
+        ErrorEstimate::Sums sums;
+        for (std::size_t i = 0; i < weights.size(); ++i) sums.add(weights[i], mean[i], fresh[i]);
+        return sums;
+    }
+
   private:
     static std::vector<double> alternating_weights() {
         std::vector<double> weights(elements, 1.0);
@@ -139,8 +146,9 @@ TEST_F(ErrorEstimates, FindTheErrorOfTheMean) {
     constexpr std::int64_t mean_rays = 30'000, rays = 10'000;
     ErrorEstimate error;
     for (std::uint64_t seed = 0; seed < 10; ++seed)
-        error.add(weights_, estimate(value, spread, mean_rays, 2 * seed), mean_rays,
-                  estimate(value, spread, rays, 2 * seed + 1), rays);
+        error.add(
+            sums(weights_, estimate(value, spread, mean_rays, 2 * seed), estimate(value, spread, rays, 2 * seed + 1)),
+            mean_rays, rays);
     const double expected = spread / std::sqrt(40'000.0) / value;
     EXPECT_NEAR(error.relative(40'000) / expected, 1, 0.05);  // 6,000 differences: 1% noise
 }
@@ -151,10 +159,10 @@ TEST_F(ErrorEstimates, DoNotSeeWhatDoesNotCount) {
     std::vector<double> mean(elements, 5.0), received = mean;
     mean[0] = 5.5;
     ErrorEstimate without, with;
-    without.add(first_half, mean, 1000, received, 1000);
+    without.add(sums(first_half, mean, received), 1000, 1000);
     received.back() = mean.back() = 1e9;
     mean[elements / 2] = -1e9;
-    with.add(first_half, mean, 1000, received, 1000);
+    with.add(sums(first_half, mean, received), 1000, 1000);
     EXPECT_GT(without.relative(2000), 0);
     EXPECT_EQ(with.relative(2000), without.relative(2000));
 }
@@ -166,7 +174,7 @@ TEST_F(ErrorEstimates, AreInfiniteUntilThereAreTwoIterations) {
 TEST_F(ErrorEstimates, AreZeroInTheDark) {
     ErrorEstimate error;
     const std::vector<double> dark(elements, 0.0);
-    error.add(weights_, dark, 1000, dark, 1000);
+    error.add(sums(weights_, dark, dark), 1000, 1000);
     EXPECT_EQ(error.relative(2000), 0);
 }
 

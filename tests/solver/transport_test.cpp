@@ -25,17 +25,21 @@ constexpr std::int64_t rays = 50'000;
 struct Room {
     explicit Room(Scene s, std::size_t capacity = 1 << 18) : scene(std::move(s)), forest(scene, capacity) {}
 
+    /// What leaves the elements that there are now.
+    Light light() {
+        irradiance.assign(forest.size(), Rgb(1));
+        return Light(surfaces, irradiance);
+    }
     /// A step that shoots by power (Eq. 3).
-    TransportStep step() const {
+    TransportStep step() {
         TransportStep step;
-        step.leaves = forest.leaves();
-        step.radiosity = radiosity(surfaces, forest, std::vector<Rgb>(forest.size(), Rgb(1)));
-        step.q = power_weights({surfaces, forest, step.leaves}, step.radiosity);
+        step.light = light();
+        step.q = mixture({surfaces, forest, step.light, {}, {}}, {.power = 1});
         step.rays = rays;
         return step;
     }
     /// One that divides everything as far as it may.
-    TransportStep refining_step(float smallest_area) const {
+    TransportStep refining_step(float smallest_area) {
         TransportStep s = step();
         s.oracle.refines = true;
         s.oracle.smallest_area = smallest_area;
@@ -45,12 +49,13 @@ struct Room {
     Received receive(SampleStreams& streams, const TransportStep& step) {
         return transport(surfaces, forest, ray_caster, step, streams);
     }
-    RgbD radiated_power() const { return integral(forest, step().radiosity); }
+    RgbD radiated_power() { return interflect::radiated_power(forest, light()); }
 
     const Scene scene;
     const Surfaces surfaces{scene};
     const RayCaster ray_caster{scene};
     ElementForest forest;
+    std::vector<Rgb> irradiance;
 };
 
 SampleStreams streams_of(std::uint64_t seed) { return {PointSet::sobol, seed}; }
@@ -125,7 +130,7 @@ TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
     Room room(colourful_box());
     TransportStep step = room.step();
     const std::size_t patches = step.q.size();
-    for (std::size_t s = 0; s < patches; ++s) step.q[s] = 1 + static_cast<double>(s % 5);
+    for (std::size_t s = 0; s < patches; ++s) step.q[s] = 1 + static_cast<float>(s % 5);
     std::vector<std::vector<double>> arrived(patches);  // [patch][run]
     for (std::uint64_t seed = 1; seed <= 24; ++seed) {
         SampleStreams streams = streams_of(seed);
@@ -137,7 +142,7 @@ TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
     std::vector<double> p_values, p_values_off;  // of the right answer and of one that is two percent off
     for (std::size_t i = 0; i < patches; ++i) {
         double expected = 0;  // R_i / A_i = sum_s F_si P_s / A_i = sum_s F_is B_s
-        for (std::size_t s = 0; s < patches; ++s) expected += f(i, s) * step.radiosity[s].y;
+        for (std::uint32_t s = 0; s < patches; ++s) expected += f(i, s) * step.light.radiosity(room.forest, s).y;
         p_values.push_back(t_test(arrived[i], expected));
         p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
     }
@@ -148,13 +153,14 @@ TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
 TEST(Transport, CarriesImportanceWithoutBias) {
     Room room(colourful_box());
     TransportStep step = room.step();
-    step.radiosity.clear();
-    step.carries_importance = true;
+    step.light = {};
+    std::vector<float> importance;
     const std::size_t patches = step.q.size();
     for (std::size_t s = 0; s < patches; ++s) {
-        step.importance.push_back(1 + static_cast<float>(s % 7));
-        step.q[s] = 1 + static_cast<double>(s % 5);
+        importance.push_back(1 + static_cast<float>(s % 7));
+        step.q[s] = 1 + static_cast<float>(s % 5);
     }
+    step.importance = Importance(importance);
     std::vector<std::vector<double>> arrived(patches);  // [patch][run]
     for (std::uint64_t seed = 1; seed <= 24; ++seed) {
         SampleStreams streams = streams_of(seed);
@@ -199,12 +205,11 @@ TEST(Transport, DrawsNewRaysFromTheSameStreamsAndTheSameFromNewOnes) {
 TEST(Transport, ShootsNothingWhereNothingRadiates) {
     Room room(colourful_box());
     TransportStep step = room.step();
-    step.radiosity.assign(step.radiosity.size(), Rgb(0));
-    step.q.assign(step.q.size(), 0.0);
+    step.q.assign(step.q.size(), 0.0f);
     SampleStreams streams = streams_of(1);
     const Received received = room.receive(streams, step);
     EXPECT_EQ(received.shot_power, RgbD(0, 0, 0));
-    EXPECT_EQ(received.irradiance, step.radiosity);
+    EXPECT_EQ(received.irradiance, std::vector<Rgb>(room.forest.size(), Rgb(0)));
 }
 
 TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
@@ -234,11 +239,12 @@ TEST(TransportRays, DrawFromASequenceOfItsOwnForEachElement) {
     room.receive(streams, room.refining_step(0.02f));
     TransportStep step = room.step();
     const std::int64_t rays_per_leaf = 4;
-    step.q.assign(step.leaves.size(), 1.0);
-    step.rays = rays_per_leaf * static_cast<std::int64_t>(step.leaves.size());
+    const std::vector<std::uint32_t> leaves = room.forest.leaves();
+    for (const std::uint32_t leaf : leaves) step.q[leaf] = 1;
+    step.rays = rays_per_leaf * static_cast<std::int64_t>(leaves.size());
     const std::vector<Ray> traced = transport_rays(room.forest, room.ray_caster, step, streams_of(1));
     // The first wall's elements are congruent: with the same numbers they would shoot in the same directions.
-    for (std::size_t leaf = 1; leaf < step.leaves.size() && room.forest.patch(step.leaves[leaf]) < 9; ++leaf)
+    for (std::size_t leaf = 1; leaf < leaves.size() && room.forest.patch(leaves[leaf]) < 9; ++leaf)
         EXPECT_GT((traced[leaf * rays_per_leaf].direction - traced[0].direction).length(), 1e-4f) << leaf;
 }
 

@@ -70,7 +70,9 @@ TEST(ImportanceOfTheOracle, LeansOnTheParents) {
     solution.view_importance[child] = 0;
     solution.indirect_importance[grandchild] = 5;
     TransportStep step;
-    step.radiosity.assign(forest->size(), Rgb(1));
+    const Surfaces surfaces(box.scene);
+    const std::vector<Rgb> irradiance(forest->size(), Rgb(1));
+    step.light = Light(surfaces, irradiance);
     const Oracle oracle = make_oracle(solution, step, 1, 0);
     EXPECT_EQ(oracle.importance[wall_x0], 2);
     EXPECT_EQ(oracle.importance[child], 1.5f) << "half of 1, half of the parent's 2";

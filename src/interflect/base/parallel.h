@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #if defined(__SANITIZE_THREAD__)
 #define INTERFLECT_THREAD_SANITIZER 1
@@ -27,6 +28,10 @@ template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
     const std::size_t ranges = (count + grain - 1) / grain;
     const auto do_range = [&](std::size_t range) { body(range * grain, std::min(count, (range + 1) * grain)); };
+    if (ranges <= 1) {
+        if (ranges == 1) do_range(0);
+        return;
+    }
 #ifdef INTERFLECT_THREAD_SANITIZER
     // ThreadSanitizer cannot see into the TBB library and takes its tasks for races: plain threads share the ranges.
     std::atomic<std::size_t> next{0};
@@ -39,6 +44,18 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
 #else
     tbb::parallel_for(std::size_t{0}, ranges, do_range);
 #endif
+}
+
+/// Sum of body(begin, end) over ranges that partition [0, count) as above, in their order: the same bits for any number
+/// of threads. @param zero  What an empty sum is.
+template <class T, class Body>
+T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {
+    std::vector<T> parts((count + grain - 1) / grain, zero);
+    parallel_for_ranges(count, grain,
+                        [&](std::size_t begin, std::size_t end) { parts[begin / grain] = body(begin, end); });
+    T sum = zero;
+    for (const T& part : parts) sum += part;
+    return sum;
 }
 
 }  // namespace interflect

@@ -23,6 +23,7 @@ class StableArray {
             ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory == MAP_FAILED) throw std::bad_alloc();
         data_ = static_cast<T*>(memory);
+        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // entries are looked up at random; refused: slower, no more
     }
     ~StableArray() {
         if (data_) ::munmap(data_, bytes());
@@ -38,6 +39,13 @@ class StableArray {
     T& operator[](std::size_t i) { return data_[i]; }
     const T& operator[](std::size_t i) const { return data_[i]; }
     std::size_t capacity() const { return capacity_; }
+
+    /// Gives back the memory of entries that are not needed any more, as far as they fill pages; their values are lost.
+    void release(std::size_t begin, std::size_t end) {
+        constexpr std::size_t page = 4096;
+        const std::size_t first = (begin * sizeof(T) + page - 1) / page * page, last = end * sizeof(T) / page * page;
+        if (first < last) ::madvise(reinterpret_cast<char*>(data_) + first, last - first, MADV_DONTNEED);
+    }
 
   private:
     std::size_t bytes() const { return capacity_ * sizeof(T); }

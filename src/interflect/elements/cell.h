@@ -17,15 +17,16 @@ struct Cell {
     /// = 0, 1, 2 keep the corner at v0, v1, v2; k = 3 is the central one.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
-        const bool central = triangle && k == 3;
-        return {(k & 1u) ? u + half : u, (k & 2u) ? v + half : v, central ? -half : half};
+        const bool central = triangle & (k == 3);
+        // Products in place of branches, which nobody could predict.
+        return {u + half * static_cast<float>(k & 1u), v + half * static_cast<float>(k >> 1), central ? -half : half};
     }
 
     /// Which child holds a point of this cell; points on a border go to one of the neighbours, always the same.
     unsigned child_at(Parameters p, bool triangle) const {
         const float per_size = 1 / size;  // exact: a power of two
         const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;
-        if (!triangle) return (s >= 0.5f ? 1u : 0u) + (t >= 0.5f ? 2u : 0u);
+        if (!triangle) return static_cast<unsigned>(s >= 0.5f) | static_cast<unsigned>(t >= 0.5f) << 1;
         return s >= 0.5f ? 1 : t >= 0.5f ? 2 : s + t < 0.5f ? 0 : 3;
     }
 };

@@ -18,6 +18,7 @@ ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
     for (const Patch& p : scene.patches) geometry_.emplace_back(scene, p);
     for (std::uint32_t i = 0; i < patch_count(); ++i) nodes_[i] = {none, geometry_[i].area()};
     size_ = patch_count();
+    generations_.push_back(patch_count());
 }
 
 int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path(e)) - 1) / 2; }
@@ -104,7 +105,9 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
         blocks_[number(e)] = {parent, s.block.patch, s.block.parent_path};
         for (std::uint32_t k = 0; k < 4; ++k) nodes_[e + k] = {new_number(s.nodes[k].first_child), s.nodes[k].area};
         nodes_[parent].first_child = e;
+        if (parent >= generations_.back()) generations_.push_back(e);
     }
+    if (last > first) generations_.push_back(last);
     return renumbered;
 }
 
@@ -112,6 +115,8 @@ std::uint32_t ElementForest::drop_last_siblings() {
     const std::uint32_t parent = this->parent(size() - 1);
     nodes_[parent].first_child = none;
     size_ -= 4;
+    if (generations_.back() > size()) generations_.back() = size();
+    if (generations_.size() > 1 && generations_.end()[-2] == size()) generations_.pop_back();
     return parent;
 }
 

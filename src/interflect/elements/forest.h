@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/base/parallel.h"
 #include "interflect/base/stable_array.h"
 #include "interflect/elements/cell.h"
 #include "interflect/scene/patch_geometry.h"
@@ -40,12 +41,13 @@ class ElementForest {
     }
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
-    /// Tells the processor that a patch will be asked for its geometry and its children.
-    void prefetch(std::uint32_t patch) const {
+    /// Tells the processor that an element will be asked for its area and its children.
+    void prefetch(std::uint32_t e) const { __builtin_prefetch(&nodes_[e]); }
+    /// Likewise a patch for its geometry.
+    void prefetch_geometry(std::uint32_t patch) const {
         const char* geometry = reinterpret_cast<const char*>(&geometry_[patch]);
         __builtin_prefetch(geometry);
         __builtin_prefetch(geometry + 64);
-        __builtin_prefetch(&nodes_[patch]);
     }
 
     /// The first of four children; none for a leaf.
@@ -75,6 +77,14 @@ class ElementForest {
     /// the forest, and it is in order. @return  The parent.
     std::uint32_t drop_last_siblings();
 
+    /// Calls body(first) for the first of every four siblings, on all threads, and for none before it is done with
+    /// their parent. Elements made since they were last put in order are gone through on one thread.
+    template <class Body>
+    void for_siblings_from_roots(const Body& body) const;
+    /// The same, for none before it is done with their children.
+    template <class Body>
+    void for_siblings_from_leaves(const Body& body) const;
+
   private:
     static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are on their way; none: there are none
 
@@ -91,12 +101,38 @@ class ElementForest {
     const Block& block_of(std::uint32_t e) const { return blocks_[(e - patch_count()) / 4]; }
     std::uint32_t number_in_block(std::uint32_t e) const { return (e - patch_count()) % 4; }
 
+    template <class Body>
+    static void for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body);
+
     std::vector<PatchGeometry> geometry_;  // of each patch
     std::uint32_t patch_count_;
+    /// Where generations begin and, last, where the last one ends: no element of one has its parent in the same.
+    std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
     StableArray<Block> blocks_;
 };
+
+template <class Body>
+void ElementForest::for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body) {
+    constexpr std::size_t at_once = 2048;
+    parallel_for_ranges((end - begin) / 4, at_once, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) body(begin + 4 * static_cast<std::uint32_t>(i));
+    });
+}
+
+template <class Body>
+void ElementForest::for_siblings_from_roots(const Body& body) const {
+    for (std::size_t g = 0; g + 1 < generations_.size(); ++g) for_siblings(generations_[g], generations_[g + 1], body);
+    for (std::uint32_t first = generations_.back(); first < size(); first += 4) body(first);
+}
+
+template <class Body>
+void ElementForest::for_siblings_from_leaves(const Body& body) const {
+    for (std::uint32_t end = size(); end > generations_.back(); end -= 4) body(end - 4);
+    for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
+}
+
 /// Makes the values of a new element those of its parent, for all elements from `first` on: nothing recorded is lost.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
@@ -108,23 +144,24 @@ void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& v
 /// each of its parts got the same.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
-    for (std::uint32_t e = forest.patch_count(); e < forest.size(); ++e) values[e] += values[forest.parent(e)];
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        const T from_parent = values[forest.parent(first)];
+        for (std::uint32_t e = first; e < first + 4; ++e) values[e] += from_parent;
+    });
 }
 
 /// Makes every inner element the area-weighted mean of its children, from the leaves up.
 template <class T>
 void pull(const ElementForest& forest, std::vector<T>& values) {
-    for (std::uint32_t e = forest.size(); e-- > 0;) {
-        const std::uint32_t child = forest.first_child(e);
-        if (child == none) continue;
-        T sum = values[child] * forest.area(child);
-        float area = forest.area(child);
-        for (std::uint32_t c = child + 1; c < child + 4; ++c) {
-            sum += values[c] * forest.area(c);
-            area += forest.area(c);
+    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+        T sum = values[first] * forest.area(first);
+        float area = forest.area(first);
+        for (std::uint32_t e = first + 1; e < first + 4; ++e) {
+            sum += values[e] * forest.area(e);
+            area += forest.area(e);
         }
-        values[e] = sum / area;
-    }
+        values[forest.parent(first)] = sum / area;
+    });
 }
 
 }  // namespace interflect

@@ -75,15 +75,18 @@ class EmbreeContext {
 };
 #endif
 
-/// The front patches of the faces of one Embree geometry, by primitive number.
-using Faces = std::vector<std::uint32_t>;
+/// The faces of one Embree geometry, by primitive number. A face is named by the patch on its front; that on its back
+/// is the next one.
+struct Faces {
+    std::vector<std::uint32_t> fronts;
+    bool triangles = false, two_sided = false;
+};
 
 struct RayCaster::Embree {
     std::atomic<std::int64_t> bytes{0};
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<Faces> geometries;          // [geometry id][primitive]: front patch
-    std::vector<std::uint32_t> other_side;  // of each patch
+    std::vector<Faces> geometries;
     CoincidentFaces coincident;
 
     explicit Embree(CoincidentFaces coincident_faces);
@@ -91,7 +94,7 @@ struct RayCaster::Embree {
     Embree(const Embree&) = delete;
     Embree& operator=(const Embree&) = delete;
 
-    void add_faces(const Scene& source, Faces faces, bool triangles, bool two_sided);
+    void add_faces(const Scene& source, Faces faces);
     void commit();
     Hit first_hit(EmbreeContext& context, const Ray& ray) const;
 };

@@ -60,19 +60,20 @@ RayCaster::Embree::~Embree() {
     rtcReleaseDevice(device);
 }
 
-void RayCaster::Embree::add_faces(const Scene& source, Faces faces, bool triangles, bool two_sided) {
-    if (faces.empty()) return;
-    const std::size_t corners = triangles ? 3 : 4;
-    RTCGeometry geometry = rtcNewGeometry(device, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
+void RayCaster::Embree::add_faces(const Scene& source, Faces faces) {
+    if (faces.fronts.empty()) return;
+    const std::size_t corners = faces.triangles ? 3 : 4;
+    RTCGeometry geometry =
+        rtcNewGeometry(device, faces.triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
     auto* vertices = static_cast<V3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                sizeof(V3f), source.vertices.size()));
     std::copy(source.vertices.begin(), source.vertices.end(), vertices);
-    const RTCFormat format = triangles ? RTC_FORMAT_UINT3 : RTC_FORMAT_UINT4;
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format,
-                                                                        corners * sizeof(std::uint32_t), faces.size()));
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        std::copy_n(source.patches[faces[i]].vertices.begin(), corners, indices + i * corners);
-    if (!two_sided) rtcSetGeometryIntersectFilterFunction(geometry, reject_backs);
+    const RTCFormat format = faces.triangles ? RTC_FORMAT_UINT3 : RTC_FORMAT_UINT4;
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, format, corners * sizeof(std::uint32_t), faces.fronts.size()));
+    for (std::size_t i = 0; i < faces.fronts.size(); ++i)
+        std::copy_n(source.patches[faces.fronts[i]].vertices.begin(), corners, indices + i * corners);
+    if (!faces.two_sided) rtcSetGeometryIntersectFilterFunction(geometry, reject_backs);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(geometries.size()));
     rtcReleaseGeometry(geometry);
@@ -91,7 +92,8 @@ Hit RayCaster::Embree::first_hit(EmbreeContext& context, const Ray& ray) const {
     RTCRayHit query = embree_query(ray);
     context.intersect(scene, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const std::uint32_t front = geometries[query.hit.geomID][query.hit.primID];
+    const Faces& faces = geometries[query.hit.geomID];
+    const std::uint32_t front = faces.fronts[query.hit.primID];
     const float distance = query.ray.tfar;
     if (coincident.is_contested(front)) {
         const V3f x = ray.origin + distance * ray.direction;
@@ -100,23 +102,21 @@ Hit RayCaster::Embree::first_hit(EmbreeContext& context, const Ray& ray) const {
     }
     const float facing =
         query.hit.Ng_x * ray.direction.x + query.hit.Ng_y * ray.direction.y + query.hit.Ng_z * ray.direction.z;
-    const std::uint32_t behind = other_side[front];
-    return {facing > 0 && behind != none ? behind : front, distance};
+    return {faces.two_sided && facing > 0 ? front + 1 : front, distance};
 }
 
 RayCaster::RayCaster(const Scene& scene) : lift_(relative_lift * largest_coordinate(scene)) {
     embree_ = std::make_unique<Embree>(CoincidentFaces(scene, relative_tolerance * lift_));
     Faces faces[2][2];  // [triangle][two-sided]
-    embree_->other_side.reserve(scene.patches.size());
+    for (const bool triangles : {false, true})
+        for (const bool two_sided : {false, true}) faces[triangles][two_sided] = {{}, triangles, two_sided};
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
-        embree_->other_side.push_back(patch.other_side);
         if (patch.other_side >= i && !embree_->coincident.is_hidden(i))
-            faces[patch.is_triangle()][patch.other_side != none].push_back(i);
+            faces[patch.is_triangle()][patch.other_side != none].fronts.push_back(i);
     }
     for (const bool triangles : {false, true})
-        for (const bool two_sided : {false, true})
-            embree_->add_faces(scene, std::move(faces[triangles][two_sided]), triangles, two_sided);
+        for (const bool two_sided : {false, true}) embree_->add_faces(scene, std::move(faces[triangles][two_sided]));
     embree_->commit();
 }
 

@@ -42,9 +42,12 @@ std::vector<std::string> scene_faults(const Scene& scene) {
               [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
         check(p.object < scene.objects.size(),
               [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
-        check(p.other_side == none || (p.other_side != i && p.other_side < scene.patches.size() &&
+        const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
+        check(p.other_side == none || (are_neighbours && p.other_side < scene.patches.size() &&
                                        scene.patches[p.other_side].other_side == i),
-              [&] { return fmt::format("patch {}: its other side {} does not point back", i, p.other_side); });
+              [&] {
+                  return fmt::format("patch {}: its other side {} is no neighbour that points back", i, p.other_side);
+              });
     }
     for (const View& v : scene.views)
         check(is_finite(v.eye) && is_finite(v.look_at) && is_finite(v.up) && v.fov > 0 && v.fov < 180, [&] {

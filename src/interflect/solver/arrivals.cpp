@@ -1,15 +1,11 @@
 #include "interflect/solver/arrivals.h"
 
 #include <bit>
-#include <stdexcept>
-#include <utility>
 
 namespace interflect {
 
-Arrivals::Arrivals(std::vector<Load> loads, std::size_t elements, std::size_t capacity)
-    : loads_(std::move(loads)), sums_(capacity), region_shift_(static_cast<int>(std::bit_width(elements / regions))) {
-    if (loads_.size() > most_sources) throw std::length_error("the mesh has more than 2^30 leaves");
-}
+Arrivals::Arrivals(std::size_t elements, std::size_t capacity)
+    : sums_(capacity), region_shift_(static_cast<int>(std::bit_width(elements / regions))) {}
 
 void Arrivals::Sorter::hand_on(std::size_t region) {
     Lot& lot = lots_[region];
@@ -17,7 +13,7 @@ void Arrivals::Sorter::hand_on(std::size_t region) {
     for (std::size_t i = 0; i < lot.count; ++i) __builtin_prefetch(&arrivals_->sums_[lot.arrivals[i].element], 1);
     for (std::size_t i = 0; i < lot.count; ++i) {
         const Arrival& a = lot.arrivals[i];
-        const Load& load = arrivals_->loads_[a.source];
+        const Load& load = loads_[a.source];
         Load& sum = arrivals_->sums_[a.element];
         const std::int64_t power = -static_cast<std::int64_t>(a.power);  // a mask: all ones or all zeros
         for (std::size_t c = 0; c < 3; ++c) sum[c] += load[c] & power;

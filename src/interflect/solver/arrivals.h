@@ -17,17 +17,23 @@ class Arrivals {
   public:
     using Load = std::array<std::int64_t, 4>;
 
-    /// @param loads     What one ray of each source carries.
     /// @param elements  Of the forest so far. @param capacity  Most elements ever.
-    /// @throws std::length_error for more than 2^30 sources.
-    Arrivals(std::vector<Load> loads, std::size_t elements, std::size_t capacity);
+    Arrivals(std::size_t elements, std::size_t capacity);
 
     Load& operator[](std::size_t element) { return sums_[element]; }
-    const Load& load(std::size_t source) const { return loads_[source]; }
+    /// To be called for elements whose sums are not needed any more.
+    void release(std::size_t begin, std::size_t end) { sums_.release(begin, end); }
 
     class Sorter {
       public:
         explicit Sorter(Arrivals& arrivals) : arrivals_(&arrivals) {}
+
+        /// @param load  What one ray of the source carries. @return The source's number.
+        std::uint32_t add_source(const Load& load) {
+            loads_.push_back(load);
+            return static_cast<std::uint32_t>(loads_.size() - 1);
+        }
+        const Load& load(std::uint32_t source) const { return loads_[source]; }
 
         void add(std::uint32_t element, std::uint32_t source, bool power, bool importance) {
             const std::size_t region = element >> arrivals_->region_shift_ & (regions - 1);
@@ -35,9 +41,14 @@ class Arrivals {
             lot.arrivals[lot.count++] = {element, source & (most_sources - 1), power, importance};
             if (lot.count == lot.arrivals.size()) hand_on(region);
         }
-        /// To be called when all has been added.
+        /// To be called now and then, when no source's number is in use any more: the table of sources stays small.
+        void forget_sources() {
+            if (loads_.size() >= enough_sources) hand_on_all();
+        }
+        /// To be called when all has been added; sources are numbered anew.
         void hand_on_all() {
             for (std::size_t region = 0; region < regions; ++region) hand_on(region);
+            loads_.clear();
         }
 
       private:
@@ -53,14 +64,15 @@ class Arrivals {
         void hand_on(std::size_t region);
 
         Arrivals* arrivals_;
+        std::vector<Load> loads_;
         std::vector<Lot> lots_ = std::vector<Lot>(regions);
     };
 
   private:
     static constexpr std::size_t regions = 64;
     static constexpr std::uint32_t most_sources = 1u << 30;  // an Arrival has as many bits for them
+    static constexpr std::size_t enough_sources = 8192;      // their loads fill a quarter of a second-level cache
 
-    std::vector<Load> loads_;
     StableArray<Load> sums_;
     int region_shift_ = 0;
     std::array<std::mutex, regions> at_work_;

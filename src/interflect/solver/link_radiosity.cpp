@@ -10,6 +10,7 @@
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/solver/exchange.h"
+#include "interflect/solver/light.h"
 #include "interflect/solver/run.h"
 #include "interflect/solver/steps.h"
 
@@ -80,6 +81,18 @@ std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, 
     push(forest, received);
     pull(forest, received);
     return received;
+}
+
+/// B of every element; what is not finite is set to 0, so that it is not gathered, and counted.
+std::vector<Rgb> present_radiosity(Run& run) {
+    const Light light(run.surfaces, run.solution.irradiance);
+    std::vector<Rgb> b;
+    b.reserve(run.forest->size());
+    for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
+        b.push_back(light.radiosity(*run.forest, e));
+        run.solution.non_finite += light.is_lost(*run.forest, e);
+    }
+    return b;
 }
 
 /// Sum over the elements of area times |new - old|, relative to that of area times new.
@@ -253,7 +266,8 @@ std::vector<Overload> LinkedElements::overloaded_links() const {
     const ImportanceUse use = importance_use(solution);
     const std::vector<float> psi =
         use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
-    const double threshold = solution.options.epsilon * reference_power(solution, b) *
+    const double threshold = solution.options.epsilon *
+                             reference_power(solution, Light(run_.surfaces, solution.irradiance)) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi));
     std::vector<Overload> overloads;
     if (!(threshold > 0)) return overloads;

@@ -21,13 +21,17 @@ struct Party {
 /// f = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between the centres. No cosine is taken below 2
 /// f: where the elements are close for their size, some of their parts face each other better than their centres do.
 inline float form_factor_estimate(const Party& shooter, const Party& receiver) {
+    // By value and without branches, so that many pairs can be judged at once.
+    const auto smaller = [](float x, float y) { return x < y ? x : y; };
+    const auto larger = [](float x, float y) { return x < y ? y : x; };
     const V3f d = receiver.centre - shooter.centre;
-    const float d2 = d.length2();
+    const float d2 = d.dot(d);
     const float f = shooter.area / (std::numbers::pi_v<float> * d2 + shooter.area);
-    const float per_distance = 1 / std::sqrt(std::max(d2, std::numeric_limits<float>::min()));
-    const float least = std::min(1.0f, 2 * f);
-    return f * std::clamp(shooter.normal.dot(d) * per_distance, least, 1.0f) *
-           std::clamp(-receiver.normal.dot(d) * per_distance, least, 1.0f);
+    const float per_distance = 1 / std::sqrt(larger(d2, std::numeric_limits<float>::min()));
+    const float least = smaller(1, 2 * f);
+    const float from_shooter = smaller(1, larger(least, shooter.normal.dot(d) * per_distance));
+    const float to_receiver = smaller(1, larger(least, -receiver.normal.dot(d) * per_distance));
+    return f * from_shooter * to_receiver;
 }
 
 /// Decides for every ray whether two elements may exchange light as they are. Its verdict depends on the state at the
@@ -45,11 +49,12 @@ struct Oracle {
     std::vector<float> importance;
 
     /// Eq. 14 (by_importance == false) and Eq. 15, Prikryl et al. 2000; of the channels the largest decides.
-    /// @param reflected  rho_i B_j, the receiver's reflectance times the shooter's radiosity [lm/m^2 or W/m^2].
-    /// @param psi        psi_i of the receiver; not used unless by_importance.
-    bool accepts(const Party& shooter, const Party& receiver, const Rgb& reflected, float psi) const {
-        const double power = static_cast<double>(largest_channel(reflected)) * receiver.area;
-        return (by_importance ? power * psi : power) * form_factor_estimate(shooter, receiver) <= threshold;
+    /// @param reflected  The largest channel of rho_i B_j, the receiver's reflectance times the shooter's radiosity
+    ///                   [lm/m^2 or W/m^2].
+    /// @param psi        psi_i of the receiver; 1 unless by_importance.
+    bool accepts(const Party& shooter, const Party& receiver, float reflected, float psi) const {
+        const double power = static_cast<double>(reflected) * receiver.area;
+        return power * psi * form_factor_estimate(shooter, receiver) <= threshold;
     }
 };
 

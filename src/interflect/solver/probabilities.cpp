@@ -1,52 +1,81 @@
 #include "interflect/solver/probabilities.h"
 
 #include <cmath>
-#include <numeric>
+
+#include "interflect/base/parallel.h"
 
 namespace interflect {
 
 namespace {
 
-template <class Weight>
-std::vector<double> for_leaves(const Sampled& s, const Weight& weight) {
-    std::vector<double> w(s.leaves.size());
-    for (std::size_t i = 0; i < w.size(); ++i)
-        w[i] = weight(s.leaves[i]) * static_cast<double>(s.forest.area(s.leaves[i]));
-    return w;
-}
+constexpr std::size_t elements_at_once = 1 << 13;
 
-double radiosity_sum(const Rgb& b) { return channel_sum(RgbD(b)); }
-
-}  // namespace
-
-std::vector<double> power_weights(const Sampled& s, const std::vector<Rgb>& radiosity) {
-    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(radiosity[e]); });
-}
-
-std::vector<double> reflected_importance_weights(const Sampled& s, const std::vector<float>& importance) {
-    return for_leaves(s, [&](std::uint32_t e) {
-        return static_cast<double>(s.surfaces.mean_reflectance(s.forest.patch(e))) * importance[e];
+/// Sum of body(e) over the leaves, in double precision and always in the same order.
+template <class T, class Body>
+T sum_over_leaves(const ElementForest& forest, const Body& body) {
+    return parallel_sum(forest.size(), elements_at_once, T(), [&](std::size_t begin, std::size_t end) {
+        T sum{};
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+            if (forest.is_leaf(e)) sum += body(e);
+        return sum;
     });
 }
 
-std::vector<double> driven_weights(const Sampled& s, const std::vector<Rgb>& radiosity,
-                                   const std::vector<float>& importance) {
-    return for_leaves(s, [&](std::uint32_t e) { return radiosity_sum(radiosity[e]) * importance[e]; });
+/// The weights of one element, or sums of them.
+struct Weights {
+    double power = 0, driven_power = 0, importance = 0;
+
+    Weights() = default;
+    Weights(const Sampled& s, const Shares& shares, std::uint32_t e) {
+        if (shares.power > 0 || shares.driven_power > 0) power = s.power(e);
+        if (shares.driven_power > 0) driven_power = power * s.driver[e];
+        if (shares.importance > 0) importance = s.importance(e);
+    }
+    Weights& operator+=(const Weights& other) {
+        power += other.power;
+        driven_power += other.driven_power;
+        importance += other.importance;
+        return *this;
+    }
+};
+
+}  // namespace
+
+std::vector<float> mixture(const Sampled& sampled, const Shares& shares) {
+    const ElementForest& forest = sampled.forest;
+    const auto sum = sum_over_leaves<Weights>(forest, [&](std::uint32_t e) { return Weights(sampled, shares, e); });
+    const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
+    const double for_power = factor(shares.power, sum.power),
+                 for_driven = factor(shares.driven_power, sum.driven_power),
+                 for_importance = factor(shares.importance, sum.importance);
+    std::vector<float> q(forest.size());
+    parallel_for_ranges(q.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const Weights w(sampled, shares, e);
+            q[e] =
+                static_cast<float>(for_power * w.power + for_driven * w.driven_power + for_importance * w.importance);
+        }
+    });
+    return q;
 }
 
-std::vector<float> driving_importance(const ElementForest& forest, std::vector<float> importance, double from_parent,
+std::vector<float> driving_importance(const ElementForest& forest, const Importance& importance, double from_parent,
                                       double exponent) {
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
-    for (std::uint32_t e = forest.patch_count(); e < forest.size(); ++e)
-        importance[e] += share * (importance[forest.parent(e)] - importance[e]);
-    for (float& psi : importance) psi = std::pow(psi, power);
-    return importance;
-}
-
-void mix_in(std::vector<double>& q, const std::vector<double>& weights, double share) {
-    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    if (!(sum > 0)) return;
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] += share / sum * weights[i];
+    std::vector<float> driver(forest.size());
+    parallel_for_ranges(driver.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) driver[e] = importance[e];
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        const float parent = driver[forest.parent(first)];
+        for (std::uint32_t e = first; e < first + 4; ++e) driver[e] += share * (parent - driver[e]);
+    });
+    if (power == 1) return driver;
+    parallel_for_ranges(driver.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e) driver[e] = std::pow(driver[e], power);
+    });
+    return driver;
 }
 
 }  // namespace interflect

@@ -4,39 +4,47 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/colour.h"
-#include "interflect/elements/forest.h"
-#include "interflect/solver/surfaces.h"
+#include "interflect/solver/light.h"
 
 namespace interflect {
 
-/// The leaves that rays may start on.
+/// What the leaves of a forest may be sampled by. Weights are not normalised; numbers of equations in Prikryl et al.
+/// 2000.
 struct Sampled {
     const Surfaces& surfaces;
     const ElementForest& forest;
-    std::span<const std::uint32_t> leaves;
+    Light light;                      ///< B [lm/m^2 or W/m^2].
+    Importance reflected_importance;  ///< psi of Eq. 8 [1/m^2].
+    std::span<const float> driver;    ///< psi of Eq. 9 or 10, total or indirect importance, of every element [1/m^2].
+
+    /// Eq. 3: P_s, all channels together.
+    double power(std::uint32_t s) const {
+        return channel_sum(RgbD(light.radiosity(forest, s))) * static_cast<double>(forest.area(s));
+    }
+    /// Eq. 9 and 10: P_s psi_s.
+    double driven_power(std::uint32_t s) const { return power(s) * driver[s]; }
+    /// Eq. 8: rho_s I_s.
+    double importance(std::uint32_t s) const {
+        return static_cast<double>(surfaces.mean_reflectance(forest.patch(s))) * reflected_importance[s] *
+               static_cast<double>(forest.area(s));
+    }
 };
 
-// Weights of the leaves, not normalised; numbers of equations in Prikryl et al. 2000. The vectors have an entry for
-// every element of the forest: B [lm/m^2 or W/m^2], psi [1/m^2].
+/// How much of the rays each of the weights above gets (Eq. 11); a weight that is 0 everywhere leaves its share to the
+/// others.
+struct Shares {
+    double power = 0, driven_power = 0, importance = 0;
+};
 
-/// Eq. 3: P_s, all channels together.
-std::vector<double> power_weights(const Sampled& s, const std::vector<Rgb>& radiosity);
-/// Eq. 8: rho_s I_s.
-std::vector<double> reflected_importance_weights(const Sampled& s, const std::vector<float>& importance);
-/// Eq. 9 and 10: P_s psi_s, psi being what drives: total or indirect importance.
-std::vector<double> driven_weights(const Sampled& s, const std::vector<Rgb>& radiosity,
-                                   const std::vector<float>& importance);
+/// q of every element, which sum to the shares that are used; 0 for inner ones.
+std::vector<float> mixture(const Sampled& sampled, const Shares& shares);
 
 /// Importance as it should drive rays. That of a leaf comes from few rays, and where it is underestimated the few rays
 /// that start there carry much: so an element has the share `from_parent` of what its parent has here. And what a
 /// source deserves is the root of the mean square of what its rays meet, not the mean: of two sources of the same mean
 /// that is greater for the one with few rays that matter (light that comes through a doorway); hence an exponent
 /// below 1. (0, 1) leaves importance as it is, as in the paper.
-std::vector<float> driving_importance(const ElementForest& forest, std::vector<float> importance, double from_parent,
+std::vector<float> driving_importance(const ElementForest& forest, const Importance& importance, double from_parent,
                                       double exponent);
-
-/// Adds `share` of the distribution that `weights` make to q; nothing where they are all 0.
-void mix_in(std::vector<double>& q, const std::vector<double>& weights, double share);
 
 }  // namespace interflect

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/steps.h"
 
@@ -102,13 +103,15 @@ class PathBatch {
           paths_(paths),
           key_(key),
           sums_(cargo) {
-        std::vector<double> q(cargo.emitted.size());
-        for (std::size_t i = 0; i < q.size(); ++i)
-            q[i] = static_cast<double>(channel_sum(cargo.emitted[i])) * cargo.density[i];
-        const double q_sum = std::accumulate(q.begin(), q.end(), 0.0);
-        if (!(q_sum > 0)) return;
-        quantum_ = q_sum / static_cast<double>(paths);
-        first_path_ = allocate_rays(q, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
+        const auto weight = [&](std::size_t i) {
+            return static_cast<double>(channel_sum(cargo.emitted[i])) * cargo.density[i];
+        };
+        double sum = 0;
+        for (std::size_t i = 0; i < cargo.emitted.size(); ++i) sum += weight(i);
+        if (!(sum > 0)) return;
+        quantum_ = sum / static_cast<double>(paths);
+        for (std::size_t i = 0; i < cargo.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
+        allocation_.emplace(q_, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
     }
 
     const Sums& follow() {
@@ -137,19 +140,16 @@ class PathBatch {
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();
-        const auto after = std::upper_bound(first_path_.begin(), first_path_.end(), begin);
-        auto s = static_cast<std::uint32_t>(after - first_path_.begin() - 1);
-        for (std::int64_t from = begin; from < end; ++s) {
-            const std::int64_t to = std::min(first_path_[s + 1], end);
-            if (to <= from) continue;
+        const auto emit_some = [&](std::size_t source, std::int64_t first, std::int64_t from, std::int64_t to) {
+            const auto s = static_cast<std::uint32_t>(source);
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
             const double share = quantum_ / cargo_.density[s] / static_cast<double>(channel_sum(cargo_.emitted[s]));
             std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(cargo_.emitted[s]) * share)});
             shoot_rays(forest_.geometry(s), Cell(), ray_caster_.lift(), first_points_,
-                       sub_key(key_, WalkPurpose::emission, s), static_cast<std::uint64_t>(from - first_path_[s]),
-                       w.points, std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
-            from = to;
-        }
+                       sub_key(key_, WalkPurpose::emission, s), static_cast<std::uint64_t>(from - first), w.points,
+                       std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
+        };
+        allocation_->for_each_source(begin, end, emit_some);
     }
 
     /// Adds every particle to what the patch that it hit receives, and lists what that reflects.
@@ -205,8 +205,9 @@ class PathBatch {
     std::int64_t paths_;
     std::uint64_t key_;
     Sums sums_;
-    double quantum_ = 0;                    // sum of the channels of a particle where the density is 1
-    std::vector<std::int64_t> first_path_;  // of each patch
+    double quantum_ = 0;    // sum of the channels of a particle where the density is 1
+    std::vector<float> q_;  // share of the paths that starts on each patch
+    std::optional<RayAllocation> allocation_;
 };
 
 /// What one batch brought.

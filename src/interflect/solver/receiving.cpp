@@ -1,88 +1,53 @@
 #include "interflect/solver/receiving.h"
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
 #include <utility>
 
 namespace interflect {
 
-Visit Descent::root(std::uint32_t patch) const {
-    Visit v;
-    v.geometry = &forest_.geometry(patch);
-    v.party.normal = v.geometry->normal();
-    enter(v, patch, Cell());
-    return v;
+/// Goes to the child that holds p, of the four from `first_child` on.
+inline void Receiver::go_down(Place& place, std::uint32_t first_child, Parameters p, bool triangle) {
+    const unsigned k = place.cell.child_at(p, triangle);
+    place.cell = place.cell.child(k, triangle);
+    place.element = first_child + k;
 }
 
-bool Descent::go_down(Visit& v, Parameters p) const { return go_to(v, forest_.first_child(v.element), p); }
-
-bool Descent::subdivide(Visit& v, Parameters p) const {
-    const std::uint32_t child = forest_.first_child(v.element);
-    if (child != none) return go_to(v, child, p);
-    const bool may_grow = old_size_ + std::size_t{4} <= step_.oracle.most_elements;
-    return may_grow && go_to(v, forest_.subdivide(v.element), p);
-}
-
-bool Descent::go_to(Visit& v, std::uint32_t first_child, Parameters p) const {
-    if (first_child == none) return false;
-    const bool triangle = v.geometry->is_triangle();
-    const unsigned k = v.cell.child_at(p, triangle);
-    enter(v, first_child + k, v.cell.child(k, triangle));
-    return true;
-}
-
-void Descent::enter(Visit& v, std::uint32_t element, const Cell& cell) const {
-    v.element = element;
-    v.cell = cell;
-    v.party.area = forest_.area(element);
-    v.party.centre = v.geometry->point(cell.centre(v.geometry->is_triangle()));
-    if (element >= old_size_) return;
-    if (step_.carries_power()) v.radiosity = step_.radiosity[element];
-    if (step_.oracle.by_importance) v.importance = step_.oracle.importance[element];
-}
-
-std::uint32_t Descent::old_leaf_at(const Visit& v, Parameters p) const {
-    std::uint32_t e = v.element;
-    if (e < old_size_) return forest_.leaf_below(e, v.cell, p, old_size_);
-    while (e >= old_size_) e = forest_.parent(e);
-    return e;
-}
-
-void Receiver::take(std::uint32_t s, std::span<const Ray> rays, std::span<const Parameters> origins,
-                    std::span<const Hit> hits) {
-    const ElementForest& forest = descent_.forest();
-    Pair pair;
-    pair.source = s;
-    if (refines_) {
-        pair.way = static_cast<std::uint32_t>(ways_.size());
-        find_way_to_leaf(step_.leaves[s]);
-        pair.way_end = static_cast<std::uint32_t>(ways_.size());
-        pair.shooter = ways_[pair.way];
-    }
-    for (const Hit& hit : hits)
-        if (hit.patch != none) forest.prefetch(hit.patch);
+void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
+                    std::span<const Parameters> origins, std::span<const Hit> hits) {
+    constexpr std::size_t ahead = 16;  // rays, whose patches are fetched meanwhile
+    const std::uint32_t source = sorter_.add_source(load);
+    bool way_is_known = false;
     for (std::size_t r = 0; r < rays.size(); ++r) {
-        const std::uint32_t patch = hits[r].patch;
-        if (patch == none) {
-            for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += arrivals_.load(s)[c];
+        if (r + ahead < rays.size() && hits[r + ahead].patch != none) prefetch_patch(hits[r + ahead].patch);
+        if (hits[r].patch == none) {
+            for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += load[c];
             ++escaped_.rays;
-        } else if (!refines_ && forest.is_leaf(patch)) {
-            sorter_.add(patch, s, true, true);
+        } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
+            sorter_.add(hits[r].patch, source, true, true);
         } else {
-            pair.patch = patch;
-            pair.x = origins[r];
-            pair.y = forest.geometry(patch).parameters_of(rays[r].origin + hits[r].distance * rays[r].direction);
-            pair.receiver = descent_.root(patch);
-            pair.reflectance = surfaces_.reflectance(patch);
-            pairs_.push_back(pair);
+            if (count_ == group_rays) {
+                finish_group();
+                way_is_known = false;
+            }
+            if (refines_ && !std::exchange(way_is_known, true)) find_way_to_leaf(leaf);
+            add_pair(source, rays[r], origins[r], hits[r]);
         }
     }
 }
 
-void Receiver::finish_group() {
-    if (refines_) find_receivers();
-    for (const Pair& pair : pairs_) send(pair);
-    pairs_.clear();
-    ways_.clear();
+/// Tells the processor that add_pair() will ask for a patch.
+void Receiver::prefetch_patch(std::uint32_t patch) const {
+    forest_.prefetch(patch);
+    forest_.prefetch_geometry(patch);
+    surfaces_.prefetch(patch);
+    if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[patch]);
+}
+
+void Receiver::finish_batch() {
+    finish_group();
+    sorter_.forget_sources();
 }
 
 Escaped Receiver::finish() {
@@ -90,61 +55,187 @@ Escaped Receiver::finish() {
     return std::exchange(escaped_, {});
 }
 
+/// Begins at the patches of both ends; the shooter's way is the last in ways_.
+void Receiver::add_pair(std::uint32_t source, const Ray& ray, const Parameters& origin, const Hit& hit) {
+    const std::size_t i = count_++;
+    const PatchGeometry& geometry = forest_.geometry(hit.patch);
+    Pair& pair = pairs_[i];
+    pair.geometry = &geometry;
+    pair.patch = hit.patch;
+    pair.source = source;
+    pair.x = origin;
+    pair.y = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
+    pair.receiver = {hit.patch, Cell()};
+    if (!refines_) return;
+    const Cell whole;
+    parties_.receiver.set(i, geometry.point(whole.centre(geometry.is_triangle())), forest_.area(hit.patch));
+    parties_.receiver.normal.set(i, geometry.normal());
+    parties_.reflectance.set(i, surfaces_.reflectance(hit.patch));
+    parties_.importance[i] = step_.oracle.by_importance ? step_.oracle.importance[hit.patch] : 1;
+    const Shooter& leaf = ways_.back();
+    pair.way_end = static_cast<std::uint32_t>(ways_.size());
+    pair.way = pair.way_end - 1 - static_cast<std::uint32_t>(forest_.level(leaf.place.element));
+    pair.shooter = leaf.place;
+    parties_.shooter.normal.set(i, leaf.party.normal);
+    set_shooter(i);
+}
+
+/// Sends on what the group's rays carry, and begins a new one.
+void Receiver::finish_group() {
+    if (refines_) find_receivers();
+    if (!refines_ || (step_.carries_importance() && !step_.importance_at_patches)) find_leaves();
+    for (std::size_t i = 0; i < count_; ++i) send(pairs_[i]);
+    count_ = 0;
+    ways_.clear();
+}
+
 /// Appends the elements that hold a leaf to ways_, from its root to itself.
 void Receiver::find_way_to_leaf(std::uint32_t leaf) {
-    const ElementForest& forest = descent_.forest();
-    const std::uint32_t patch = forest.patch(leaf);
-    const Parameters inside = forest.cell(leaf).centre(forest.geometry(patch).is_triangle());
-    Visit v = descent_.root(patch);
-    ways_.push_back(v);
-    while (v.element != leaf) {
-        descent_.go_down(v, inside);
-        ways_.push_back(v);
+    const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
+    const PatchGeometry& geometry = forest_.geometry(patch);
+    Place place{patch, Cell()};
+    ways_.push_back(shooter_at(geometry, place));
+    for (int digit = std::bit_width(path) - 3; digit >= 0; digit -= 2) {
+        const unsigned k = path >> digit & 3u;
+        place = {forest_.first_child(place.element) + k, place.cell.child(k, geometry.is_triangle())};
+        ways_.push_back(shooter_at(geometry, place));
     }
 }
 
-/// Walks every pair down from the roots until the oracle accepts it (Eq. 14, 15); the larger end is divided.
+Receiver::Shooter Receiver::shooter_at(const PatchGeometry& geometry, const Place& place) const {
+    const V3f centre = geometry.point(place.cell.centre(geometry.is_triangle()));
+    return {
+        place, {centre, geometry.normal(), forest_.area(place.element)}, step_.light.radiosity(forest_, place.element)};
+}
+
+void Receiver::set_shooter(std::size_t i) {
+    const Shooter& shooter = ways_[pairs_[i].way];
+    parties_.shooter.set(i, shooter.party.centre, shooter.party.area);
+    const V3f reflectance = parties_.reflectance[i];
+    parties_.reflected[i] = largest_channel(Rgb(reflectance * shooter.radiosity));
+}
+
+/// Walks every pair down from the roots until the oracle accepts it (Eq. 14, 15); the larger end is divided. No branch
+/// depends on a verdict, and what is on the other end of a pointer is asked for before it is needed.
 void Receiver::find_receivers() {
-    open_.resize(pairs_.size());
-    for (std::uint32_t i = 0; i < open_.size(); ++i) open_[i] = i;
-    while (!open_.empty()) {
-        std::size_t rejected = 0, divided = 0;
-        for (const std::uint32_t i : open_) {  // no branch depends on the verdict
-            open_[rejected] = i;
-            rejected += !is_settled(pairs_[i]);
-        }
-        for (std::size_t k = 0; k < rejected; ++k) {
+    std::size_t open = count_;
+    std::iota(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(open), 0u);
+    while (open > 0) {
+        judge();
+        std::array<std::uint32_t, group_rays> by_receiver, by_shooter;
+        std::size_t receivers = 0, shooters = 0;
+        for (std::size_t k = 0; k < open; ++k) {
             const std::uint32_t i = open_[k];
-            open_[divided] = i;
-            divided += divide(pairs_[i]);
+            const bool rejected = parties_.settled[i] == 0;
+            const bool shooter_is_larger = parties_.shooter.area[i] > parties_.receiver.area[i];
+            by_receiver[receivers] = by_shooter[shooters] = i;
+            receivers += rejected & !shooter_is_larger;
+            shooters += rejected & shooter_is_larger;
         }
-        open_.resize(divided);
+        open = 0;
+        for (std::size_t k = 0; k < receivers; ++k) {
+            open_[open] = by_receiver[k];
+            open += divide_receiver(by_receiver[k]);
+        }
+        const std::size_t divided = open;
+        for (std::size_t k = 0; k < shooters; ++k) {
+            open_[open] = by_shooter[k];
+            open += divide_shooter(by_shooter[k]);
+        }
+        for (std::size_t k = 0; k < divided; ++k) look_at_receiver(open_[k]);
     }
 }
 
-/// Whether the oracle accepts the pair, or its larger end is too small to be divided.
-bool Receiver::is_settled(const Pair& pair) const {
-    const Party &shooter = pair.shooter.party, &receiver = pair.receiver.party;
-    const bool small = std::max(shooter.area, receiver.area) < 4 * step_.oracle.smallest_area;
-    return small |
-           step_.oracle.accepts(shooter, receiver, pair.reflectance * pair.shooter.radiosity, pair.receiver.importance);
+/// Whether the oracle accepts each pair of the group, or its larger end is too small to be divided. Those that have
+/// been settled are judged again and again, since all of them at once take less time than a choice.
+void Receiver::judge() {
+    const Oracle& oracle = step_.oracle;
+    const float smallest = 4 * oracle.smallest_area;
+    const float *reflected = parties_.reflected.data(), *importance = parties_.importance.data();
+    std::uint32_t* settled = parties_.settled.data();
+    for (std::size_t i = 0; i < count_; ++i) {
+        const Party shooter = parties_.shooter[i], receiver = parties_.receiver[i];
+        const bool is_small = (shooter.area < smallest) & (receiver.area < smallest);
+        const bool accepted = oracle.accepts(shooter, receiver, reflected[i], importance[i]);
+        settled[i] = is_small | accepted;
+    }
 }
 
-/// @return whether there was something to go down to.
-bool Receiver::divide(Pair& pair) const {
-    if (!(pair.shooter.party.area > pair.receiver.party.area)) return descent_.subdivide(pair.receiver, pair.y);
-    if (pair.way + ++pair.depth >= pair.way_end) return descent_.subdivide(pair.shooter, pair.x);
-    pair.shooter = ways_[pair.way + pair.depth];
+/// The receiver becomes its part that holds the hit; look_at_receiver() is due next. @return whether there is one.
+bool Receiver::divide_receiver(std::size_t i) {
+    Pair& pair = pairs_[i];
+    const std::uint32_t child = children_of(pair.receiver.element);
+    if (child == none) return false;
+    go_down(pair.receiver, child, pair.y, pair.geometry->is_triangle());
+    forest_.prefetch(pair.receiver.element);
+    if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[pair.receiver.element]);
     return true;
+}
+
+/// Tells the oracle about the receiver.
+void Receiver::look_at_receiver(std::size_t i) {
+    const Pair& pair = pairs_[i];
+    const auto& [element, cell] = pair.receiver;
+    parties_.receiver.set(i, pair.geometry->point(cell.centre(pair.geometry->is_triangle())), forest_.area(element));
+    if (step_.oracle.by_importance && element < old_size_)  // a new element inherits
+        parties_.importance[i] = step_.oracle.importance[element];
+}
+
+/// Likewise the shooter, of which the oracle is told at once. @return whether there is one.
+bool Receiver::divide_shooter(std::size_t i) {
+    Pair& pair = pairs_[i];
+    if (pair.way + 1 < pair.way_end) {
+        ++pair.way;
+        set_shooter(i);
+        return true;
+    }
+    const PatchGeometry& geometry = forest_.geometry(forest_.patch(pair.shooter.element));
+    const std::uint32_t child = children_of(pair.shooter.element);
+    if (child == none) return false;
+    go_down(pair.shooter, child, pair.x, geometry.is_triangle());
+    const auto& [element, cell] = pair.shooter;
+    parties_.shooter.set(i, geometry.point(cell.centre(geometry.is_triangle())), forest_.area(element));
+    return true;
+}
+
+/// The first child; makes the children where there are none. @return none where it may not.
+std::uint32_t Receiver::children_of(std::uint32_t element) {
+    const std::uint32_t child = forest_.first_child(element);
+    const bool may_grow = old_size_ + std::size_t{4} <= step_.oracle.most_elements;
+    return child == none && may_grow ? forest_.subdivide(element) : child;
+}
+
+/// Finds the leaves, of those that were there when the step began, that hold the hits, from the receivers on.
+void Receiver::find_leaves() {
+    std::size_t open = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        Place& leaf = pairs_[i].leaf;
+        leaf = pairs_[i].receiver;
+        while (leaf.element >= old_size_) leaf.element = forest_.parent(leaf.element);
+        if (forest_.first_child(leaf.element) < old_size_) open_[open++] = i;
+    }
+    while (open > 0) {
+        std::size_t inner = 0;
+        for (std::size_t k = 0; k < open; ++k) {
+            Pair& pair = pairs_[open_[k]];
+            const std::uint32_t child = forest_.first_child(pair.leaf.element);
+            go_down(pair.leaf, child, pair.y, pair.geometry->is_triangle());
+            forest_.prefetch(pair.leaf.element);
+        }
+        for (std::size_t k = 0; k < open; ++k) {
+            const std::uint32_t i = open_[k];
+            open_[inner] = i;
+            inner += forest_.first_child(pairs_[i].leaf.element) < old_size_;
+        }
+        open = inner;
+    }
 }
 
 /// Sends power to the receiver, importance to the leaf or the patch that was hit.
 void Receiver::send(const Pair& pair) {
-    const bool to_leaf = !refines_ || (step_.carries_importance && !step_.importance_at_patches);
-    const std::uint32_t leaf = to_leaf ? descent_.old_leaf_at(pair.receiver, pair.y) : pair.patch;
-    const std::uint32_t of_power = refines_ ? pair.receiver.element : leaf;
-    const std::uint32_t of_importance = step_.importance_at_patches ? pair.patch : leaf;
-    const bool together = of_power == of_importance || !step_.carries_importance;
+    const std::uint32_t of_power = refines_ ? pair.receiver.element : pair.leaf.element;
+    const std::uint32_t of_importance = step_.importance_at_patches ? pair.patch : pair.leaf.element;
+    const bool together = of_power == of_importance || !step_.carries_importance();
     if (step_.carries_power()) sorter_.add(of_power, pair.source, true, together);
     if (!step_.carries_power() || !together) sorter_.add(of_importance, pair.source, false, true);
 }

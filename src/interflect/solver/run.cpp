@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "interflect/base/parallel.h"
+#include "interflect/solver/light.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {
@@ -61,25 +64,14 @@ bool goes_on(const Run& run, const BounceBudget& budget) {
     return !budget.is_spent() && !run.stop_is_asked_for() && !run.is_out_of_time();
 }
 
-/// The spread of the luminance of each element's irradiance about its running mean, averaged over the iterations.
-void update_variances(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays) {
-    const auto n = static_cast<float>(rays);
-    const auto terms = static_cast<float>(run.error.terms() + 1);
-    for (std::size_t e = 0; e < fresh.size(); ++e) {
-        const float difference = luminance(fresh[e] - run.solution.irradiance[e]);
-        const float m = std::max(run.history[e], 1.0f);
-        run.variance[e] += (difference * difference * (n * m / (n + m)) - run.variance[e]) / terms;
-    }
-}
-
 /// @return The rays that it took.
 std::int64_t start_importance(Run& run) {
     Solution& solution = run.solution;
     BounceBudget budget(run.schedule.start_rays(), run.options.rays / 4);
     std::vector<float> unshot = solution.view_importance;
     for (double left = 1; left > negligible_unshot_importance && goes_on(run, budget);) {
-        const TransportStep step = importance_step(run.surfaces, solution, std::move(unshot), budget.next(left));
-        unshot = run_step(run, step).importance;
+        TransportStep step = importance_step(run.surfaces, solution, Importance(unshot), budget.next(left));
+        unshot = run_step(run, std::move(step)).importance;
         left = 0;  // of the reflected importance; at first all of V is to be shot
         for (std::uint32_t e = 0; e < run.forest->patch_count(); ++e) {
             solution.indirect_importance[e] += unshot[e];
@@ -94,18 +86,17 @@ std::int64_t start_importance(Run& run) {
 std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
     Solution& solution = run.solution;
     BounceBudget budget(run.schedule.start_rays(), rays);
-    std::vector<Rgb> unshot = present_radiosity(run);
+    const std::vector<Rgb> darkness = solution.irradiance;
+    Light unshot(run.surfaces, darkness);
+    Received received;
     const double emitted = channel_sum(solution.emitted_power);
     for (double left = 1; left > negligible_unshot_power && goes_on(run, budget);) {
-        const TransportStep step = power_step(run.surfaces, solution, std::move(unshot), false, budget.next(left));
-        const Received received = run_step(run, step);
+        TransportStep step = power_step(run.surfaces, solution, unshot, false, budget.next(left));
+        received = run_step(run, std::move(step));
         escaped_power += received.escaped_power;
-        unshot = std::vector<Rgb>(run.forest->size());
-        for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
-            solution.irradiance[e] += received.irradiance[e];
-            unshot[e] = run.surfaces.reflectance(run.forest->patch(e)) * received.irradiance[e];
-        }
-        left = channel_sum(integral(*run.forest, unshot)) / emitted;
+        for (std::uint32_t e = 0; e < run.forest->size(); ++e) solution.irradiance[e] += received.irradiance[e];
+        unshot = Light(run.surfaces, received.irradiance, false);
+        left = channel_sum(radiated_power(*run.forest, unshot)) / emitted;
     }
     run.power_rays += budget.used();
     return budget.used();
@@ -128,26 +119,16 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
     solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
     history.assign(forest->size(), 0.0f);
     variance.assign(forest->size(), 0.0f);
-    solution.emitted_power = integral(*forest, radiosity(surfaces, *forest, solution.irradiance));
+    solution.emitted_power = radiated_power(*forest, Light(surfaces, solution.irradiance));
     view.look(*forest, caster, o.eye_rays);
     if (view.empty()) return;
     solution.view_importance = view.per_area(*forest, !o.importance_at_elements);
     solution.indirect_importance.assign(forest->size(), 0.0f);
 }
 
-std::vector<Rgb> present_radiosity(Run& run) {
-    std::vector<Rgb> b = radiosity(run.surfaces, *run.forest, run.solution.irradiance);
-    for (Rgb& value : b) {
-        if (is_finite(value)) continue;
-        value = Rgb(0, 0, 0);
-        ++run.solution.non_finite;
-    }
-    return b;
-}
-
-Received run_step(Run& run, const TransportStep& step) {
+Received run_step(Run& run, TransportStep step) {
     const std::uint32_t before = run.forest->size();
-    Received received = transport(run.surfaces, *run.forest, run.ray_caster, step, run.streams);
+    Received received = transport(run.surfaces, *run.forest, run.ray_caster, std::move(step), run.streams);
     run.escaped_rays += received.escaped_rays;
     inherit(*run.forest, before, run.solution.irradiance);
     inherit(*run.forest, before, run.variance);
@@ -179,22 +160,34 @@ void start_incrementally(Run& run) {
 }
 
 void estimate_error(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays) {
+    constexpr std::size_t at_once = 1 << 13;
     const Solution& solution = run.solution;
+    const ElementForest& forest = *run.forest;
     const bool has_view = !run.view.empty();
-    const std::vector<std::uint32_t> leaves = run.forest->leaves();
-    std::vector<double> weights(leaves.size()), means(leaves.size()), received(leaves.size());
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-        const std::uint32_t e = leaves[i], patch = run.forest->patch(e);
-        const double area = run.forest->area(e);
-        // With a view, what counts is B; without, H, lest black surfaces count for nothing.
-        const Rgb scale = has_view ? run.surfaces.reflectance(patch) : Rgb(1);
-        const Rgb offset = has_view ? run.surfaces.exitance(patch) : Rgb(0);
-        weights[i] = has_view ? area * static_cast<double>(solution.view_importance[e]) : area;
-        means[i] = luminance(offset + scale * solution.irradiance[e]);
-        received[i] = luminance(offset + scale * fresh[e]);
-    }
-    update_variances(run, fresh, rays);
-    run.error.add(weights, means, run.schedule.averaged_rays(), received, rays);
+    const auto n = static_cast<float>(rays), terms = static_cast<float>(run.error.terms() + 1);
+    const auto add_some = [&](std::size_t begin, std::size_t end) {
+        ErrorEstimate::Sums sums;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            // Of each element's own: the spread of its luminance about the running mean, averaged over the iterations.
+            const float difference = luminance(fresh[e] - solution.irradiance[e]);
+            const float m = std::max(run.history[e], 1.0f);
+            run.variance[e] += (difference * difference * (n * m / (n + m)) - run.variance[e]) / terms;
+            if (!forest.is_leaf(e)) continue;
+            const double area = forest.area(e);
+            if (!has_view) {
+                sums.add(area, luminance(solution.irradiance[e]), luminance(fresh[e]));
+                continue;
+            }
+            // With a view, what counts is B; without, H, lest black surfaces count for nothing.
+            const Material& material = run.surfaces.material(forest.patch(e));
+            sums.add(area * static_cast<double>(solution.view_importance[e]),
+                     luminance(material.exitance + material.reflectance * solution.irradiance[e]),
+                     luminance(material.exitance + material.reflectance * fresh[e]));
+        }
+        return sums;
+    };
+    run.error.add(parallel_sum(forest.size(), at_once, ErrorEstimate::Sums(), add_some), run.schedule.averaged_rays(),
+                  rays);
 }
 
 void report(Run& run, int iteration, const RgbD& escaped_power) {
@@ -207,7 +200,7 @@ void report(Run& run, int iteration, const RgbD& escaped_power) {
     r.escaped_rays = run.escaped_rays;
     r.elements = run.forest->size();
     r.leaves = run.forest->patch_count() + (r.elements - run.forest->patch_count()) / 4 * 3;
-    r.total_power = integral(*run.forest, radiosity(run.surfaces, *run.forest, run.solution.irradiance));
+    r.total_power = radiated_power(*run.forest, Light(run.surfaces, run.solution.irradiance));
     r.escaped_power = escaped_power;
     r.error_estimate = run.error.relative(run.schedule.averaged_rays());
     run.solution.iterations.push_back(r);

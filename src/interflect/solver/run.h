@@ -40,11 +40,8 @@ struct Run {
     bool is_out_of_time() const { return seconds() >= options.seconds; }
 };
 
-/// B of every element; what is not finite is set to 0, so that it is not shot, and counted.
-std::vector<Rgb> present_radiosity(Run& run);
-
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest.
-Received run_step(Run& run, const TransportStep& step);
+Received run_step(Run& run, TransportStep step);
 
 /// Adds eye rays in proportion to the rays that have been averaged: as the mesh gets finer, what an eye sees of each
 /// element must be known as well.

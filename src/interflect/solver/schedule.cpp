@@ -58,18 +58,11 @@ void Schedule::done(const IterationPlan& plan) {
     averaged_rays_ = warming_up ? 0 : averaged_rays_ + plan.rays;
 }
 
-void ErrorEstimate::add(std::span<const double> weights, std::span<const double> mean, std::int64_t mean_rays,
-                        std::span<const double> received, std::int64_t rays) {
-    double weight = 0, square = 0, sum = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        const double difference = received[i] - mean[i];
-        weight += weights[i];
-        square += weights[i] * difference * difference;
-        sum += weights[i] * received[i];
-    }
-    variance_sum_ += square / weight / (1.0 / static_cast<double>(rays) + 1.0 / static_cast<double>(mean_rays));
+void ErrorEstimate::add(const Sums& sums, std::int64_t mean_rays, std::int64_t rays) {
+    const double per_ray = 1.0 / static_cast<double>(rays) + 1.0 / static_cast<double>(mean_rays);
+    variance_sum_ += sums.square / sums.weight / per_ray;
     ++terms_;
-    mean_ = sum / weight;
+    mean_ = sums.received / sums.weight;
 }
 
 double ErrorEstimate::relative(std::int64_t averaged_rays) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "interflect/solver/solve.h"
 
@@ -45,12 +44,27 @@ class Schedule {
 /// successive iterations repel each other, which makes this an overestimate.
 class ErrorEstimate {
   public:
-    /// Call before the merge.
-    /// @param weights   How much each element counts: V with a view, area without.
-    /// @param mean      Luminance of what counts: of the running mean, of `mean_rays` rays; received: the new one, of
-    /// `rays`.
-    void add(std::span<const double> weights, std::span<const double> mean, std::int64_t mean_rays,
-             std::span<const double> received, std::int64_t rays);
+    /// What is added up over the elements.
+    struct Sums {
+        double weight = 0, square = 0, received = 0;
+
+        /// @param element_weight  How much the element counts: V with a view, area without.
+        /// @param mean, fresh     Luminance of what counts: of the running mean, and of the new estimate.
+        void add(double element_weight, double mean, double fresh) {
+            weight += element_weight;
+            square += element_weight * (fresh - mean) * (fresh - mean);
+            received += element_weight * fresh;
+        }
+        Sums& operator+=(const Sums& other) {
+            weight += other.weight;
+            square += other.square;
+            received += other.received;
+            return *this;
+        }
+    };
+
+    /// Call before the merge. @param mean_rays  Of the running mean. @param rays  Of the new estimate.
+    void add(const Sums& sums, std::int64_t mean_rays, std::int64_t rays);
     /// Relative to the weighted mean of the last call; infinite before the first.
     double relative(std::int64_t averaged_rays) const;
     int terms() const { return terms_; }  ///< Calls of add().

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "interflect/base/error.h"
+#include "interflect/base/parallel.h"
+#include "interflect/solver/light.h"
 #include "interflect/solver/link_radiosity.h"
 #include "interflect/solver/random_walk.h"
 #include "interflect/solver/run.h"
@@ -14,6 +17,8 @@
 namespace interflect {
 
 namespace {
+
+constexpr std::size_t elements_at_once = 1 << 13;
 
 void require_valid(const Scene& scene, const SolveOptions& o) {
     std::vector<std::string> faults = scene_faults(scene);
@@ -67,8 +72,10 @@ void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received,
         const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
-    for (std::uint32_t e = 0; e < forest.patch_count(); ++e) merge_one(e);
-    for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
+    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) merge_one(e);
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
         T sum(0);
         float area = 0;
         for (std::uint32_t e = first; e < first + 4; ++e) {
@@ -76,17 +83,20 @@ void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received,
             sum += mean[e] * forest.area(e);
             area += forest.area(e);
         }
-        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = scaled(mean[e], sum / area, mean[forest.parent(e)]);
-    }
+        const T of_parent = mean[forest.parent(first)];
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = scaled(mean[e], sum / area, of_parent);
+    });
     pull(forest, mean);
 }
 
 /// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
 /// inherited a mean that is too smooth, less of them count.
 void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new) {
-    for (float& rays : run.history) rays = plan.warms_up ? 0.0f : rays + static_cast<float>(plan.rays);
-    for (std::uint32_t e = first_new; e < run.forest->size(); ++e)
-        run.history[e] *= static_cast<float>(run.options.inherited_trust);
+    const auto rays = static_cast<float>(plan.rays), trust = static_cast<float>(run.options.inherited_trust);
+    parallel_for_ranges(run.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e)
+            run.history[e] = plan.warms_up ? 0.0f : (run.history[e] + rays) * (e < first_new ? 1.0f : trust);
+    });
 }
 
 /// One iteration: what is received in one bounce of the present estimate, merged with the past.
@@ -102,17 +112,18 @@ RgbD iterate(Run& run, IterationPlan& plan) {
     run.power_rays += plan.rays - for_importance;
     if (with_importance && !combined && for_importance > 0) {
         const Received received =
-            run_step(run, importance_step(run.surfaces, solution, total_importance(solution), for_importance));
+            run_step(run, importance_step(run.surfaces, solution, importance_of(solution), for_importance));
         merge(run, solution.indirect_importance, received.importance, plan);
     }
     RgbD escaped_power(0, 0, 0);
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
-        TransportStep step = power_step(run.surfaces, solution, present_radiosity(run), combined, rays);
+        const Light light(run.surfaces, solution.irradiance);
+        TransportStep step = power_step(run.surfaces, solution, light, combined, rays);
         const bool deferred = run.options.defer_refinement && plan.warms_up;
         if (run.options.method.refines && !deferred)
             step.oracle = make_oracle(solution, step, run.schedule.averaged_rays() + rays, run.smallest_element);
-        const Received received = run_step(run, step);
+        const Received received = run_step(run, std::move(step));
         if (run.schedule.averaged_rays() > 0) estimate_error(run, received.irradiance, rays);
         merge(run, solution.irradiance, received.irradiance, plan);
         if (combined) merge(run, solution.indirect_importance, received.importance, plan);

@@ -1,8 +1,8 @@
 #include "interflect/solver/steps.h"
 
 #include <cmath>
-#include <utility>
 
+#include "interflect/base/parallel.h"
 #include "interflect/solver/probabilities.h"
 
 namespace interflect {
@@ -15,24 +15,28 @@ constexpr double rays_at_epsilon = 20e6;
 /// What drives the rays of power, of every element: what is seen, or total or indirect importance.
 std::vector<float> driver(const Solution& so_far) {
     const SolveOptions& o = so_far.options;
-    const std::vector<float>& psi = importance_use(so_far) == ImportanceUse::direct ? so_far.view_importance
-                                    : o.total_importance                            ? total_importance(so_far)
-                                                                                    : so_far.indirect_importance;
+    const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
+                           : o.total_importance                            ? importance_of(so_far)
+                                                                           : Importance(so_far.indirect_importance);
     return driving_importance(*so_far.forest, psi, o.importance_smoothing, o.importance_exponent);
 }
 
-/// Sampling weights of a step that carries power: Eq. 3, 9, 10, and 11 where it carries importance too.
-std::vector<double> power_step_weights(const Solution& so_far, const Sampled& s, const std::vector<Rgb>& radiosity,
-                                       bool combined) {
-    std::vector<double> by_power = power_weights(s, radiosity);
-    if (importance_use(so_far) == ImportanceUse::off) return by_power;
+/// How the rays of a step that carries power are shared: Eq. 3, 9, 10, and 11 where it carries importance too.
+Shares power_step_shares(const Solution& so_far, bool combined) {
+    if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
     const double for_power = combined ? 1 - o.alpha : 1;
-    std::vector<double> q(s.leaves.size(), 0.0);
-    mix_in(q, driven_weights(s, radiosity, driver(so_far)), for_power * (1 - o.beta));
-    mix_in(q, by_power, for_power * o.beta);
-    if (combined) mix_in(q, reflected_importance_weights(s, total_importance(so_far)), o.alpha);
-    return q;
+    return {
+        .power = for_power * o.beta, .driven_power = for_power * (1 - o.beta), .importance = combined ? o.alpha : 0};
+}
+
+std::int64_t count_lost(const ElementForest& forest, const Light& light) {
+    constexpr std::size_t at_once = 1 << 13;
+    return parallel_sum(forest.size(), at_once, std::int64_t{0}, [&](std::size_t begin, std::size_t end) {
+        std::int64_t lost = 0;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) lost += light.is_lost(forest, e);
+        return lost;
+    });
 }
 
 }  // namespace
@@ -41,33 +45,36 @@ ImportanceUse importance_use(const Solution& so_far) {
     return so_far.view_importance.empty() ? ImportanceUse::off : so_far.options.method.importance;
 }
 
+Importance importance_of(const Solution& so_far) {
+    return Importance(so_far.view_importance, so_far.indirect_importance);
+}
+
 std::vector<float> total_importance(const Solution& so_far) {
     std::vector<float> psi = so_far.view_importance;
     for (std::size_t e = 0; e < psi.size(); ++e) psi[e] += so_far.indirect_importance[e];
     return psi;
 }
 
-TransportStep power_step(const Surfaces& surfaces, const Solution& so_far, std::vector<Rgb> radiosity, bool combined,
+TransportStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
                          std::int64_t rays) {
     TransportStep step;
-    step.leaves = so_far.forest->leaves();
-    step.q = power_step_weights(so_far, {surfaces, *so_far.forest, step.leaves}, radiosity, combined);
+    const Shares shares = power_step_shares(so_far, combined);
+    const std::vector<float> drives = shares.driven_power > 0 ? driver(so_far) : std::vector<float>();
+    step.light = light;
+    if (combined) step.importance = importance_of(so_far);
+    step.q = mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
     step.rays = rays;
-    step.radiosity = std::move(radiosity);
-    if (combined) step.importance = total_importance(so_far);
-    step.carries_importance = combined;
     step.importance_at_patches = !so_far.options.importance_at_elements;
+    so_far.non_finite += count_lost(*so_far.forest, light);
     return step;
 }
 
-TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, std::vector<float> importance,
+TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, const Importance& importance,
                               std::int64_t rays) {
     TransportStep step;
-    step.leaves = so_far.forest->leaves();
-    step.q = reflected_importance_weights({surfaces, *so_far.forest, step.leaves}, importance);
+    step.q = mixture({surfaces, *so_far.forest, {}, importance, {}}, {.importance = 1});
     step.rays = rays;
-    step.importance = std::move(importance);
-    step.carries_importance = true;
+    step.importance = importance;
     step.importance_at_patches = !so_far.options.importance_at_elements;
     return step;
 }
@@ -77,11 +84,11 @@ Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.radiosity);
+    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.light);
     if (oracle.by_importance) {
         // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
         oracle.importance =
-            driving_importance(*so_far.forest, total_importance(so_far), so_far.options.importance_smoothing, 1);
+            driving_importance(*so_far.forest, importance_of(so_far), so_far.options.importance_smoothing, 1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
     }
     oracle.smallest_area = static_cast<float>(smallest_area);
@@ -89,13 +96,14 @@ Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64
     return oracle;
 }
 
-double reference_power(const Solution& so_far, const std::vector<Rgb>& radiosity) {
+double reference_power(const Solution& so_far, const Light& light) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
     double seen = 0, area = 0;  // sum of V B, the mean radiosity of the picture; of the patches in it [m^2]
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
-        seen += static_cast<double>(so_far.view_importance[i]) * forest.area(i) * channel_sum(RgbD(radiosity[i])) / 3;
+        seen += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *
+                channel_sum(RgbD(light.radiosity(forest, i))) / 3;
         area += forest.area(i);
     }
     return seen * area;

@@ -12,18 +12,22 @@ namespace interflect {
 /// What steers a run: what its method asks for, and nothing where there is no view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// psi of every element; empty where there is no view.
+/// psi of every element, which refers to the solution; empty where there is no view.
+Importance importance_of(const Solution& so_far);
+/// The same, added up.
 std::vector<float> total_importance(const Solution& so_far);
 
 /// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
 /// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
 /// alone. No oracle is set.
-/// @param radiosity  Of every element; what is to be shot.
-TransportStep power_step(const Surfaces& surfaces, const Solution& so_far, std::vector<Rgb> radiosity, bool combined,
+/// @param so_far  Elements of which nothing can be shot, since it is not finite, are counted there.
+/// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
+TransportStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
                          std::int64_t rays);
 
-/// A step in which rays carry importance alone (Eq. 8). @param importance  Of every element; what is to be reflected.
-TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, std::vector<float> importance,
+/// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
+/// it.
+TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, const Importance& importance,
                               std::int64_t rays);
 
 /// The oracle of the run's method, Eq. 14 or 15, with the references below.
@@ -34,7 +38,7 @@ Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64
 /// all were as bright as they appear on average; so it does not depend on lights elsewhere, on how an emitter is
 /// divided, or (times a length squared on both sides of Eq. 14) on the unit of length. Without a view: all emitted
 /// power.
-double reference_power(const Solution& so_far, const std::vector<Rgb>& radiosity);
+double reference_power(const Solution& so_far, const Light& light);
 
 /// psi_max of Eq. 15: the area-weighted mean of psi over the patches that the view sees [1/m^2].
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);

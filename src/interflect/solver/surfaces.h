@@ -18,9 +18,11 @@ class Surfaces {
     const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
     /// What importance, one number, is reflected with: exact for grey surfaces.
     float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
+    /// Tells the processor that a patch will be asked for its material.
+    void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_.patches[patch].material); }
+    const Material& material(std::uint32_t patch) const { return scene_.materials[scene_.patches[patch].material]; }
 
   private:
-    const Material& material(std::uint32_t patch) const { return scene_.materials[scene_.patches[patch].material]; }
     const Scene& scene_;
 };
 

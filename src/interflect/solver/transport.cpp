@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <numeric>
+#include <span>
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/solver/arrivals.h"
+#include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/receiving.h"
 
@@ -20,8 +20,6 @@ namespace {
 
 /// Rays of one task: enough to hide the cost of a task, few enough to stay in the second-level cache.
 constexpr std::size_t batch_rays = 4096;
-/// Rays whose receivers are looked for side by side: what is known of them fits into the first-level cache.
-constexpr std::size_t group_rays = 128;
 
 /// Keys of the random numbers, so that no two purposes share one.
 enum class Purpose : std::uint64_t { allocation = 1, sampling = 2 };
@@ -30,73 +28,79 @@ std::uint64_t stream_key(const SampleStreams& streams, Purpose purpose, std::uin
     return mix(mix(streams.seed, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// Which rays start where: those of leaf number s are first_ray[s] ... first_ray[s + 1] - 1.
-class RayPlan {
+/// The rays of one task that start on the same leaf: batch.rays[begin ... end - 1].
+struct SourceRays {
+    std::uint32_t leaf;
+    std::uint32_t begin, end;
+};
+
+/// The rays of one task; one a thread, reused.
+struct RayBatch {
+    std::vector<SourceRays> sources;
+    std::vector<Ray> rays;
+    std::vector<Parameters> origins;
+    PointBlock points;
+};
+
+/// Makes the rays of a step.
+class RayMaker {
   public:
-    RayPlan(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
-            const SampleStreams& streams)
-        : forest_(forest), step_(step), streams_(streams), lift_(ray_caster.lift()) {
-        const std::uint64_t key = stream_key(streams, Purpose::allocation, 0);
-        first_ray_ = allocate_rays(step.q, step.rays, random_double(key, streams.allocations));
-    }
+    RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
+             const SampleStreams& streams)
+        : forest_(forest),
+          streams_(streams),
+          lift_(ray_caster.lift()),
+          allocation_(step.q, step.rays,
+                      random_double(stream_key(streams, Purpose::allocation, 0), streams.allocations)) {}
 
-    std::int64_t count(std::size_t s) const { return first_ray_[s + 1] - first_ray_[s]; }
+    const RayAllocation& allocation() const { return allocation_; }
 
-    /// Calls body(s, from, to) for every leaf number s that has rays in [begin, end): those from ... to - 1.
-    template <class Body>
-    void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
-        const auto after = std::upper_bound(first_ray_.begin(), first_ray_.end(), begin);
-        auto s = static_cast<std::size_t>(after - first_ray_.begin() - 1);
-        for (std::int64_t from = begin; from < end; ++s) {
-            const std::int64_t to = std::min(first_ray_[s + 1], end);
-            if (to > from) body(s, from, to);
-            from = to;
-        }
-    }
-
-    /// Makes the rays begin ... begin + rays.size() - 1.
-    void make_rays(std::int64_t begin, std::span<Ray> rays, std::span<Parameters> origins, PointBlock& points) const {
-        const auto end = begin + static_cast<std::int64_t>(rays.size());
-        for_each_source(begin, end, [&](std::size_t s, std::int64_t from, std::int64_t to) {
-            const std::uint32_t leaf = step_.leaves[s], patch = forest_.patch(leaf);
+    /// Makes the rays begin ... end - 1.
+    void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const {
+        const auto count = static_cast<std::size_t>(end - begin);
+        batch.rays.resize(count);
+        batch.origins.resize(count);
+        batch.sources.clear();
+        const auto make_some = [&](std::size_t s, std::int64_t first, std::int64_t from, std::int64_t to) {
+            const auto leaf = static_cast<std::uint32_t>(s), patch = forest_.patch(leaf);
             const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
             const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
             const auto offset = static_cast<std::size_t>(from - begin), length = static_cast<std::size_t>(to - from);
             shoot_rays(forest_.geometry(patch), forest_.cell(leaf), lift_, streams_.points,
-                       stream_key(streams_, Purpose::sampling, place),
-                       used + static_cast<std::uint64_t>(from - first_ray_[s]), points, rays.subspan(offset, length),
-                       origins.subspan(offset, length));
-        });
+                       stream_key(streams_, Purpose::sampling, place), used + static_cast<std::uint64_t>(from - first),
+                       batch.points, std::span(batch.rays).subspan(offset, length),
+                       std::span(batch.origins).subspan(offset, length));
+            batch.sources.push_back(
+                {leaf, static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(offset + length)});
+        };
+        allocation_.for_each_source(begin, end, make_some);
     }
 
   private:
     const ElementForest& forest_;
-    const TransportStep& step_;
     const SampleStreams& streams_;
     float lift_;
-    std::vector<std::int64_t> first_ray_;
+    RayAllocation allocation_;
 };
 
 /// What one ray of each leaf carries: A_s / (N q_s) of the leaf's radiosity and of its reflected importance.
 class Carried {
   public:
-    Carried(const Surfaces& surfaces, const ElementForest& forest, const TransportStep& step)
-        : surfaces_(surfaces),
-          forest_(forest),
-          step_(step),
-          q_sum_over_rays_(std::accumulate(step.q.begin(), step.q.end(), 0.0) / static_cast<double>(step.rays)) {}
+    Carried(const Surfaces& surfaces, const ElementForest& forest, const TransportStep& step, double q_sum)
+        : surfaces_(surfaces), forest_(forest), step_(step), q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
 
-    RgbD power(std::size_t s) const {
-        if (!step_.quanta.empty()) return RgbD(step_.quanta[s]);
-        return RgbD(step_.radiosity[step_.leaves[s]]) * area_per_ray(s);
+    RgbD power(std::uint32_t leaf) const {
+        const RgbD b(step_.light.radiosity(forest_, leaf));
+        if (!step_.equal_quanta) return b * area_per_ray(leaf);
+        const double sum = channel_sum(b);
+        return sum > 0 ? b / sum : RgbD(0);
     }
-    double importance(std::size_t s) const {
-        const std::uint32_t leaf = step_.leaves[s];
-        return surfaces_.mean_reflectance(forest_.patch(leaf)) * step_.importance[leaf] * area_per_ray(s);
+    double importance(std::uint32_t leaf) const {
+        return surfaces_.mean_reflectance(forest_.patch(leaf)) * step_.importance[leaf] * area_per_ray(leaf);
     }
 
   private:
-    double area_per_ray(std::size_t s) const { return forest_.area(step_.leaves[s]) * (q_sum_over_rays_ / step_.q[s]); }
+    double area_per_ray(std::uint32_t leaf) const { return forest_.area(leaf) * (q_sum_over_rays_ / step_.q[leaf]); }
 
     const Surfaces& surfaces_;
     const ElementForest& forest_;
@@ -104,46 +108,71 @@ class Carried {
     double q_sum_over_rays_;
 };
 
-/// The units in which arrivals are counted: what all rays carry fits.
-struct Units {
-    RgbD all_power{0, 0, 0};  ///< Of all rays together [lm or W].
-    FixedPoint power{0}, importance{0};
+/// What all rays of a step carry together.
+struct Totals {
+    RgbD power{0, 0, 0};  ///< [lm or W]
+    double importance = 0;
 
-    Units(const TransportStep& step, const RayPlan& plan, const Carried& carried) {
-        double all_importance = 0;
-        for (std::size_t s = 0; s < step.leaves.size(); ++s) {
-            const auto count = static_cast<double>(plan.count(s));
-            if (count == 0) continue;
-            if (step.carries_power()) all_power += carried.power(s) * count;
-            if (step.carries_importance) all_importance += carried.importance(s) * count;
-        }
-        power = FixedPoint(channel_sum(all_power));
-        importance = FixedPoint(all_importance);
+    Totals& operator+=(const Totals& other) {
+        power += other.power;
+        importance += other.importance;
+        return *this;
     }
 };
 
-std::vector<Arrivals::Load> make_loads(const TransportStep& step, const RayPlan& plan, const Carried& carried,
-                                       const Units& units) {
-    std::vector<Arrivals::Load> loads(step.leaves.size(), Arrivals::Load{});
-    for (std::size_t s = 0; s < loads.size(); ++s) {
-        if (plan.count(s) == 0) continue;
-        if (step.carries_power()) {
-            const FixedPoint::Value power = units.power.from(carried.power(s));
-            std::copy(power.begin(), power.end(), loads[s].begin());
-        }
-        if (step.carries_importance) loads[s][3] = units.importance.from(carried.importance(s));
-    }
-    return loads;
+Totals all_carried(const TransportStep& step, const RayAllocation& allocation, const Carried& carried) {
+    constexpr std::size_t blocks_at_once = 16;
+    return parallel_sum(allocation.block_count(), blocks_at_once, Totals(), [&](std::size_t begin, std::size_t end) {
+        Totals sum;
+        for (std::size_t block = begin; block < end; ++block)
+            allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
+                const auto leaf = static_cast<std::uint32_t>(s);
+                const auto count = static_cast<double>(next - first);
+                if (step.carries_power()) sum.power += carried.power(leaf) * count;
+                if (step.carries_importance()) sum.importance += carried.importance(leaf) * count;
+                return true;
+            });
+        return sum;
+    });
 }
 
-/// One task's rays and hits, and what becomes of them; one a thread, reused.
+/// The units in which arrivals are counted: what all rays carry fits.
+struct Units {
+    FixedPoint power, importance;
+
+    explicit Units(const Totals& all) : power(channel_sum(all.power)), importance(all.importance) {}
+
+    Arrivals::Load load(const TransportStep& step, const Carried& carried, std::uint32_t leaf) const {
+        Arrivals::Load load{};
+        if (step.carries_power()) {
+            const FixedPoint::Value of_power = power.from(carried.power(leaf));
+            std::copy(of_power.begin(), of_power.end(), load.begin());
+        }
+        if (step.carries_importance()) load[3] = importance.from(carried.importance(leaf));
+        return load;
+    }
+};
+
+/// Notes how many points every leaf has consumed.
+void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements) {
+    constexpr std::size_t blocks_at_once = 16;
+    streams.used.resize(std::max(streams.used.size(), elements), 0);
+    parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            allocation.for_each_in_block(block, [&](std::size_t leaf, std::int64_t first, std::int64_t next) {
+                streams.used[leaf] += static_cast<std::uint64_t>(next - first);
+                return true;
+            });
+    });
+    ++streams.allocations;
+}
+
+/// What becomes of one task's rays; one a thread, reused.
 struct Batch {
     explicit Batch(const Receiver& r) : receiver(r) {}
 
-    std::vector<Ray> rays = std::vector<Ray>(batch_rays);
-    std::vector<Parameters> origins = std::vector<Parameters>(batch_rays);
-    std::vector<Hit> hits = std::vector<Hit>(batch_rays);
-    PointBlock points;
+    RayBatch shot;
+    std::vector<Hit> hits;
     Receiver receiver;
 };
 
@@ -163,100 +192,83 @@ void drop_excess(ElementForest& forest, Arrivals& arrivals, std::size_t most_ele
     }
 }
 
-}  // namespace
-
-std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t ray_count, double offset) {
-    double q_sum = 0;
-    for (const double w : q) q_sum += w;
-    assert(q_sum > 0 && std::isfinite(q_sum));
-    std::vector<std::int64_t> first(q.size() + 1, 0);
-    double cumulative = 0;  // summed in the order of q_sum, so that it ends at q_sum exactly, and the rays at N
-    for (std::size_t s = 0; s < q.size(); ++s) {
-        cumulative += q[s];
-        const double rays = cumulative / q_sum * static_cast<double>(ray_count) + offset;
-        first[s + 1] = std::min(ray_count, static_cast<std::int64_t>(rays));  // N + offset may round up to N + 1
-    }
-    return first;
+/// Turns sums of arrivals into what each element receives, per unit of area, from its own and its ancestors' arrivals.
+void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrivals& arrivals,
+             Received& received) {
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums fill a large page of 2 MiB
+    if (step.carries_power()) received.irradiance.resize(forest.size());
+    if (step.carries_importance()) received.importance.resize(forest.size());
+    parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            const auto& [red, green, blue, importance] = arrivals[e];
+            const float area = forest.area(e);
+            if (step.carries_power()) received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
+            if (step.carries_importance())
+                received.importance[e] = static_cast<float>(units.importance.to_number(importance) / area);
+        }
+        arrivals.release(begin, end);
+    });
+    if (step.carries_power()) push(forest, received.irradiance), pull(forest, received.irradiance);
+    if (step.carries_importance()) push(forest, received.importance), pull(forest, received.importance);
 }
 
-Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster,
-                   const TransportStep& step, SampleStreams& streams) {
-    assert(step.q.size() == step.leaves.size() && step.rays > 0);
-    Received received;
-    received.irradiance.assign(step.carries_power() ? forest.size() : 0, Rgb(0, 0, 0));
-    received.importance.assign(step.carries_importance ? forest.size() : 0, 0.0f);
-    if (std::all_of(step.q.begin(), step.q.end(), [](double w) { return w == 0; })) return received;
+}  // namespace
 
-    const RayPlan plan(forest, ray_caster, step, streams);
-    const Carried carried(surfaces, forest, step);
-    const Units units(step, plan, carried);
-    Arrivals arrivals(make_loads(step, plan, carried, units), forest.size(), forest.capacity());
-    const Descent descent(forest, step);
-    tbb::enumerable_thread_specific<Batch> batches([&] { return Batch({surfaces, descent, step, arrivals}); });
+Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+                   SampleStreams& streams) {
+    assert(step.q.size() == forest.size() && step.rays > 0);
+    Received received;
+    const RayMaker maker(forest, ray_caster, step, streams);
+    const RayAllocation& allocation = maker.allocation();
+    if (!(allocation.q_sum() > 0)) {
+        received.irradiance.assign(step.carries_power() ? forest.size() : 0, Rgb(0));
+        received.importance.assign(step.carries_importance() ? forest.size() : 0, 0.0f);
+        return received;
+    }
+
+    const Carried carried(surfaces, forest, step, allocation.q_sum());
+    const Totals all = all_carried(step, allocation, carried);
+    const Units units(all);
+    Arrivals arrivals(forest.size(), forest.capacity());
+    const std::uint32_t old_size = forest.size();
+    tbb::enumerable_thread_specific<Batch> batches([&] { return Batch({surfaces, forest, step, old_size, arrivals}); });
     parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, [&](std::size_t begin, std::size_t end) {
-        Batch& batch = batches.local();
-        const std::span rays(batch.rays.data(), end - begin);
-        const std::span origins(batch.origins.data(), rays.size());
-        const std::span hits(batch.hits.data(), rays.size());
-        plan.make_rays(static_cast<std::int64_t>(begin), rays, origins, batch.points);
-        ray_caster.trace(rays, hits);
-        for (std::size_t group = begin; group < end; group += group_rays) {
-            const auto first = static_cast<std::int64_t>(group);
-            const auto last = static_cast<std::int64_t>(std::min(end, group + group_rays));
-            plan.for_each_source(first, last, [&](std::size_t s, std::int64_t from, std::int64_t to) {
-                const std::size_t offset = static_cast<std::size_t>(from) - begin;
-                const auto count = static_cast<std::size_t>(to - from);
-                batch.receiver.take(static_cast<std::uint32_t>(s), rays.subspan(offset, count),
-                                    origins.subspan(offset, count), hits.subspan(offset, count));
-            });
-            batch.receiver.finish_group();
-        }
+        auto& [shot, hits, receiver] = batches.local();
+        maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), shot);
+        hits.resize(shot.rays.size());
+        ray_caster.trace(shot.rays, hits);
+        for (const auto& [leaf, first, last] : shot.sources)
+            receiver.take(leaf, units.load(step, carried, leaf), std::span(shot.rays).subspan(first, last - first),
+                          std::span(shot.origins).subspan(first, last - first),
+                          std::span(hits).subspan(first, last - first));
+        receiver.finish_batch();
     });
-    Escaped escaped;
+    FixedPoint::Value escaped{};
     for (Batch& batch : batches) {
         const Escaped e = batch.receiver.finish();
-        for (std::size_t c = 0; c < 3; ++c) escaped.power[c] += e.power[c];
-        escaped.rays += e.rays;
+        for (std::size_t c = 0; c < 3; ++c) escaped[c] += e.power[c];
+        received.escaped_rays += e.rays;
     }
 
-    streams.used.resize(std::max<std::size_t>(streams.used.size(), descent.old_size()), 0);
-    for (std::size_t s = 0; s < step.leaves.size(); ++s)
-        streams.used[step.leaves[s]] += static_cast<std::uint64_t>(plan.count(s));
-    ++streams.allocations;
-
-    renumber(arrivals, descent.old_size(), forest.put_in_order(descent.old_size()));
-    drop_excess(forest, arrivals, step.oracle.most_elements, descent.old_size());
-    if (step.carries_power()) {
-        received.irradiance.resize(forest.size());
-        for (std::uint32_t e = 0; e < forest.size(); ++e) {
-            const auto& [red, green, blue, importance] = arrivals[e];
-            received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / forest.area(e);
-        }
-        push(forest, received.irradiance);
-        pull(forest, received.irradiance);
-        received.shot_power = units.all_power;
-        received.escaped_power = units.power.to_colour(escaped.power);
-    }
-    if (step.carries_importance) {
-        received.importance.resize(forest.size());
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
-            received.importance[e] = static_cast<float>(units.importance.to_number(arrivals[e][3]) / forest.area(e));
-        push(forest, received.importance);
-        pull(forest, received.importance);
-    }
-    received.escaped_rays = escaped.rays;
+    advance(streams, allocation, old_size);
+    renumber(arrivals, old_size, forest.put_in_order(old_size));
+    drop_excess(forest, arrivals, step.oracle.most_elements, old_size);
+    step.q = std::vector<float>();  // what has served makes room for what is received
+    step.oracle.importance = std::vector<float>();
+    collect(forest, step, units, arrivals, received);
+    received.shot_power = all.power;
+    received.escaped_power = units.power.to_colour(escaped);
     return received;
 }
 
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
                                 const SampleStreams& streams) {
-    const RayPlan plan(forest, ray_caster, step, streams);
+    const RayMaker maker(forest, ray_caster, step, streams);
     std::vector<Ray> rays(static_cast<std::size_t>(step.rays));
-    std::vector<Parameters> origins(rays.size());
     parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
-        PointBlock points;
-        plan.make_rays(static_cast<std::int64_t>(begin), std::span(rays).subspan(begin, end - begin),
-                       std::span(origins).subspan(begin, end - begin), points);
+        RayBatch batch;
+        maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
+        std::copy(batch.rays.begin(), batch.rays.end(), rays.begin() + static_cast<std::ptrdiff_t>(begin));
     });
     return rays;
 }

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "interflect/base/colour.h"
 #include "interflect/base/points.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
+#include "interflect/solver/light.h"
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/surfaces.h"
 
@@ -23,26 +23,18 @@ struct SampleStreams {
     std::uint64_t allocations = 0;    ///< Steps that have drawn from these streams.
 };
 
-/// Splits N rays systematically: source s gets the rays first[s] ... first[s + 1] - 1, their number N q_s rounded up or
-/// down, N q_s in the mean over `offset`.
-/// @param q       Sampling weights >= 0, not all 0; they need not sum to 1.
-/// @param offset  Uniform in [0, 1).
-/// @return        `first`, size q.size() + 1, first[0] = 0, last = N; sources of weight 0 get no ray.
-std::vector<std::int64_t> allocate_rays(std::span<const double> q, std::int64_t ray_count, double offset);
-
 /// One step of transport: which rays start where, what they carry, and where it is received.
 struct TransportStep {
-    std::vector<std::uint32_t> leaves;  ///< The elements that rays start on: all leaves of the forest.
-    std::vector<double> q;              ///< Their sampling weights; same size. All 0 shoots nothing.
-    std::int64_t rays = 0;              ///< N > 0.
-    /// B of every element [lm/m^2 or W/m^2], finite: rays carry power. Empty: they carry none.
-    std::vector<Rgb> radiosity;
-    /// What one ray of each leaf carries, same size as leaves; empty: B_s A_s / (N q_s), which makes the estimate
-    /// unbiased.
-    std::vector<Rgb> quanta;
-    std::vector<float> importance;  ///< psi of every element, as it is shot on; empty unless that is asked for.
-    bool carries_power() const { return !radiosity.empty(); }
-    bool carries_importance = false;
+    /// Sampling weight of every element of the forest, >= 0; 0 for those that are not leaves. All 0 shoots nothing.
+    std::vector<float> q;
+    std::int64_t rays = 0;  ///< N > 0.
+    Light light;            ///< What leaves the elements, to be shot; empty: rays carry no power.
+    /// Of power every ray carries B_s over the sum of its channels, wherever it starts. False: B_s A_s / (N q_s), which
+    /// makes the estimate unbiased.
+    bool equal_quanta = false;
+    Importance importance;  ///< psi, as it is reflected and shot on; empty: rays carry none.
+    bool carries_power() const { return !light.empty(); }
+    bool carries_importance() const { return !importance.empty(); }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
 };
@@ -66,9 +58,10 @@ struct Received {
 /// escaped exactly. Unbiased on a fixed mesh for every q that is positive wherever what is carried is.
 /// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
-/// Cost: O(N (log(patches) + levels)) time on all threads, 32 bytes an element.
-Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster,
-                   const TransportStep& step, SampleStreams& streams);
+/// Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
+/// received.
+Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+                   SampleStreams& streams);
 
 /// The rays that transport() would trace, in its order.
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,

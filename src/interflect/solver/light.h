@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "interflect/base/colour.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/surfaces.h"
+
+namespace interflect {
+
+/// What leaves the elements of a forest: B = M + rho H [lm/m^2 or W/m^2], found for each when it is asked for. Refers
+/// to the surfaces and to H.
+class Light {
+  public:
+    Light() = default;  ///< There is none.
+    /// @param irradiance  H of every element.
+    /// @param emits       Whether M counts; else B is only what is reflected.
+    Light(const Surfaces& surfaces, std::span<const Rgb> irradiance, bool emits = true)
+        : surfaces_(&surfaces), irradiance_(irradiance), emits_(emits) {}
+
+    bool empty() const { return irradiance_.empty(); }
+
+    /// B, or 0 where it is not finite.
+    Rgb radiosity(const ElementForest& forest, std::uint32_t e) const {
+        const Rgb b = as_it_is(forest, e);
+        return is_finite(b) ? b : Rgb(0);
+    }
+    bool is_lost(const ElementForest& forest, std::uint32_t e) const { return !is_finite(as_it_is(forest, e)); }
+
+  private:
+    Rgb as_it_is(const ElementForest& forest, std::uint32_t e) const {
+        const Material& material = surfaces_->material(forest.patch(e));
+        const Rgb reflected = material.reflectance * irradiance_[e];
+        return emits_ ? material.exitance + reflected : reflected;
+    }
+
+    const Surfaces* surfaces_ = nullptr;
+    std::span<const Rgb> irradiance_;
+    bool emits_ = false;
+};
+
+/// What leaves all patches together [lm or W], in their order and double precision: the same for any number of threads.
+inline RgbD radiated_power(const ElementForest& forest, const Light& light) {
+    RgbD sum(0, 0, 0);
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i)
+        sum += RgbD(light.radiosity(forest, i)) * static_cast<double>(forest.area(i));
+    return sum;
+}
+
+/// Importance per area of the elements of a forest [1/m^2], as the sum of two parts.
+class Importance {
+  public:
+    Importance() = default;  ///< There is none.
+    /// @param a, b  Of every element; either may be empty.
+    explicit Importance(std::span<const float> a, std::span<const float> b = {}) : a_(a), b_(b) {}
+
+    bool empty() const { return a_.empty() && b_.empty(); }
+    float operator[](std::uint32_t e) const { return (a_.empty() ? 0 : a_[e]) + (b_.empty() ? 0 : b_[e]); }
+
+  private:
+    std::span<const float> a_, b_;
+};
+
+}  // namespace interflect

@@ -1,0 +1,30 @@
+#include "interflect/solver/memory.h"
+
+#include <fmt/format.h>
+
+#include "interflect/base/error.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
+    constexpr std::size_t program = 100 << 20;
+    MemoryNeed need;
+    need.scene = scene.vertices.size() * sizeof(V3f) + scene.patches.size() * sizeof(Patch) +
+                 scene.materials.size() * sizeof(Material) + scene.objects.size() * sizeof(std::string);
+    need.ray_tracer = ray_caster.memory();
+    need.patches = scene.patches.size() * sizeof(PatchGeometry);
+    need.rest = program;
+    return need;
+}
+
+std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene) {
+    const std::size_t patches = scene.patches.size(), least = need.with(patches);
+    if (bytes < least)
+        throw InputError(scene.name, 0,
+                         fmt::format("{} patches need {} MiB of memory, the limit is {} MiB", patches,
+                                     (least >> 20) + 1, bytes >> 20));
+    return (bytes - need.without_elements()) / MemoryNeed::per_element;
+}
+
+}  // namespace interflect

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// What a run holds at its peak [bytes].
+struct MemoryNeed {
+    std::size_t scene = 0;       ///< Vertices, patches, materials and names.
+    std::size_t ray_tracer = 0;  ///< Embree's structures, and which faces coincide.
+    std::size_t patches = 0;     ///< What the forest knows of each patch, whatever elements there are.
+    std::size_t rest = 0;        ///< Program, threads, and what eyes see of the scene.
+
+    /// Of each element, while a step's results are collected: the tree 11, H 12, importance 8, history and variance 8,
+    /// points consumed 8, and either sums of arrivals, 32, and the step's weights, 8, or what was received, 16 and what
+    /// has not been collected yet.
+    static constexpr std::size_t per_element = 96;
+
+    std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
+    std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
+};
+
+/// What solving this scene needs. Methods that link elements (Scheme::links) need 24 bytes a link besides.
+MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
+
+/// The elements that fit into so much memory.
+/// @throws InputError where not even the patches do: says how much they need.
+std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
+
+}  // namespace interflect

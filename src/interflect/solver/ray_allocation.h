@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace interflect {
+
+/// Splits N rays systematically among sources: source s gets N q_s / sum q of them, rounded up or down, and that number
+/// in the mean over `offset`. The rays of a source follow those of the sources before it. 16 bytes for 256 sources: the
+/// rest is found anew from q.
+class RayAllocation {
+  public:
+    /// @param q       Sampling weights >= 0; they need not sum to 1. Must outlive this.
+    /// @param rays    N > 0. @param offset  Uniform in [0, 1).
+    RayAllocation(std::span<const float> q, std::int64_t rays, double offset);
+
+    double q_sum() const { return q_sum_; }  ///< 0: there is nothing to share the rays by, and nobody gets any.
+
+    /// Calls body(s, first, from, to) for every source s that has some of the rays [begin, end), in order: its own
+    /// begin with `first`, and of those asked for it has [from, to).
+    template <class Body>
+    void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
+        const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), begin,
+                                            [](std::int64_t ray, const Block& block) { return ray < block.first_ray; });
+        for (auto block = static_cast<std::size_t>(after - blocks_.begin()) - 1; block < blocks_.size(); ++block) {
+            const bool goes_on = for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
+                if (next > begin) body(s, first, std::max(first, begin), std::min(next, end));
+                return next < end;
+            });
+            if (!goes_on) return;
+        }
+    }
+
+    std::size_t block_count() const { return blocks_.size(); }
+    /// Calls body(s, first, next) for every source that has rays [first, next), of one block of sources, until it
+    /// returns false. @return What it returned last, or true.
+    template <class Body>
+    bool for_each_in_block(std::size_t block, const Body& body) const {
+        const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);
+        double cumulative = 0;
+        std::int64_t first = blocks_[block].first_ray;
+        for (std::size_t s = begin; s < end; ++s) {
+            if (q_[s] == 0) continue;
+            cumulative += q_[s];
+            const std::int64_t next = rays_before(blocks_[block].q_before + cumulative);
+            if (next > first && !body(s, first, next)) return false;
+            first = next;
+        }
+        return true;
+    }
+
+  private:
+    static constexpr std::size_t block_sources = 256;
+    struct Block {
+        double q_before;         // sum of the weights of all blocks before it
+        std::int64_t first_ray;  // rays of all blocks before it
+    };
+    /// Of the rays those that belong to sources whose weights sum to this. A block's end and the next one's beginning
+    /// are the same sum of the same terms, and so get the same answer.
+    std::int64_t rays_before(double q) const {
+        const double before = q / q_sum_ * static_cast<double>(rays_) + offset_;
+        return std::min(rays_, static_cast<std::int64_t>(before));  // N + offset may round up to N + 1
+    }
+
+    std::span<const float> q_;
+    std::int64_t rays_;
+    double offset_, q_sum_ = 0;
+    std::vector<Block> blocks_;
+};
+
+}  // namespace interflect
