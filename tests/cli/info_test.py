@@ -27,6 +27,10 @@ class Info(CommandTest):
             for found, wanted in zip(view[key], expected[key], strict=True):
                 self.assertAlmostEqual(found, wanted, places=5)
         self.assertEqual(report["warnings"], [])
+        memory = report["memory"]
+        self.assertGreater(memory["ray_tracer"], 0)
+        self.assertLessEqual(memory["per_element"], 96)
+        self.assertGreater(memory["at_least"], memory["ray_tracer"] + 13 * memory["per_element"])
 
     def test_text_tells_the_same(self):
         self.write("room.mgf", room())

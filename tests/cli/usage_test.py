@@ -53,6 +53,7 @@ class WrongUsage(CommandTest):
             "--importance-exponent": ("-0.1", "1.1"),
             "--min-area": ("-1", "nan"),
             "--max-elements": ("0", "5G"),
+            "--memory": ("0", "-1G", "1X", "many"),
             "--inherited-trust": ("-0.1", "1.1"),
             "--alpha": ("-0.1", "1.1", "nan"),
             "--beta": ("-0.1", "1.1"),

@@ -67,9 +67,9 @@ TEST_F(Weights, OfPowerThatIsDrivenAreTheProduct) {
 
 TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
     using testing::FloatNear;
-    EXPECT_THAT(mixture(sampled(), {.power = 0.42}), ElementsAre(0, FloatNear(0.12f, 1e-7f), FloatNear(0.12f, 1e-7f), 0,
+    EXPECT_THAT(mixture(sampled(), {.power = 0.42}).q, ElementsAre(0, FloatNear(0.12f, 1e-7f), FloatNear(0.12f, 1e-7f), 0,
                                                                  FloatNear(0.06f, 1e-7f), FloatNear(0.12f, 1e-7f)));
-    const std::vector<float> q = mixture(sampled(), {.power = 0.21, .driven_power = 0.285, .importance = 0.3375});
+    const std::vector<float> q = mixture(sampled(), {.power = 0.21, .driven_power = 0.285, .importance = 0.3375}).q;
     EXPECT_THAT(
         q, ElementsAre(0, FloatNear(0.06f + 0.06f, 1e-7f), FloatNear(0.06f + 0.18f + 0.15f, 1e-7f),
                        FloatNear(0.15f, 1e-7f), FloatNear(0.03f, 1e-7f), FloatNear(0.06f + 0.045f + 0.0375f, 1e-7f)));
@@ -77,14 +77,22 @@ TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
 
 TEST_F(Weights, ThatAre0EverywhereLeaveTheirShareToTheOthers) {
     importance_.assign(6, 0.0f);
-    EXPECT_EQ(mixture(sampled(), {.power = 0.5, .driven_power = 0.3, .importance = 0.2}),
-              mixture(sampled(), {.power = 0.5}));
+    EXPECT_EQ(mixture(sampled(), {.power = 0.5, .driven_power = 0.3, .importance = 0.2}).q,
+              mixture(sampled(), {.power = 0.5}).q);
+}
+
+TEST_F(Weights, CountTheLeavesOfWhichNothingFiniteCanBeShot) {
+    irradiance_[0].x = irradiance_[2].y = irradiance_[4].z = std::numeric_limits<float>::infinity();
+    const auto [q, lost_leaves] = mixture(sampled(), {.power = 1});
+    EXPECT_EQ(lost_leaves, 2) << "and the inner element is none";
+    EXPECT_EQ(q[2], 0);
+    EXPECT_EQ(q[4], 0);
 }
 
 TEST_F(Weights, AreFiniteShares) {
     irradiance_.assign(6, Rgb(std::numeric_limits<float>::max()));
     float sum = 0;
-    for (const float q : mixture(sampled(), {.power = 1})) sum += q;
+    for (const float q : mixture(sampled(), {.power = 1}).q) sum += q;
     EXPECT_FLOAT_EQ(sum, 1);
 }
 

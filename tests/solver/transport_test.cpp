@@ -34,7 +34,7 @@ struct Room {
     TransportStep step() {
         TransportStep step;
         step.light = light();
-        step.q = mixture({surfaces, forest, step.light, {}, {}}, {.power = 1});
+        step.q = mixture({surfaces, forest, step.light, {}, {}}, {.power = 1}).q;
         step.rays = rays;
         return step;
     }

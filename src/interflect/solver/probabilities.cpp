@@ -1,6 +1,7 @@
 #include "interflect/solver/probabilities.h"
 
 #include <cmath>
+#include <utility>
 
 #include "interflect/base/parallel.h"
 
@@ -24,10 +25,14 @@ T sum_over_leaves(const ElementForest& forest, const Body& body) {
 /// The weights of one element, or sums of them.
 struct Weights {
     double power = 0, driven_power = 0, importance = 0;
+    std::int64_t lost = 0;
 
     Weights() = default;
     Weights(const Sampled& s, const Shares& shares, std::uint32_t e) {
-        if (shares.power > 0 || shares.driven_power > 0) power = s.power(e);
+        if (shares.power > 0 || shares.driven_power > 0) {
+            power = s.power(e);
+            lost = power == 0 && s.light.is_lost(s.forest, e);
+        }
         if (shares.driven_power > 0) driven_power = power * s.driver[e];
         if (shares.importance > 0) importance = s.importance(e);
     }
@@ -35,13 +40,14 @@ struct Weights {
         power += other.power;
         driven_power += other.driven_power;
         importance += other.importance;
+        lost += other.lost;
         return *this;
     }
 };
 
 }  // namespace
 
-std::vector<float> mixture(const Sampled& sampled, const Shares& shares) {
+Mixture mixture(const Sampled& sampled, const Shares& shares) {
     const ElementForest& forest = sampled.forest;
     const auto sum = sum_over_leaves<Weights>(forest, [&](std::uint32_t e) { return Weights(sampled, shares, e); });
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
@@ -57,7 +63,7 @@ std::vector<float> mixture(const Sampled& sampled, const Shares& shares) {
                 static_cast<float>(for_power * w.power + for_driven * w.driven_power + for_importance * w.importance);
         }
     });
-    return q;
+    return {std::move(q), sum.lost};
 }
 
 std::vector<float> driving_importance(const ElementForest& forest, const Importance& importance, double from_parent,

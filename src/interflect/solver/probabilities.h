@@ -36,8 +36,12 @@ struct Shares {
     double power = 0, driven_power = 0, importance = 0;
 };
 
-/// q of every element, which sum to the shares that are used; 0 for inner ones.
-std::vector<float> mixture(const Sampled& sampled, const Shares& shares);
+/// Who gets rays.
+struct Mixture {
+    std::vector<float> q;        ///< Of every element, 0 for inner ones; they sum to the shares that are used.
+    std::int64_t lost_leaves = 0;  ///< Those whose radiosity is not finite: nothing is shot from there.
+};
+Mixture mixture(const Sampled& sampled, const Shares& shares);
 
 /// Importance as it should drive rays. That of a leaf comes from few rays, and where it is underestimated the few rays
 /// that start there carry much: so an element has the share `from_parent` of what its parent has here. And what a

@@ -67,17 +67,15 @@ void Receiver::add_pair(std::uint32_t source, const Ray& ray, const Parameters& 
     pair.y = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
     pair.receiver = {hit.patch, Cell()};
     if (!refines_) return;
-    const Cell whole;
-    parties_.receiver.set(i, geometry.point(whole.centre(geometry.is_triangle())), forest_.area(hit.patch));
     parties_.receiver.normal.set(i, geometry.normal());
     parties_.reflectance.set(i, surfaces_.reflectance(hit.patch));
-    parties_.importance[i] = step_.oracle.by_importance ? step_.oracle.importance[hit.patch] : 1;
+    parties_.importance[i] = 1;
     const Shooter& leaf = ways_.back();
     pair.way_end = static_cast<std::uint32_t>(ways_.size());
     pair.way = pair.way_end - 1 - static_cast<std::uint32_t>(forest_.level(leaf.place.element));
     pair.shooter = leaf.place;
     parties_.shooter.normal.set(i, leaf.party.normal);
-    set_shooter(i);
+    look_at_receiver(i);
 }
 
 /// Sends on what the group's rays carry, and begins a new one.
@@ -108,8 +106,12 @@ Receiver::Shooter Receiver::shooter_at(const PatchGeometry& geometry, const Plac
         place, {centre, geometry.normal(), forest_.area(place.element)}, step_.light.radiosity(forest_, place.element)};
 }
 
-void Receiver::set_shooter(std::size_t i) {
-    const Shooter& shooter = ways_[pairs_[i].way];
+/// Lets the pair's shooter be the largest element that holds the ray's start and is no larger than the receiver, or the
+/// leaf. Between larger ones and the receiver no verdict is asked for: what is received is the same for all of them.
+void Receiver::choose_shooter(std::size_t i) {
+    Pair& pair = pairs_[i];
+    while (pair.way + 1 < pair.way_end && ways_[pair.way].party.area > parties_.receiver.area[i]) ++pair.way;
+    const Shooter& shooter = ways_[pair.way];
     parties_.shooter.set(i, shooter.party.centre, shooter.party.area);
     const V3f reflectance = parties_.reflectance[i];
     parties_.reflected[i] = largest_channel(Rgb(reflectance * shooter.radiosity));
@@ -122,27 +124,20 @@ void Receiver::find_receivers() {
     std::iota(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(open), 0u);
     while (open > 0) {
         judge();
-        std::array<std::uint32_t, group_rays> by_receiver, by_shooter;
-        std::size_t receivers = 0, shooters = 0;
+        std::size_t rejected = 0, divided = 0;
         for (std::size_t k = 0; k < open; ++k) {
             const std::uint32_t i = open_[k];
-            const bool rejected = parties_.settled[i] == 0;
-            const bool shooter_is_larger = parties_.shooter.area[i] > parties_.receiver.area[i];
-            by_receiver[receivers] = by_shooter[shooters] = i;
-            receivers += rejected & !shooter_is_larger;
-            shooters += rejected & shooter_is_larger;
+            open_[rejected] = i;
+            rejected += parties_.settled[i] == 0;
         }
-        open = 0;
-        for (std::size_t k = 0; k < receivers; ++k) {
-            open_[open] = by_receiver[k];
-            open += divide_receiver(by_receiver[k]);
-        }
-        const std::size_t divided = open;
-        for (std::size_t k = 0; k < shooters; ++k) {
-            open_[open] = by_shooter[k];
-            open += divide_shooter(by_shooter[k]);
+        for (std::size_t k = 0; k < rejected; ++k) {
+            const std::uint32_t i = open_[k];
+            const bool by_shooter = parties_.shooter.area[i] > parties_.receiver.area[i];  // and it is a leaf, or new
+            open_[divided] = i;
+            divided += by_shooter ? divide_shooter(i) : divide_receiver(i);
         }
         for (std::size_t k = 0; k < divided; ++k) look_at_receiver(open_[k]);
+        open = divided;
     }
 }
 
@@ -172,23 +167,19 @@ bool Receiver::divide_receiver(std::size_t i) {
     return true;
 }
 
-/// Tells the oracle about the receiver.
+/// Tells the oracle about the pair's receiver and the shooter that goes with it.
 void Receiver::look_at_receiver(std::size_t i) {
     const Pair& pair = pairs_[i];
     const auto& [element, cell] = pair.receiver;
     parties_.receiver.set(i, pair.geometry->point(cell.centre(pair.geometry->is_triangle())), forest_.area(element));
     if (step_.oracle.by_importance && element < old_size_)  // a new element inherits
         parties_.importance[i] = step_.oracle.importance[element];
+    if (pair.shooter.element < old_size_) choose_shooter(i);
 }
 
-/// Likewise the shooter, of which the oracle is told at once. @return whether there is one.
+/// The shooter, which is a leaf, becomes its part that holds the ray's start. @return whether there is one.
 bool Receiver::divide_shooter(std::size_t i) {
     Pair& pair = pairs_[i];
-    if (pair.way + 1 < pair.way_end) {
-        ++pair.way;
-        set_shooter(i);
-        return true;
-    }
     const PatchGeometry& geometry = forest_.geometry(forest_.patch(pair.shooter.element));
     const std::uint32_t child = children_of(pair.shooter.element);
     if (child == none) return false;

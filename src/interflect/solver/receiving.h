@@ -96,7 +96,7 @@ class Receiver {
     void finish_group();
     void find_way_to_leaf(std::uint32_t leaf);
     Shooter shooter_at(const PatchGeometry& geometry, const Place& place) const;
-    void set_shooter(std::size_t i);
+    void choose_shooter(std::size_t i);
     void find_receivers();
     void judge();
     bool divide_receiver(std::size_t i);

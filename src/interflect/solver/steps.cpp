@@ -1,8 +1,8 @@
 #include "interflect/solver/steps.h"
 
 #include <cmath>
+#include <utility>
 
-#include "interflect/base/parallel.h"
 #include "interflect/solver/probabilities.h"
 
 namespace interflect {
@@ -30,15 +30,6 @@ Shares power_step_shares(const Solution& so_far, bool combined) {
         .power = for_power * o.beta, .driven_power = for_power * (1 - o.beta), .importance = combined ? o.alpha : 0};
 }
 
-std::int64_t count_lost(const ElementForest& forest, const Light& light) {
-    constexpr std::size_t at_once = 1 << 13;
-    return parallel_sum(forest.size(), at_once, std::int64_t{0}, [&](std::size_t begin, std::size_t end) {
-        std::int64_t lost = 0;
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) lost += light.is_lost(forest, e);
-        return lost;
-    });
-}
-
 }  // namespace
 
 ImportanceUse importance_use(const Solution& so_far) {
@@ -62,17 +53,18 @@ TransportStep power_step(const Surfaces& surfaces, Solution& so_far, const Light
     const std::vector<float> drives = shares.driven_power > 0 ? driver(so_far) : std::vector<float>();
     step.light = light;
     if (combined) step.importance = importance_of(so_far);
-    step.q = mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
+    auto [q, lost_leaves] = mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
+    step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;
-    so_far.non_finite += count_lost(*so_far.forest, light);
+    so_far.non_finite += lost_leaves;
     return step;
 }
 
 TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, const Importance& importance,
                               std::int64_t rays) {
     TransportStep step;
-    step.q = mixture({surfaces, *so_far.forest, {}, importance, {}}, {.importance = 1});
+    step.q = mixture({surfaces, *so_far.forest, {}, importance, {}}, {.importance = 1}).q;
     step.rays = rays;
     step.importance = importance;
     step.importance_at_patches = !so_far.options.importance_at_elements;

@@ -20,7 +20,7 @@ std::vector<float> total_importance(const Solution& so_far);
 /// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
 /// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
 /// alone. No oracle is set.
-/// @param so_far  Elements of which nothing can be shot, since it is not finite, are counted there.
+/// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
 /// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
 TransportStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
                          std::int64_t rays);

@@ -19,7 +19,7 @@ namespace interflect {
 namespace {
 
 /// Rays of one task: enough to hide the cost of a task, few enough to stay in the second-level cache.
-constexpr std::size_t batch_rays = 4096;
+constexpr std::size_t batch_rays = 1024;
 
 /// Keys of the random numbers, so that no two purposes share one.
 enum class Purpose : std::uint64_t { allocation = 1, sampling = 2 };

@@ -1,0 +1,57 @@
+"""The limit of memory: refinement ends before it is reached, and what `info` predicts is what a run takes."""
+
+import json
+import os
+import unittest
+
+from command import BAD_INPUT, COMMAND, DONE, CommandTest
+
+FINE = ("--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
+MIB = 1 << 20
+
+
+class MemoryLimit(CommandTest):
+    def peak(self, *arguments):
+        """Runs the command. @return its largest resident size [bytes] and what it said."""
+        said = self.folder / "said"
+        with open(said, "w") as stderr:
+            process = os.posix_spawn(
+                COMMAND,
+                [COMMAND, *arguments],
+                os.environ,
+                file_actions=[(os.POSIX_SPAWN_DUP2, stderr.fileno(), 2)],
+            )
+        _, status, usage = os.wait4(process, 0)
+        self.assertEqual(os.waitstatus_to_exitcode(status), DONE, said.read_text())
+        return usage.ru_maxrss * 1024, said.read_text()
+
+    def solve(self, *options):
+        stats = self.folder / "stats"
+        peak, said = self.peak(
+            "solve", "maze:2", "-o", str(self.folder / "out.h5"), "--stats", str(stats), *FINE, *options
+        )
+        return json.loads(stats.read_text().splitlines()[-1])["elements"], peak, said
+
+    def test_ends_refinement_and_says_so(self):
+        limit = 500 * MIB
+        elements, peak, said = self.solve("1e-12", "--memory", "500M")
+        self.assertIn("refinement ended at", said)
+        self.assertIn("--memory", said)
+        self.assertGreater(elements, 2_000_000)
+        self.assertLess(peak, limit)
+
+    def test_takes_what_info_predicts_for_each_element(self):
+        few, few_peak, _ = self.solve("1e-9")
+        many, many_peak, _ = self.solve("1e-12")
+        self.assertGreater(many, few + 2_000_000)
+        self.assertLess((many_peak - few_peak) / (many - few), self.json("info", "maze:2")["memory"]["per_element"])
+
+    def test_is_refused_where_not_even_the_patches_fit(self):
+        result = self.interflect("solve", "maze:2", "-o", "out.h5", "--memory", "50M", exit_code=BAD_INPUT)
+        self.assertIn("need", result.stderr)
+        self.assertIn("50 MiB", result.stderr)
+        self.assertEqual(self.files(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
