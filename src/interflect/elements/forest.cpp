@@ -6,6 +6,7 @@
 #include <cassert>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 namespace interflect {
 
@@ -108,7 +109,9 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
         if (parent >= generations_.back()) generations_.push_back(e);
     }
     if (last > first) generations_.push_back(last);
-    return renumbered;
+    std::vector<std::uint32_t> old_numbers = std::move(renumbered);  // the inverse, in the same memory
+    for (std::uint32_t i = 0; i < old_numbers.size(); ++i) old_numbers[i] = made[i / 4].first + i % 4;
+    return old_numbers;
 }
 
 std::uint32_t ElementForest::drop_last_siblings() {

@@ -70,7 +70,7 @@ class ElementForest {
 
     /// Renumbers the elements made since there were `first` of them, which threads made in any order, by level, patch
     /// and path. Call while no thread uses the forest.
-    /// @return  Their new numbers: element first + i becomes renumbered[i].
+    /// @return  Their old numbers: what is element first + i now was old_numbers[i].
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
     /// Takes back the last four siblings, which must be leaves: their parent is one again. Call while no thread uses

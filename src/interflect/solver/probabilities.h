@@ -38,7 +38,7 @@ struct Shares {
 
 /// Who gets rays.
 struct Mixture {
-    std::vector<float> q;        ///< Of every element, 0 for inner ones; they sum to the shares that are used.
+    std::vector<float> q;          ///< Of every element, 0 for inner ones; they sum to the shares that are used.
     std::int64_t lost_leaves = 0;  ///< Those whose radiosity is not finite: nothing is shot from there.
 };
 Mixture mixture(const Sampled& sampled, const Shares& shares);

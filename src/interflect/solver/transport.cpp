@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <span>
+#include <utility>
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
@@ -176,37 +177,47 @@ struct Batch {
     Receiver receiver;
 };
 
-/// Puts what arrived at elements that have been renumbered where it belongs.
-void renumber(Arrivals& arrivals, std::uint32_t first, const std::vector<std::uint32_t>& renumbered) {
-    std::vector<Arrivals::Load> moved(renumbered.size());
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[renumbered[i] - first] = arrivals[first + i];
-    for (std::size_t i = 0; i < moved.size(); ++i) arrivals[first + i] = moved[i];
-}
+/// What arrived at elements of which those from `old_size` on have got other numbers since.
+class Arrived {
+  public:
+    Arrived(Arrivals& arrivals, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
+        : arrivals_(arrivals), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
+
+    Arrivals::Load& operator[](std::uint32_t e) { return arrivals_[e < old_size_ ? e : old_numbers_[e - old_size_]]; }
+    void release(std::size_t begin, std::size_t end) {
+        if (end <= old_size_) arrivals_.release(begin, end);
+    }
+
+  private:
+    Arrivals& arrivals_;
+    std::uint32_t old_size_;
+    std::vector<std::uint32_t> old_numbers_;
+};
 
 /// Keeps the forest within the oracle's limit; what arrived at elements that are dropped arrives at their parents.
-void drop_excess(ElementForest& forest, Arrivals& arrivals, std::size_t most_elements, std::uint32_t old_size) {
+void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(most_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
         for (std::uint32_t e = first; e < first + 4; ++e)
-            for (std::size_t c = 0; c < arrivals[e].size(); ++c) arrivals[parent][c] += arrivals[e][c];
+            for (std::size_t c = 0; c < arrived[e].size(); ++c) arrived[parent][c] += arrived[e][c];
     }
 }
 
 /// Turns sums of arrivals into what each element receives, per unit of area, from its own and its ancestors' arrivals.
-void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrivals& arrivals,
+void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
     constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums fill a large page of 2 MiB
     if (step.carries_power()) received.irradiance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const auto& [red, green, blue, importance] = arrivals[e];
+            const auto& [red, green, blue, importance] = arrived[e];
             const float area = forest.area(e);
             if (step.carries_power()) received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
             if (step.carries_importance())
                 received.importance[e] = static_cast<float>(units.importance.to_number(importance) / area);
         }
-        arrivals.release(begin, end);
+        arrived.release(begin, end);
     });
     if (step.carries_power()) push(forest, received.irradiance), pull(forest, received.irradiance);
     if (step.carries_importance()) push(forest, received.importance), pull(forest, received.importance);
@@ -251,11 +262,11 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     }
 
     advance(streams, allocation, old_size);
-    renumber(arrivals, old_size, forest.put_in_order(old_size));
-    drop_excess(forest, arrivals, step.oracle.most_elements, old_size);
+    Arrived arrived(arrivals, old_size, forest.put_in_order(old_size));
+    drop_excess(forest, arrived, step.oracle.most_elements, old_size);
     step.q = std::vector<float>();  // what has served makes room for what is received
     step.oracle.importance = std::vector<float>();
-    collect(forest, step, units, arrivals, received);
+    collect(forest, step, units, arrived, received);
     received.shot_power = all.power;
     received.escaped_power = units.power.to_colour(escaped);
     return received;
