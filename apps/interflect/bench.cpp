@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
@@ -58,28 +59,38 @@ double median(std::vector<double> values) {
 
 /// What the solver traces when the light has already spread through the scene and the mesh is there.
 struct Workload {
+    Workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options)
+        : surfaces(scene),
+          solution(solve(scene, ray_caster, options)),
+          forest(std::const_pointer_cast<ElementForest>(solution.forest)),
+          streams(options.points, options.seed) {
+        if (!(channel_sum(solution.emitted_power) > 0))
+            throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
+        const bool combined = importance_use(solution) == ImportanceUse::full;
+        step = power_step(surfaces, solution, Light(surfaces, solution.irradiance), combined, options.rays);
+        if (options.method.refines) step.oracle = make_oracle(solution, step, options.rays, options.smallest_area);
+        step.oracle.most_elements = forest->size();
+        rays = transport_rays(*forest, ray_caster, step, streams);
+    }
+    Workload(const Workload&) = delete;  // the step refers to it
+    Workload& operator=(const Workload&) = delete;
+
     Surfaces surfaces;
     Solution solution;
+    std::shared_ptr<ElementForest> forest;  // the solution's, which no step makes larger
     TransportStep step;
     SampleStreams streams;
     std::vector<Ray> rays;
 };
 
-Workload typical_workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options) {
-    Workload work{Surfaces(scene), solve(scene, ray_caster, options), {}, {options.points, options.seed}, {}};
-    if (!(channel_sum(work.solution.emitted_power) > 0))
-        throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
-    const Light light(work.surfaces, work.solution.irradiance);
-    const bool combined = importance_use(work.solution) == ImportanceUse::full;
-    work.step = power_step(work.surfaces, work.solution, light, combined, options.rays);
-    work.rays = transport_rays(*work.solution.forest, ray_caster, work.step, work.streams);
-    return work;
-}
-
 struct Measurement {
     double ceiling = 0, solver = 0;                  // [rays/s], of one round
     std::array<double, interfaces.size()> embree{};  // [rays/s], each interface
-    double making_rays = 0, tracing = 0;             // each alone; shares of the solver's time
+    // Shares of the solver's time, each measured alone: rays are made, traced, taken to the leaves that they hit, or
+    // from there to the elements that the oracle chooses; the rest is what every iteration does for each element.
+    double making_rays = 0, tracing = 0, receiving = 0, refinement = 0;
+
+    double sweeps() const { return std::max(0.0, 1 - making_rays - tracing - receiving - refinement); }
 };
 
 /// Traces as the solver does: batches of rays, which become hits.
@@ -89,6 +100,14 @@ void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
         std::array<Hit, batch_rays> hits;
         ray_caster.trace(rays.subspan(begin, end - begin), std::span(hits).first(end - begin));
     });
+}
+
+/// One step of transport, on the mesh that is there and without making it finer.
+void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_oracle) {
+    TransportStep step = work.step;
+    step.oracle.refines = with_oracle && work.step.oracle.refines;
+    SampleStreams streams = work.streams;
+    transport(work.surfaces, *work.forest, ray_caster, std::move(step), streams);
 }
 
 /// Everything in one run, one after the other, since the speed of a machine changes with its load.
@@ -111,6 +130,10 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     m.making_rays =
         share(seconds_for([&] { transport_rays(*work.solution.forest, ray_caster, work.step, work.streams); }));
     m.tracing = share(seconds_for([&] { trace_in_batches(ray_caster, work.rays); }));
+    const double whole_step = share(seconds_for([&] { repeat_step(ray_caster, work, true); }));
+    const double without_oracle = share(seconds_for([&] { repeat_step(ray_caster, work, false); }));
+    m.receiving = std::max(0.0, without_oracle - m.making_rays - m.tracing);
+    m.refinement = std::max(0.0, whole_step - without_oracle);
     return m;
 }
 
@@ -123,27 +146,35 @@ void run(const BenchArguments& options) {
     solve_options.method = options.method.value_or(find_method(solve_options.views.empty() ? "hsrr" : "ihsrr"));
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
-    const Workload work = typical_workload(scene, ray_caster, solve_options);
+    const Workload work(scene, ray_caster, solve_options);
 
-    std::vector<double> ratios, ceilings, solvers, making_rays, tracing;
-    std::array<std::vector<double>, interfaces.size()> embree;
-    for (int round = 0; round < options.rounds; ++round) {
-        const Measurement m = measure(scene, ray_caster, work);
-        ratios.push_back(m.solver / m.ceiling);
-        ceilings.push_back(m.ceiling);
-        solvers.push_back(m.solver);
-        making_rays.push_back(m.making_rays);
-        tracing.push_back(m.tracing);
-        for (std::size_t i = 0; i < interfaces.size(); ++i) embree[i].push_back(m.embree[i]);
-    }
+    std::vector<Measurement> rounds;
+    rounds.reserve(static_cast<std::size_t>(options.rounds));
+    for (int round = 0; round < options.rounds; ++round) rounds.push_back(measure(scene, ray_caster, work));
+    const auto median_of = [&](const auto& figure) {
+        std::vector<double> values(rounds.size());
+        std::transform(rounds.begin(), rounds.end(), values.begin(), figure);
+        return median(values);
+    };
+    const double ratio = median_of([](const Measurement& m) { return m.solver / m.ceiling; });
+    const double ceiling = median_of([](const Measurement& m) { return m.ceiling; });
+    const double solver = median_of([](const Measurement& m) { return m.solver; });
+    std::array<double, interfaces.size()> embree;
+    for (std::size_t i = 0; i < interfaces.size(); ++i)
+        embree[i] = median_of([i](const Measurement& m) { return m.embree[i]; });
+    const std::array<std::pair<const char*, double>, 5> shares = {
+        {{"making_rays", median_of([](const Measurement& m) { return m.making_rays; })},
+         {"tracing", median_of([](const Measurement& m) { return m.tracing; })},
+         {"receiving", median_of([](const Measurement& m) { return m.receiving; })},
+         {"refinement", median_of([](const Measurement& m) { return m.refinement; })},
+         {"sweeps", median_of([](const Measurement& m) { return m.sweeps(); })}}};
 
-    const double making_share = median(making_rays), tracing_share = median(tracing);
-    const double rest = std::max(0.0, 1 - making_share - tracing_share);
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     if (options.json) {
         Json by_interface;
-        for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = median(embree[i]);
-        const Json shares{{"making_rays", making_share}, {"tracing", tracing_share}, {"rest", rest}};
+        for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = embree[i];
+        Json shares_of_time;
+        for (const auto& [name, share] : shares) shares_of_time[name] = share;
         const Json result{{"scene", scene.name},
                           {"patches", scene.patches.size()},
                           {"method", solve_options.method.name},
@@ -151,11 +182,11 @@ void run(const BenchArguments& options) {
                           {"threads", threads},
                           {"rays", options.rays},
                           {"rounds", options.rounds},
-                          {"ceiling_rays_per_second", median(ceilings)},
+                          {"ceiling_rays_per_second", ceiling},
                           {"embree", by_interface},
-                          {"solver_rays_per_second", median(solvers)},
-                          {"ratio", median(ratios)},
-                          {"shares_of_time", shares},
+                          {"solver_rays_per_second", solver},
+                          {"ratio", ratio},
+                          {"shares_of_time", shares_of_time},
                           {"ray_tracer_bytes", ray_caster.memory()}};
         std::cout << result.dump(2) << '\n';
         return;
@@ -163,11 +194,14 @@ void run(const BenchArguments& options) {
     fmt::print("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds\n", scene.name,
                solve_options.method.name, scene.patches.size(), work.solution.forest->size(), threads, options.rounds);
     for (std::size_t i = 0; i < interfaces.size(); ++i)
-        fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, median(embree[i]) / 1e6);
-    fmt::print("  whole solver          {:8.2f} M rays/s\n", median(solvers) / 1e6);
-    fmt::print("  solver over Embree    {:8.3f}\n", median(ratios));
-    fmt::print("  of the solver's time  {:.0f}% making rays, {:.0f}% tracing, {:.0f}% the rest\n", 100 * making_share,
-               100 * tracing_share, 100 * rest);
+        fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, embree[i] / 1e6);
+    fmt::print("  whole solver          {:8.2f} M rays/s\n", solver / 1e6);
+    fmt::print("  solver over Embree    {:8.3f}\n", ratio);
+    fmt::print(
+        "  of the solver's time  {:.0f}% making rays, {:.0f}% tracing, {:.0f}% receiving, {:.0f}% refinement, "
+        "{:.0f}% sweeps over the elements\n",
+        100 * shares[0].second, 100 * shares[1].second, 100 * shares[2].second, 100 * shares[3].second,
+        100 * shares[4].second);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 namespace interflect::command {
 
 /// Solves with progress on stderr, Ctrl-C heeded and statistics written: what `solve` and `render` share.
-/// @param options  command.resolved().
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
+/// @param asked_for  command.resolved().
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,
                    const SolverOptions& command);
 
 }  // namespace interflect::command

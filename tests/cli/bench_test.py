@@ -13,7 +13,7 @@ class Bench(CommandTest):
         report = self.json("bench", "room.mgf", *self.TINY)
         for key in ("ceiling_rays_per_second", "solver_rays_per_second", "ratio"):
             self.assertGreater(report[key], 0, key)
-        self.assertEqual(set(report["shares_of_time"]), {"making_rays", "tracing", "rest"})
+        self.assertEqual(set(report["shares_of_time"]), {"making_rays", "tracing", "receiving", "refinement", "sweeps"})
         self.assertEqual((report["patches"], report["threads"], report["rays"]), (13, 1, 20_000))
         self.assertGreaterEqual(report["ceiling_rays_per_second"], min(report["embree"].values()))
 

@@ -67,8 +67,9 @@ TEST_F(Weights, OfPowerThatIsDrivenAreTheProduct) {
 
 TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
     using testing::FloatNear;
-    EXPECT_THAT(mixture(sampled(), {.power = 0.42}).q, ElementsAre(0, FloatNear(0.12f, 1e-7f), FloatNear(0.12f, 1e-7f), 0,
-                                                                 FloatNear(0.06f, 1e-7f), FloatNear(0.12f, 1e-7f)));
+    EXPECT_THAT(mixture(sampled(), {.power = 0.42}).q,
+                ElementsAre(0, FloatNear(0.12f, 1e-7f), FloatNear(0.12f, 1e-7f), 0, FloatNear(0.06f, 1e-7f),
+                            FloatNear(0.12f, 1e-7f)));
     const std::vector<float> q = mixture(sampled(), {.power = 0.21, .driven_power = 0.285, .importance = 0.3375}).q;
     EXPECT_THAT(
         q, ElementsAre(0, FloatNear(0.06f + 0.06f, 1e-7f), FloatNear(0.06f + 0.18f + 0.15f, 1e-7f),

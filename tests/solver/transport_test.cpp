@@ -223,6 +223,30 @@ TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
     EXPECT_LT(smallest, 4 * smallest_area) << "everything is divided as far as it may";
 }
 
+/// Elements after a step in a box that radiates so much.
+std::uint32_t elements_under(const Rgb& exitance, float threshold) {
+    Room room(closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), exitance}}));
+    const std::vector<Rgb> darkness(room.forest.size(), Rgb(0));
+    TransportStep step = room.step();
+    step.light = Light(room.surfaces, darkness);
+    step.oracle.refines = true;
+    step.oracle.threshold = threshold;
+    step.oracle.smallest_area = 1e-6f;
+    SampleStreams streams = streams_of(1);
+    room.receive(streams, step);
+    return room.forest.size();
+}
+
+TEST(Transport, RefinesByTheChannelThatBringsMost) {
+    const std::uint32_t elements = elements_under(Rgb(8), 1e-3f);
+    EXPECT_GT(elements, 1000u);
+    EXPECT_EQ(elements_under(Rgb(8, 0, 0), 1e-3f), elements);
+    EXPECT_EQ(elements_under(Rgb(0, 8, 3), 1e-3f), elements);
+    EXPECT_EQ(elements_under(Rgb(1, 2, 8), 1e-3f), elements);
+    EXPECT_LT(elements_under(Rgb(4), 1e-3f), elements);
+    EXPECT_EQ(elements_under(Rgb(4), 0.5e-3f), elements) << "what counts is their ratio";
+}
+
 TEST(Transport, StopsRefiningWhereTheForestIsFull) {
     const Scene scene = furnished_room();
     Room room(scene, scene.patches.size() + 41);

@@ -16,11 +16,9 @@ inline void Receiver::go_down(Place& place, std::uint32_t first_child, Parameter
 
 void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
                     std::span<const Parameters> origins, std::span<const Hit> hits) {
-    constexpr std::size_t ahead = 16;  // rays, whose patches are fetched meanwhile
     const std::uint32_t source = sorter_.add_source(load);
     bool way_is_known = false;
     for (std::size_t r = 0; r < rays.size(); ++r) {
-        if (r + ahead < rays.size() && hits[r + ahead].patch != none) prefetch_patch(hits[r + ahead].patch);
         if (hits[r].patch == none) {
             for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += load[c];
             ++escaped_.rays;
@@ -37,12 +35,13 @@ void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<co
     }
 }
 
-/// Tells the processor that add_pair() will ask for a patch.
-void Receiver::prefetch_patch(std::uint32_t patch) const {
-    forest_.prefetch(patch);
-    forest_.prefetch_geometry(patch);
-    surfaces_.prefetch(patch);
-    if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[patch]);
+void Receiver::prefetch(const Hit& hit) const {
+    if (hit.patch == none) return;
+    forest_.prefetch(hit.patch);
+    if (!refines_) return;
+    forest_.prefetch_geometry(hit.patch);
+    surfaces_.prefetch(hit.patch);
+    if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[hit.patch]);
 }
 
 void Receiver::finish_batch() {

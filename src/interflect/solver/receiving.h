@@ -38,6 +38,8 @@ class Receiver {
     /// Takes rays of one leaf. @param load  What each carries. @param origins  Their parameters on the leaf's patch.
     void take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
               std::span<const Parameters> origins, std::span<const Hit> hits);
+    /// Tells the processor that a ray will be taken soon.
+    void prefetch(const Hit& hit) const;
     /// To be called at the end of a task: rays must not wait for those of another.
     void finish_batch();
     /// To be called at the end. @return What escaped from this thread's rays.
@@ -91,7 +93,6 @@ class Receiver {
     };
 
     static void go_down(Place& place, std::uint32_t first_child, Parameters p, bool triangle);
-    void prefetch_patch(std::uint32_t patch) const;
     void add_pair(std::uint32_t source, const Ray& ray, const Parameters& origin, const Hit& hit);
     void finish_group();
     void find_way_to_leaf(std::uint32_t leaf);

@@ -21,6 +21,8 @@ namespace {
 
 /// Rays of one task: enough to hide the cost of a task, few enough to stay in the second-level cache.
 constexpr std::size_t batch_rays = 1024;
+/// How far ahead of the rays under way the patches that others hit are asked for.
+constexpr std::size_t rays_ahead = 32;
 
 /// Keys of the random numbers, so that no two purposes share one.
 enum class Purpose : std::uint64_t { allocation = 1, sampling = 2 };
@@ -248,10 +250,14 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), shot);
         hits.resize(shot.rays.size());
         ray_caster.trace(shot.rays, hits);
-        for (const auto& [leaf, first, last] : shot.sources)
+        std::size_t fetched = 0;
+        for (const auto& [leaf, first, last] : shot.sources) {
+            const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size());
+            for (; fetched < fetch; ++fetched) receiver.prefetch(hits[fetched]);
             receiver.take(leaf, units.load(step, carried, leaf), std::span(shot.rays).subspan(first, last - first),
                           std::span(shot.origins).subspan(first, last - first),
                           std::span(hits).subspan(first, last - first));
+        }
         receiver.finish_batch();
     });
     FixedPoint::Value escaped{};
