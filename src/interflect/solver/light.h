@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "interflect/base/colour.h"
+#include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/surfaces.h"
 
@@ -40,12 +42,15 @@ class Light {
     bool emits_ = false;
 };
 
-/// What leaves all patches together [lm or W], in their order and double precision: the same for any number of threads.
+/// What leaves all patches together [lm or W], in double precision and always in the same order.
 inline RgbD radiated_power(const ElementForest& forest, const Light& light) {
-    RgbD sum(0, 0, 0);
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i)
-        sum += RgbD(light.radiosity(forest, i)) * static_cast<double>(forest.area(i));
-    return sum;
+    constexpr std::size_t at_once = 1 << 13;
+    return parallel_sum(forest.patch_count(), at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
+        RgbD sum(0);
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+            sum += RgbD(light.radiosity(forest, i)) * static_cast<double>(forest.area(i));
+        return sum;
+    });
 }
 
 /// Importance per area of the elements of a forest [1/m^2], as the sum of two parts.

@@ -94,7 +94,9 @@ std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
         TransportStep step = power_step(run.surfaces, solution, unshot, false, budget.next(left));
         received = run_step(run, std::move(step));
         escaped_power += received.escaped_power;
-        for (std::uint32_t e = 0; e < run.forest->size(); ++e) solution.irradiance[e] += received.irradiance[e];
+        parallel_for_ranges(solution.irradiance.size(), std::size_t{1} << 13, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t e = begin; e < end; ++e) solution.irradiance[e] += received.irradiance[e];
+        });
         unshot = Light(run.surfaces, received.irradiance, false);
         left = channel_sum(radiated_power(*run.forest, unshot)) / emitted;
     }

@@ -51,7 +51,7 @@ void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_cast
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
-    constexpr std::size_t points_at_once = 4096;
+    constexpr std::size_t points_at_once = 4096, elements_at_once = 1 << 13;
     if (!at_patches)
         parallel_for_ranges(points_.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
             for (Point& p : std::span(points_).subspan(begin, end - begin))
@@ -60,7 +60,10 @@ std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at
     std::vector<float> v(forest.size(), 0.0f);
     for (const Point& p : points_) v[at_patches ? p.patch : p.leaf] += p.share;
     const double per_share = 1 / shares_;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) v[e] = static_cast<float>(v[e] * per_share / forest.area(e));
+    parallel_for_ranges(v.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+            v[e] = static_cast<float>(v[e] * per_share / forest.area(e));
+    });
     push(forest, v);
     pull(forest, v);
     return v;
