@@ -13,6 +13,9 @@
 
 namespace interflect {
 
+/// Elements of one task of a sweep over all of them (parallel_for_ranges).
+inline constexpr std::size_t elements_at_once = 1 << 13;
+
 /// Quadtrees of elements over the patches of a scene: element i < patch_count() is patch i whole; children come in
 /// blocks of four, after their parents. 32-bit indices; 11 bytes an element: what the way down a tree looks at for
 /// each, the rest for each block. Threads may subdivide while others walk the trees; what they made gets its final

@@ -44,8 +44,7 @@ class Light {
 
 /// What leaves all patches together [lm or W], in double precision and always in the same order.
 inline RgbD radiated_power(const ElementForest& forest, const Light& light) {
-    constexpr std::size_t at_once = 1 << 13;
-    return parallel_sum(forest.patch_count(), at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(forest.patch_count(), elements_at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
             sum += RgbD(light.radiosity(forest, i)) * static_cast<double>(forest.area(i));

@@ -9,8 +9,6 @@ namespace interflect {
 
 namespace {
 
-constexpr std::size_t elements_at_once = 1 << 13;
-
 /// Sum of body(e) over the leaves, in double precision and always in the same order.
 template <class T, class Body>
 T sum_over_leaves(const ElementForest& forest, const Body& body) {

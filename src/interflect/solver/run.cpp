@@ -94,7 +94,7 @@ std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
         TransportStep step = power_step(run.surfaces, solution, unshot, false, budget.next(left));
         received = run_step(run, std::move(step));
         escaped_power += received.escaped_power;
-        parallel_for_ranges(solution.irradiance.size(), std::size_t{1} << 13, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(solution.irradiance.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
             for (std::size_t e = begin; e < end; ++e) solution.irradiance[e] += received.irradiance[e];
         });
         unshot = Light(run.surfaces, received.irradiance, false);
@@ -162,7 +162,6 @@ void start_incrementally(Run& run) {
 }
 
 void estimate_error(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays) {
-    constexpr std::size_t at_once = 1 << 13;
     const Solution& solution = run.solution;
     const ElementForest& forest = *run.forest;
     const bool has_view = !run.view.empty();
@@ -188,8 +187,8 @@ void estimate_error(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays) 
         }
         return sums;
     };
-    run.error.add(parallel_sum(forest.size(), at_once, ErrorEstimate::Sums(), add_some), run.schedule.averaged_rays(),
-                  rays);
+    run.error.add(parallel_sum(forest.size(), elements_at_once, ErrorEstimate::Sums(), add_some),
+                  run.schedule.averaged_rays(), rays);
 }
 
 void report(Run& run, int iteration, const RgbD& escaped_power) {

@@ -18,8 +18,6 @@ namespace interflect {
 
 namespace {
 
-constexpr std::size_t elements_at_once = 1 << 13;
-
 void require_valid(const Scene& scene, const SolveOptions& o) {
     std::vector<std::string> faults = scene_faults(scene);
     const auto require = [&](bool holds, const char* message) {

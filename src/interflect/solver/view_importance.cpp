@@ -51,7 +51,7 @@ void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_cast
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
-    constexpr std::size_t points_at_once = 4096, elements_at_once = 1 << 13;
+    constexpr std::size_t points_at_once = 4096;
     if (!at_patches)
         parallel_for_ranges(points_.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
             for (Point& p : std::span(points_).subspan(begin, end - begin))
