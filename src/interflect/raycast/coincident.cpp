@@ -54,12 +54,15 @@ CoincidentFaces::Winner::Winner(const Scene& scene, std::uint32_t face, float ma
     const std::vector<V3f> vertices = corners(scene, scene.patches[face]);
     normal = PatchGeometry(scene, scene.patches[face]).normal();
     origin = vertices[0];
-    for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t i = 0; i < inward.x.size(); ++i) {
         const std::size_t a = i % vertices.size(),
                           b = (i + 1) % vertices.size();  // a triangle's first edge comes twice
         const V3d along = V3d(vertices[b]) - V3d(vertices[a]);
-        const V3d inward = V3d(normal).cross(along).normalized();
-        edges[i] = {V3f(inward), static_cast<float>(inward.dot(V3d(vertices[a]) - V3d(origin))) - margin};
+        const V3d n = V3d(normal).cross(along).normalized();
+        inward.x[i] = static_cast<float>(n.x);
+        inward.y[i] = static_cast<float>(n.y);
+        inward.z[i] = static_cast<float>(n.z);
+        inward.offset[i] = static_cast<float>(n.dot(V3d(vertices[a]) - V3d(origin))) - margin;
     }
 }
 
@@ -69,13 +72,13 @@ std::uint32_t CoincidentFaces::Winner::side_towards(const V3f& direction) const 
 
 bool CoincidentFaces::Winner::answers(const V3f& x, const V3f& direction) const {
     const V3f d = x - origin;
-    return side_towards(direction) != none && std::all_of(edges.begin(), edges.end(), [&](const HalfPlane& edge) {
-               return edge.inward.dot(d) >= edge.offset;
-           });
+    int inside = 0;
+    for (std::size_t i = 0; i < inward.x.size(); ++i)
+        inside += inward.x[i] * d.x + inward.y[i] * d.y + inward.z[i] * d.z >= inward.offset[i];
+    return inside == 4 && side_towards(direction) != none;
 }
 
-CoincidentFaces::CoincidentFaces(const Scene& scene, float tolerance)
-    : hidden_(scene.patches.size()), contested_(scene.patches.size()) {
+CoincidentFaces::CoincidentFaces(const Scene& scene, float tolerance) : hidden_(scene.patches.size()) {
     const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene);
     hide_duplicates(scene, rank);
     find_stand_ins(scene, rank, tolerance);
@@ -128,11 +131,11 @@ void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::ui
     std::sort(pairs.begin(), pairs.end(), [&](const Decided& a, const Decided& b) {
         return std::tie(a.loser, rank[a.winner]) < std::tie(b.loser, rank[b.winner]);
     });
+    std::vector<std::uint32_t> losers;
     for (const auto [loser, winner] : pairs) {
-        if (losers_.empty() || losers_.back() != loser) {
-            losers_.push_back(loser);
-            first_.push_back(stand_ins_.size());
-            contested_[loser] = true;
+        if (losers.empty() || losers.back() != loser) {
+            if (!losers.empty()) first_.push_back(stand_ins_.size());
+            losers.push_back(loser);
         }
         Imath::Box3f box;
         for (const V3f& corner : corners(scene, scene.patches[winner])) box.extendBy(corner);
@@ -142,12 +145,13 @@ void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::ui
         stand_ins_.push_back({box, static_cast<std::uint32_t>(index)});
     }
     first_.push_back(stand_ins_.size());
-    for (std::size_t i = 0; i < losers_.size(); ++i)
+    contested_ = RankedBits(scene.patches.size(), losers);
+    for (std::size_t i = 0; i < losers.size(); ++i)
         arrange_box_tree(std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]));
 }
 
 const CoincidentFaces::Winner* CoincidentFaces::stand_in(std::uint32_t face, const V3f& x, const V3f& direction) const {
-    const auto i = static_cast<std::size_t>(std::lower_bound(losers_.begin(), losers_.end(), face) - losers_.begin());
+    const std::size_t i = contested_.rank(face);
     std::uint32_t best = none;
     visit_box_tree(
         std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]),
@@ -171,9 +175,8 @@ std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x,
 }
 
 std::size_t CoincidentFaces::memory() const {
-    return (hidden_.capacity() + contested_.capacity()) / 8 + winners_.capacity() * sizeof(Winner) +
-           losers_.capacity() * sizeof(std::uint32_t) + first_.capacity() * sizeof(std::size_t) +
-           stand_ins_.capacity() * sizeof(Boxed);
+    return hidden_.capacity() / 8 + contested_.memory() + winners_.capacity() * sizeof(Winner) +
+           first_.capacity() * sizeof(std::size_t) + stand_ins_.capacity() * sizeof(Boxed);
 }
 
 }  // namespace interflect

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interflect/raycast/box_tree.h"
+#include "interflect/raycast/ranked_bits.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {
@@ -22,8 +23,8 @@ namespace interflect {
 /// the other's, and all of what they share lies within `tolerance` of the larger one's plane; or where they have the
 /// same corners. Faces that share an edge only do not.
 ///
-/// A face is named by its patch, of a two-sided one by the first. Memory: 2 bits a patch where nothing coincides, 96
-/// bytes more for each face that others give way to, 28 for each pair.
+/// A face is named by its patch, of a two-sided one by the first. Memory: a bit a patch where nothing coincides, else
+/// 3, and 96 bytes more for each face that others give way to, 28 for each pair.
 class CoincidentFaces {
   public:
     /// Finds all that coincide: O(n log n) for n patches of which each overlaps a bounded number of others.
@@ -42,7 +43,7 @@ class CoincidentFaces {
     std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction) const;
 
     std::size_t hidden_count() const { return hidden_count_; }
-    std::size_t contested_count() const { return losers_.size(); }
+    std::size_t contested_count() const { return first_.size() - 1; }
     std::size_t pair_count() const { return stand_ins_.size(); }  ///< Overlapping faces, without the hidden ones.
     std::size_t memory() const;                                   ///< [bytes]
 
@@ -57,22 +58,21 @@ class CoincidentFaces {
 
         std::uint32_t front, back;  // back: none for a one-sided face
         V3f origin, normal;
-        struct HalfPlane {
-            V3f inward;
-            float offset;  // inside: inward . (x - origin) >= offset
+        struct HalfPlanes {  // inside: inward . (x - origin) >= offset; an array for each number, to ask all at once
+            std::array<float, 4> x, y, z, offset;
         };
-        std::array<HalfPlane, 4> edges;
+        HalfPlanes inward;
     };
 
     void hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank);
     void find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank, float tolerance);
     const Winner* stand_in(std::uint32_t face, const V3f& x, const V3f& direction) const;
 
-    std::vector<bool> hidden_, contested_;  // by patch
+    std::vector<bool> hidden_;  // by patch
+    RankedBits contested_;      // likewise: the losers
     std::size_t hidden_count_ = 0;
     std::vector<Winner> winners_;        // by rank: of two, the first answers
-    std::vector<std::uint32_t> losers_;  // the contested faces, ascending
-    std::vector<std::size_t> first_;     // of each loser in stand_ins_, and the end
+    std::vector<std::size_t> first_{0};  // of each loser in stand_ins_, and the end
     std::vector<Boxed> stand_ins_;       // of each loser a tree of those that it gives way to: indices of winners_
 };
 

@@ -96,7 +96,7 @@ struct RayCaster::Embree {
 
     void add_faces(const Scene& source, Faces faces);
     void commit();
-    Hit first_hit(EmbreeContext& context, const Ray& ray) const;
+    Hit hit_of(const Ray& ray, const RTCRayHit& query) const;
 };
 
 }  // namespace interflect

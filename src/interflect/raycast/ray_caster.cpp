@@ -88,9 +88,7 @@ void RayCaster::Embree::commit() {
     rtcCommitScene(scene);
 }
 
-Hit RayCaster::Embree::first_hit(EmbreeContext& context, const Ray& ray) const {
-    RTCRayHit query = embree_query(ray);
-    context.intersect(scene, query);
+Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const Faces& faces = geometries[query.hit.geomID];
     const std::uint32_t front = faces.fronts[query.hit.primID];
@@ -123,8 +121,15 @@ RayCaster::RayCaster(const Scene& scene) : lift_(relative_lift * largest_coordin
 RayCaster::~RayCaster() = default;
 
 void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
+    constexpr std::size_t at_once = 32;
     EmbreeContext context;
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = embree_->first_hit(context, rays[i]);
+    std::array<RTCRayHit, at_once> queries;
+    for (std::size_t begin = 0; begin < rays.size(); begin += at_once) {
+        const std::size_t count = std::min(at_once, rays.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) queries[i] = embree_query(rays[begin + i]);
+        for (std::size_t i = 0; i < count; ++i) context.intersect(embree_->scene, queries[i]);
+        for (std::size_t i = 0; i < count; ++i) hits[begin + i] = embree_->hit_of(rays[begin + i], queries[i]);
+    }
 }
 
 std::size_t RayCaster::memory() const {
