@@ -26,8 +26,10 @@ struct Cell {
     unsigned child_at(Parameters p, bool triangle) const {
         const float per_size = 1 / size;  // exact: a power of two
         const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;
-        if (!triangle) return static_cast<unsigned>(s >= 0.5f) | static_cast<unsigned>(t >= 0.5f) << 1;
-        return s >= 0.5f ? 1 : t >= 0.5f ? 2 : s + t < 0.5f ? 0 : 3;
+        const bool right = s >= 0.5f, upper = t >= 0.5f, central = triangle & !right & !upper & (s + t >= 0.5f);
+        // Bits in place of branches, which nobody could predict: of a triangle's children none is both.
+        const unsigned k = static_cast<unsigned>(right) | static_cast<unsigned>(upper & !(triangle & right)) << 1;
+        return central ? 3 : k;
     }
 };
 

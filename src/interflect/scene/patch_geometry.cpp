@@ -22,13 +22,13 @@ float warp_linear(float a, float b, float uniform) {
 
 PatchGeometry::PatchGeometry(const Scene& scene, const Patch& patch) : triangle_(patch.is_triangle()) {
     const auto vertex = [&](int i) { return scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]; };
-    origin_ = vertex(0);
-    edge_u_ = vertex(1) - origin_;
-    edge_v_ = vertex(triangle_ ? 2 : 3) - origin_;
-    if (!triangle_) twist_ = vertex(2) - vertex(1) - edge_v_;
+    shape_.origin = vertex(0);
+    shape_.edge_u = vertex(1) - shape_.origin;
+    shape_.edge_v = vertex(triangle_ ? 2 : 3) - shape_.origin;
+    if (!triangle_) shape_.twist = vertex(2) - vertex(1) - shape_.edge_v;
 
     if (triangle_) {
-        const V3f n = edge_u_.cross(edge_v_);
+        const V3f n = shape_.edge_u.cross(shape_.edge_v);
         normal_ = n.normalized();
         jacobian_ = {n.length(), 0, 0};
         area_ = 0.5f * n.length();
@@ -39,19 +39,22 @@ PatchGeometry::PatchGeometry(const Scene& scene, const Patch& patch) : triangle_
         normal_ = n.normalized();
         area_ = n.length();
         // normal . (dx/du x dx/dv); the u v term vanishes for a planar quadrilateral.
-        jacobian_ = {normal_.dot(edge_u_.cross(edge_v_)), normal_.dot(edge_u_.cross(twist_)),
-                     normal_.dot(twist_.cross(edge_v_))};
-        parallelogram_ = twist_.length() <= parallelogram_tolerance * (edge_u_.length() + edge_v_.length());
+        jacobian_ = {normal_.dot(shape_.edge_u.cross(shape_.edge_v)), normal_.dot(shape_.edge_u.cross(shape_.twist)),
+                     normal_.dot(shape_.twist.cross(shape_.edge_v))};
+        parallelogram_ =
+            shape_.twist.length() <= parallelogram_tolerance * (shape_.edge_u.length() + shape_.edge_v.length());
     }
-    const V3f n = edge_u_.cross(edge_v_);
+    const V3f n = shape_.edge_u.cross(shape_.edge_v);
     const float n2 = n.length2();
     if (n2 > 0) {
-        inverse_u_ = edge_v_.cross(n) / n2;
-        inverse_v_ = n.cross(edge_u_) / n2;
+        inverse_u_ = shape_.edge_v.cross(n) / n2;
+        inverse_v_ = n.cross(shape_.edge_u) / n2;
     }
 }
 
-V3f PatchGeometry::centre() const { return triangle_ ? origin_ + (edge_u_ + edge_v_) / 3.0f : point({0.5f, 0.5f}); }
+V3f PatchGeometry::centre() const {
+    return triangle_ ? shape_.origin + (shape_.edge_u + shape_.edge_v) / 3.0f : point({0.5f, 0.5f});
+}
 
 float PatchGeometry::jacobian(Parameters p) const { return jacobian_[0] + p.u * jacobian_[1] + p.v * jacobian_[2]; }
 
@@ -75,13 +78,13 @@ Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner
 }
 
 Parameters PatchGeometry::parameters_of(const V3f& x) const {
-    const V3f d = x - origin_;
+    const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
     if (!parallelogram_) {
         // Newton's method on the bilinear map, in the plane; it starts close and a handful of steps reach rounding.
         for (int step = 0; step < 8; ++step) {
-            const V3f residual = d - (p.u * edge_u_ + p.v * edge_v_ + (p.u * p.v) * twist_);
-            const V3f du = edge_u_ + p.v * twist_, dv = edge_v_ + p.u * twist_;
+            const V3f residual = d - (p.u * shape_.edge_u + p.v * shape_.edge_v + (p.u * p.v) * shape_.twist);
+            const V3f du = shape_.edge_u + p.v * shape_.twist, dv = shape_.edge_v + p.u * shape_.twist;
             const V3f n = du.cross(dv);
             const float n2 = n.length2();
             if (!(n2 > 0)) break;

@@ -16,6 +16,13 @@ struct Parameters {
 /// The geometry of one patch, gathered for repeated use: sampling, areas of cells, parameters of a point.
 class PatchGeometry {
   public:
+    /// x = origin + u edge_u + v edge_v + u v twist.
+    struct Shape {
+        V3f origin, edge_u, edge_v, twist{0, 0, 0};
+
+        V3f point(Parameters p) const { return origin + p.u * edge_u + p.v * edge_v + (p.u * p.v) * twist; }
+    };
+
     PatchGeometry() = default;
     PatchGeometry(const Scene& scene, const Patch& patch);
 
@@ -24,7 +31,8 @@ class PatchGeometry {
     bool is_triangle() const { return triangle_; }
     V3f centre() const;  ///< Mean of the vertices [m].
 
-    V3f point(Parameters p) const { return origin_ + p.u * edge_u_ + p.v * edge_v_ + (p.u * p.v) * twist_; }
+    const Shape& shape() const { return shape_; }
+    V3f point(Parameters p) const { return shape_.point(p); }
 
     /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the area of the
     /// patch, or of the part of it that corner + size (s, t) covers, where (s, t) runs over the patch's parameter
@@ -39,7 +47,7 @@ class PatchGeometry {
     float jacobian(Parameters p) const;
 
   private:
-    V3f origin_, edge_u_, edge_v_, twist_{0, 0, 0};  // x = origin + u edge_u + v edge_v + u v twist
+    Shape shape_;
     V3f normal_;
     V3f inverse_u_, inverse_v_;        // rows of the inverse of (edge_u edge_v), for parallelograms
     std::array<float, 3> jacobian_{};  // constant, u and v coefficients [m^2]

@@ -25,14 +25,19 @@ class Light {
 
     /// B, or 0 where it is not finite.
     Rgb radiosity(const ElementForest& forest, std::uint32_t e) const {
-        const Rgb b = as_it_is(forest, e);
+        return radiosity(surfaces_->material(forest.patch(e)), e);
+    }
+    /// The same, of an element whose material is known.
+    Rgb radiosity(const Material& material, std::uint32_t e) const {
+        const Rgb b = as_it_is(material, e);
         return is_finite(b) ? b : Rgb(0);
     }
-    bool is_lost(const ElementForest& forest, std::uint32_t e) const { return !is_finite(as_it_is(forest, e)); }
+    bool is_lost(const ElementForest& forest, std::uint32_t e) const {
+        return !is_finite(as_it_is(surfaces_->material(forest.patch(e)), e));
+    }
 
   private:
-    Rgb as_it_is(const ElementForest& forest, std::uint32_t e) const {
-        const Material& material = surfaces_->material(forest.patch(e));
+    Rgb as_it_is(const Material& material, std::uint32_t e) const {
         const Rgb reflected = material.reflectance * irradiance_[e];
         return emits_ ? material.exitance + reflected : reflected;
     }

@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <utility>
 
 namespace interflect {
 
-/// Goes to the child that holds p, of the four from `first_child` on.
-inline void Receiver::go_down(Place& place, std::uint32_t first_child, Parameters p, bool triangle) {
-    const unsigned k = place.cell.child_at(p, triangle);
-    place.cell = place.cell.child(k, triangle);
-    place.element = first_child + k;
-}
-
 void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
                     std::span<const Parameters> origins, std::span<const Hit> hits) {
     const std::uint32_t source = sorter_.add_source(load);
-    bool way_is_known = false;
+    bool way_is_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += load[c];
@@ -25,12 +17,9 @@ void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<co
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
             sorter_.add(hits[r].patch, source, true, true);
         } else {
-            if (count_ == group_rays) {
-                finish_group();
-                way_is_known = false;
-            }
-            if (refines_ && !std::exchange(way_is_known, true)) find_way_to_leaf(leaf);
-            add_pair(source, rays[r], origins[r], hits[r]);
+            while (open_count_ == lanes) advance();
+            if (!std::exchange(way_is_known, true)) find_way_to_leaf(leaf);
+            set_out(source, rays[r], origins[r], hits[r]);
         }
     }
 }
@@ -45,7 +34,8 @@ void Receiver::prefetch(const Hit& hit) const {
 }
 
 void Receiver::finish_batch() {
-    finish_group();
+    while (open_count_ > 0) advance();
+    ways_.clear();
     sorter_.forget_sources();
 }
 
@@ -54,137 +44,185 @@ Escaped Receiver::finish() {
     return std::exchange(escaped_, {});
 }
 
-/// Begins at the patches of both ends; the shooter's way is the last in ways_.
-void Receiver::add_pair(std::uint32_t source, const Ray& ray, const Parameters& origin, const Hit& hit) {
-    const std::size_t i = count_++;
-    const PatchGeometry& geometry = forest_.geometry(hit.patch);
-    Pair& pair = pairs_[i];
-    pair.geometry = &geometry;
-    pair.patch = hit.patch;
-    pair.source = source;
-    pair.x = origin;
-    pair.y = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
-    pair.receiver = {hit.patch, Cell()};
-    if (!refines_) return;
-    parties_.receiver.normal.set(i, geometry.normal());
-    parties_.reflectance.set(i, surfaces_.reflectance(hit.patch));
-    parties_.importance[i] = 1;
-    const Shooter& leaf = ways_.back();
-    pair.way_end = static_cast<std::uint32_t>(ways_.size());
-    pair.way = pair.way_end - 1 - static_cast<std::uint32_t>(forest_.level(leaf.place.element));
-    pair.shooter = leaf.place;
-    parties_.shooter.normal.set(i, leaf.party.normal);
-    look_at_receiver(i);
-}
-
-/// Sends on what the group's rays carry, and begins a new one.
-void Receiver::finish_group() {
-    if (refines_) find_receivers();
-    if (!refines_ || (step_.carries_importance() && !step_.importance_at_patches)) find_leaves();
-    for (std::size_t i = 0; i < count_; ++i) send(pairs_[i]);
-    count_ = 0;
-    ways_.clear();
-}
-
 /// Appends the elements that hold a leaf to ways_, from its root to itself.
 void Receiver::find_way_to_leaf(std::uint32_t leaf) {
     const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
     const PatchGeometry& geometry = forest_.geometry(patch);
-    Place place{patch, Cell()};
-    ways_.push_back(shooter_at(geometry, place));
-    for (int digit = std::bit_width(path) - 3; digit >= 0; digit -= 2) {
+    const Material& material = surfaces_.material(patch);
+    std::uint32_t element = patch;
+    Cell cell;
+    way_ = static_cast<std::uint32_t>(ways_.size());
+    for (int digit = std::bit_width(path) - 1;;) {
+        const V3f centre = geometry.point(cell.centre(geometry.is_triangle()));
+        ways_.push_back({element, cell, centre, forest_.area(element), step_.light.radiosity(material, element)});
+        if (digit == 0) break;
+        digit -= 2;
         const unsigned k = path >> digit & 3u;
-        place = {forest_.first_child(place.element) + k, place.cell.child(k, geometry.is_triangle())};
-        ways_.push_back(shooter_at(geometry, place));
+        element = forest_.first_child(element) + k;
+        cell = cell.child(k, geometry.is_triangle());
+    }
+    way_end_ = static_cast<std::uint32_t>(ways_.size() - 1);
+}
+
+/// Begins at the patches of both ends.
+void Receiver::set_out(std::uint32_t source, const Ray& ray, const Parameters& start, const Hit& hit) {
+    const std::size_t i = open_[open_count_++];
+    const PatchGeometry& geometry = forest_.geometry(hit.patch);
+    const PatchGeometry::Shape& shape = geometry.shape();
+    const Parameters p = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
+    rays_[i] = {source, hit.patch, start};
+    pairs_.origin.set(i, shape.origin);
+    pairs_.edge_u.set(i, shape.edge_u);
+    pairs_.edge_v.set(i, shape.edge_v);
+    pairs_.twist.set(i, shape.twist);
+    pairs_.is_triangle[i] = geometry.is_triangle();
+    pairs_.hit_u[i] = p.u;
+    pairs_.hit_v[i] = p.v;
+    pairs_.receiver[i] = pairs_.of_power[i] = hit.patch;
+    pairs_.u[i] = pairs_.v[i] = 0;
+    pairs_.size[i] = 1;
+    pairs_.settled[i] = !refines_;
+    if (!refines_) return;
+    rays_[i].reflectance = surfaces_.reflectance(hit.patch);
+    pairs_.normal.set(i, geometry.normal());
+    pairs_.importance[i] = 1;
+    pairs_.way_end[i] = way_end_;
+    set_shooter(i, way_);
+    pairs_.shooter_normal.set(i, forest_.geometry(ways_[way_].element).normal());
+}
+
+/// Takes all rays under way one level further (Eq. 14, 15): of a pair that the oracle does not accept the larger end is
+/// divided; when it does, power has arrived, and importance goes on to the leaf. No branch depends on a verdict.
+void Receiver::advance() {
+    Lanes some;
+    for (const std::uint32_t i : open()) look_up_receiver(i);
+    if (refines_) {
+        for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return shooter_is_too_large(i); }))
+            choose_shooter(i);
+        judge();
+    }
+    plan();
+    for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return pairs_.is_special[i] != 0; }))
+        divide_specially(i);
+    const auto arrived = open_lanes_if(some, [&](std::size_t i) { return pairs_.goes_on[i] == 0; });
+    Lanes on_their_way;
+    const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
+    for (const std::uint32_t i : arrived) send(i);
+    std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
+    open_count_ = others.size();
+    go_down();
+    for (const std::uint32_t i : open()) {
+        const std::uint32_t element = pairs_.receiver[i];
+        forest_.prefetch(element);
+        if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[element]);
     }
 }
 
-Receiver::Shooter Receiver::shooter_at(const PatchGeometry& geometry, const Place& place) const {
-    const V3f centre = geometry.point(place.cell.centre(geometry.is_triangle()));
-    return {
-        place, {centre, geometry.normal(), forest_.area(place.element)}, step_.light.radiosity(forest_, place.element)};
+/// Of the lanes in use those for which `condition` holds, kept in `found`; without a branch.
+template <class Condition>
+inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, const Condition& condition) const {
+    std::size_t count = 0;
+    for (const std::uint32_t i : open()) {
+        found[count] = i;
+        count += condition(i);
+    }
+    return std::span(found).first(count);
+}
+
+/// Gets from the forest what the oracle asks about the receiver.
+inline void Receiver::look_up_receiver(std::size_t i) {
+    const std::uint32_t element = pairs_.receiver[i];
+    pairs_.area[i] = forest_.area(element);
+    pairs_.children[i] = forest_.first_child(element);
+    if (step_.oracle.by_importance && element < old_size_)  // a new element inherits
+        pairs_.importance[i] = step_.oracle.importance[element];
+}
+
+inline bool Receiver::shooter_is_too_large(std::size_t i) const {
+    return (pairs_.shooter_area[i] > pairs_.area[i]) & (pairs_.way[i] < pairs_.way_end[i]);
 }
 
 /// Lets the pair's shooter be the largest element that holds the ray's start and is no larger than the receiver, or the
-/// leaf. Between larger ones and the receiver no verdict is asked for: what is received is the same for all of them.
-void Receiver::choose_shooter(std::size_t i) {
-    Pair& pair = pairs_[i];
-    while (pair.way + 1 < pair.way_end && ways_[pair.way].party.area > parties_.receiver.area[i]) ++pair.way;
-    const Shooter& shooter = ways_[pair.way];
-    parties_.shooter.set(i, shooter.party.centre, shooter.party.area);
-    const V3f reflectance = parties_.reflectance[i];
-    parties_.reflected[i] = largest_channel(Rgb(reflectance * shooter.radiosity));
+/// lowest. Between larger ones and the receiver no verdict is asked for: what is received is the same for all of them.
+inline void Receiver::choose_shooter(std::size_t i) {
+    std::uint32_t way = pairs_.way[i] + 1;
+    while (way < pairs_.way_end[i] && ways_[way].area > pairs_.area[i]) ++way;
+    set_shooter(i, way);
 }
 
-/// Walks every pair down from the roots until the oracle accepts it (Eq. 14, 15); the larger end is divided. No branch
-/// depends on a verdict, and what is on the other end of a pointer is asked for before it is needed.
-void Receiver::find_receivers() {
-    std::size_t open = count_;
-    std::iota(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(open), 0u);
-    while (open > 0) {
-        judge();
-        std::size_t rejected = 0, divided = 0;
-        for (std::size_t k = 0; k < open; ++k) {
-            const std::uint32_t i = open_[k];
-            open_[rejected] = i;
-            rejected += parties_.settled[i] == 0;
-        }
-        for (std::size_t k = 0; k < rejected; ++k) {
-            const std::uint32_t i = open_[k];
-            const bool by_shooter = parties_.shooter.area[i] > parties_.receiver.area[i];  // and it is a leaf, or new
-            open_[divided] = i;
-            divided += by_shooter ? divide_shooter(i) : divide_receiver(i);
-        }
-        for (std::size_t k = 0; k < divided; ++k) look_at_receiver(open_[k]);
-        open = divided;
-    }
+inline void Receiver::set_shooter(std::size_t i, std::uint32_t way) {
+    const Shooter& shooter = ways_[way];
+    pairs_.way[i] = way;
+    pairs_.shooter_centre.set(i, shooter.centre);
+    pairs_.shooter_area[i] = shooter.area;
+    pairs_.reflected[i] = largest_channel(Rgb(rays_[i].reflectance * shooter.radiosity));
 }
 
-/// Whether the oracle accepts each pair of the group, or its larger end is too small to be divided. Those that have
-/// been settled are judged again and again, since all of them at once take less time than a choice.
+/// Whether the oracle accepts each pair, or its larger end is too small to be divided. Lanes that are not in use are
+/// judged as well: all at once take less time than a choice.
 void Receiver::judge() {
     const Oracle& oracle = step_.oracle;
     const float smallest = 4 * oracle.smallest_area;
-    const float *reflected = parties_.reflected.data(), *importance = parties_.importance.data();
-    std::uint32_t* settled = parties_.settled.data();
-    for (std::size_t i = 0; i < count_; ++i) {
-        const Party shooter = parties_.shooter[i], receiver = parties_.receiver[i];
+    Pairs& p = pairs_;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const Cell cell{p.u[i], p.v[i], p.size[i]};
+        const V3f centre = PatchGeometry::Shape{p.origin[i], p.edge_u[i], p.edge_v[i], p.twist[i]}.point(
+            cell.centre(p.is_triangle[i] != 0));
+        const Party shooter{p.shooter_centre[i], p.shooter_normal[i], p.shooter_area[i]};
+        const Party receiver{centre, p.normal[i], p.area[i]};
         const bool is_small = (shooter.area < smallest) & (receiver.area < smallest);
-        const bool accepted = oracle.accepts(shooter, receiver, reflected[i], importance[i]);
-        settled[i] = is_small | accepted;
+        const bool accepted = oracle.accepts(shooter, receiver, p.reflected[i], p.importance[i]);
+        p.settled[i] |= is_small | accepted;
     }
 }
 
-/// The receiver becomes its part that holds the hit; look_at_receiver() is due next. @return whether there is one.
-bool Receiver::divide_receiver(std::size_t i) {
-    Pair& pair = pairs_[i];
-    const std::uint32_t child = children_of(pair.receiver.element);
-    if (child == none) return false;
-    go_down(pair.receiver, child, pair.y, pair.geometry->is_triangle());
-    forest_.prefetch(pair.receiver.element);
-    if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[pair.receiver.element]);
-    return true;
+/// Decides what becomes of every pair, but for the special ones.
+void Receiver::plan() {
+    Pairs& p = pairs_;
+    const float *shooter_area = p.shooter_area.data(), *area = p.area.data();
+    const std::uint32_t old = needs_leaf_ ? old_size_ : 0;  // elements from there on are of no interest to importance
+    for (std::size_t i = 0; i < lanes; ++i) {
+        // Numbers of 32 bits, not bool, so that all vectors have lanes of one size.
+        const std::uint32_t children = p.children[i], rejected = p.settled[i] ? 0 : 1;
+        const std::uint32_t to_leaf = (p.receiver[i] < old ? 1 : 0) & (children < old ? 1 : 0);
+        const std::uint32_t by_shooter = shooter_area[i] > area[i] ? 1 : 0;
+        const std::uint32_t is_special = rejected & ((children == none ? 1 : 0) | by_shooter);
+        const std::uint32_t descends = rejected ? 1 - is_special : to_leaf;
+        p.is_special[i] = is_special;
+        p.goes_on[i] = rejected | to_leaf;
+        p.next[i] = descends ? children : none;
+    }
 }
 
-/// Tells the oracle about the pair's receiver and the shooter that goes with it.
-void Receiver::look_at_receiver(std::size_t i) {
-    const Pair& pair = pairs_[i];
-    const auto& [element, cell] = pair.receiver;
-    parties_.receiver.set(i, pair.geometry->point(cell.centre(pair.geometry->is_triangle())), forest_.area(element));
-    if (step_.oracle.by_importance && element < old_size_)  // a new element inherits
-        parties_.importance[i] = step_.oracle.importance[element];
-    if (pair.shooter.element < old_size_) choose_shooter(i);
+/// Divides the larger end of a pair that was not accepted, if that is the shooter, which must be the lowest of its way,
+/// or a leaf. What cannot be divided is settled.
+void Receiver::divide_specially(std::size_t i) {
+    const std::uint32_t receiver = pairs_.receiver[i];
+    if (pairs_.shooter_area[i] > pairs_.area[i]) {
+        if (divide_shooter(i)) return;
+    } else {
+        pairs_.next[i] = children_of(receiver);
+        if (pairs_.next[i] != none) return;
+    }
+    pairs_.settled[i] = true;
+    pairs_.goes_on[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
+    if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
 }
 
-/// The shooter, which is a leaf, becomes its part that holds the ray's start. @return whether there is one.
+/// The shooter becomes its part that holds the ray's start. @return whether there is one.
 bool Receiver::divide_shooter(std::size_t i) {
-    Pair& pair = pairs_[i];
-    const PatchGeometry& geometry = forest_.geometry(forest_.patch(pair.shooter.element));
-    const std::uint32_t child = children_of(pair.shooter.element);
-    if (child == none) return false;
-    go_down(pair.shooter, child, pair.x, geometry.is_triangle());
-    const auto& [element, cell] = pair.shooter;
-    parties_.shooter.set(i, geometry.point(cell.centre(geometry.is_triangle())), forest_.area(element));
+    Shooter shooter = ways_[pairs_.way[i]];
+    const PatchGeometry& geometry = forest_.geometry(forest_.patch(shooter.element));
+    const std::uint32_t children = children_of(shooter.element);
+    if (children == none) return false;
+    const unsigned k = shooter.cell.child_at(rays_[i].start, geometry.is_triangle());
+    shooter.cell = shooter.cell.child(k, geometry.is_triangle());
+    shooter.element = children + k;
+    shooter.centre = geometry.point(shooter.cell.centre(geometry.is_triangle()));
+    shooter.area = forest_.area(shooter.element);
+    ways_.push_back(shooter);
+    pairs_.way_end[i] = static_cast<std::uint32_t>(ways_.size() - 1);
+    set_shooter(i, pairs_.way_end[i]);
     return true;
 }
 
@@ -195,39 +233,32 @@ std::uint32_t Receiver::children_of(std::uint32_t element) {
     return child == none && may_grow ? forest_.subdivide(element) : child;
 }
 
-/// Finds the leaves, of those that were there when the step began, that hold the hits, from the receivers on.
-void Receiver::find_leaves() {
-    std::size_t open = 0;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-        Place& leaf = pairs_[i].leaf;
-        leaf = pairs_[i].receiver;
-        while (leaf.element >= old_size_) leaf.element = forest_.parent(leaf.element);
-        if (forest_.first_child(leaf.element) < old_size_) open_[open++] = i;
-    }
-    while (open > 0) {
-        std::size_t inner = 0;
-        for (std::size_t k = 0; k < open; ++k) {
-            Pair& pair = pairs_[open_[k]];
-            const std::uint32_t child = forest_.first_child(pair.leaf.element);
-            go_down(pair.leaf, child, pair.y, pair.geometry->is_triangle());
-            forest_.prefetch(pair.leaf.element);
-        }
-        for (std::size_t k = 0; k < open; ++k) {
-            const std::uint32_t i = open_[k];
-            open_[inner] = i;
-            inner += forest_.first_child(pairs_[i].leaf.element) < old_size_;
-        }
-        open = inner;
+/// Every receiver whose children are next becomes the one that holds the hit. No branch depends on which that is.
+void Receiver::go_down() {
+    Pairs& p = pairs_;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const bool goes = p.next[i] != none, triangle = p.is_triangle[i] != 0;
+        const Cell cell{p.u[i], p.v[i], p.size[i]};
+        const unsigned k = cell.child_at({p.hit_u[i], p.hit_v[i]}, triangle);
+        const Cell child = cell.child(k, triangle);
+        p.receiver[i] = goes ? p.next[i] + k : p.receiver[i];
+        p.of_power[i] = p.settled[i] ? p.of_power[i] : p.receiver[i];
+        p.u[i] = goes ? child.u : cell.u;
+        p.v[i] = goes ? child.v : cell.v;
+        p.size[i] = goes ? child.size : cell.size;
     }
 }
 
-/// Sends power to the receiver, importance to the leaf or the patch that was hit.
-void Receiver::send(const Pair& pair) {
-    const std::uint32_t of_power = refines_ ? pair.receiver.element : pair.leaf.element;
-    const std::uint32_t of_importance = step_.importance_at_patches ? pair.patch : pair.leaf.element;
+/// Sends power to the receiver that was accepted, importance to the leaf or the patch that was hit.
+void Receiver::send(std::size_t i) {
+    const auto& [source, patch, start, reflectance] = rays_[i];
+    std::uint32_t leaf = pairs_.receiver[i];
+    while (leaf >= old_size_) leaf = forest_.parent(leaf);
+    const std::uint32_t of_power = refines_ ? pairs_.of_power[i] : leaf;
+    const std::uint32_t of_importance = step_.importance_at_patches ? patch : leaf;
     const bool together = of_power == of_importance || !step_.carries_importance();
-    if (step_.carries_power()) sorter_.add(of_power, pair.source, true, together);
-    if (!step_.carries_power() || !together) sorter_.add(of_importance, pair.source, false, true);
+    if (step_.carries_power()) sorter_.add(of_power, source, true, together);
+    if (!step_.carries_power() || !together) sorter_.add(of_importance, source, false, true);
 }
 
 }  // namespace interflect

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,9 @@ struct Escaped {
     std::int64_t rays = 0;
 };
 
-/// The receiving end of a step, for one thread: finds the elements that what the rays carry arrives at. Rays are taken
-/// in groups, which walk down the trees side by side: so the processor looks up one's elements while it waits for
-/// another's, and the oracle judges as many pairs at a time as its vectors are long.
+/// The receiving end of a step, for one thread: finds the elements that what the rays carry arrives at. Many rays walk
+/// down the trees side by side, one level at a time, and where one has arrived the next takes its place: so the
+/// processor looks up one's elements while it waits for another's, and what is computed for all of them is vector code.
 class Receiver {
   public:
     /// @param old_size  Elements of the forest when the step began. All other arguments must outlive this.
@@ -33,7 +34,11 @@ class Receiver {
           step_(step),
           old_size_(old_size),
           refines_(step.oracle.refines && step.carries_power()),
-          sorter_(arrivals) {}
+          needs_leaf_(!refines_ || (step.carries_importance() && !step.importance_at_patches)),
+          sorter_(arrivals) {
+        std::iota(open_.begin(), open_.end(), 0u);
+        pairs_.next.fill(none);
+    }
 
     /// Takes rays of one leaf. @param load  What each carries. @param origins  Their parameters on the leaf's patch.
     void take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
@@ -46,79 +51,84 @@ class Receiver {
     Escaped finish();
 
   private:
-    /// Rays of a group: what is known of them fits into the first-level cache.
-    static constexpr std::size_t group_rays = 128;
+    static constexpr std::size_t lanes = 64;  // rays under way: what is known of them fits into the first-level cache
+    using Floats = std::array<float, lanes>;
+    using Numbers = std::array<std::uint32_t, lanes>;
+    struct Vectors {
+        Floats x, y, z;
+        void set(std::size_t i, const V3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+        V3f operator[](std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
+    };
 
-    /// An element on the way down a tree.
-    struct Place {
-        std::uint32_t element = none;
-        Cell cell;
+    /// The two ends of every ray under way, an array for each number.
+    struct alignas(64) Pairs {
+        // The patch that was hit (PatchGeometry::Shape), and where on it.
+        Vectors origin, edge_u, edge_v, twist;
+        Numbers is_triangle;
+        Floats hit_u, hit_v;
+        // The receiver: the lowest element above the hit that the oracle has come to.
+        Numbers receiver, children;  // children: the first of four, as it was when they were looked up, or none
+        Floats u, v, size;           // its cell
+        Vectors normal;
+        Floats area, importance;  // psi_i
+        // The shooter: the lowest above the origin.
+        Numbers way, way_end;  // among ways_; way_end: the lowest, the leaf that the ray starts on or a new element
+        Vectors shooter_centre, shooter_normal;
+        Floats shooter_area, reflected;  // reflected: the largest channel of rho_i B_j
+        // Verdicts, and what follows from them.
+        Numbers settled;     // power has arrived
+        Numbers of_power;    // at this element; until it has, the receiver
+        Numbers is_special;  // what is to be divided has no children yet, or is the shooter
+        Numbers goes_on;     // the ray is still under way
+        Numbers next;        // the first child of those that the receiver's place is taken by; none: it stays
+    };
+    /// What else must be known of a ray under way.
+    struct UnderWay {
+        std::uint32_t source, patch;  // patch: that was hit
+        Parameters start;             // on the patch that the ray left
+        Rgb reflectance{0, 0, 0};     // rho_i
     };
     /// An element that holds the start of a ray, as the oracle sees it.
     struct Shooter {
-        Place place;
-        Party party;
+        std::uint32_t element;
+        Cell cell;
+        V3f centre;              // [m]
+        float area;              // [m^2]
         Rgb radiosity{0, 0, 0};  // of the nearest element that was there when the step began: a new one inherits it
     };
-    /// The two ends of a ray.
-    struct Pair {
-        const PatchGeometry* geometry;  // of the patch that was hit
-        std::uint32_t patch, source;
-        std::uint32_t way, way_end;  // the shooter and those below it among ways_, down to the leaf the ray starts on
-        Parameters x, y;             // of the ends on their patches
-        Place receiver, leaf;        // what the oracle has come to; what was hit when the step began
-        Place shooter;               // the lowest of the way, or a new element below it
-    };
-    /// What the oracle asks of a group's pairs, an array for each number.
-    struct alignas(64) Parties {
-        using Lanes = std::array<float, group_rays>;
-        struct Vectors {
-            Lanes x, y, z;
-            void set(std::size_t i, const V3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
-            V3f operator[](std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
-        };
-        struct Ends {
-            Vectors centre, normal;
-            Lanes area;
-            void set(std::size_t i, const V3f& c, float a) {
-                centre.set(i, c);
-                area[i] = a;
-            }
-            Party operator[](std::size_t i) const { return {centre[i], normal[i], area.data()[i]}; }
-        };
-        Ends shooter, receiver;
-        Vectors reflectance;
-        Lanes reflected, importance;  // rho_i B_j, its largest channel; psi_i
-        std::array<std::uint32_t, group_rays> settled;
-    };
 
-    static void go_down(Place& place, std::uint32_t first_child, Parameters p, bool triangle);
-    void add_pair(std::uint32_t source, const Ray& ray, const Parameters& origin, const Hit& hit);
-    void finish_group();
+    using Lanes = std::array<std::uint32_t, lanes>;
+    std::span<const std::uint32_t> open() const { return std::span(open_).first(open_count_); }
+    template <class Condition>
+    std::span<const std::uint32_t> open_lanes_if(Lanes& found, const Condition& condition) const;
     void find_way_to_leaf(std::uint32_t leaf);
-    Shooter shooter_at(const PatchGeometry& geometry, const Place& place) const;
+    void set_out(std::uint32_t source, const Ray& ray, const Parameters& start, const Hit& hit);
+    void advance();
+    void look_up_receiver(std::size_t i);
+    bool shooter_is_too_large(std::size_t i) const;
     void choose_shooter(std::size_t i);
-    void find_receivers();
+    void set_shooter(std::size_t i, std::uint32_t way);
     void judge();
-    bool divide_receiver(std::size_t i);
-    void look_at_receiver(std::size_t i);
+    void plan();
+    void divide_specially(std::size_t i);
     bool divide_shooter(std::size_t i);
     std::uint32_t children_of(std::uint32_t element);
-    void find_leaves();
-    void send(const Pair& pair);
+    void go_down();
+    void send(std::size_t i);
 
     const Surfaces& surfaces_;
     ElementForest& forest_;
     const TransportStep& step_;
     std::uint32_t old_size_;
-    bool refines_;
+    bool refines_, needs_leaf_;
     Arrivals::Sorter sorter_;
     Escaped escaped_;
-    std::size_t count_ = 0;  // of the group's pairs
-    std::array<Pair, group_rays> pairs_;
-    std::array<std::uint32_t, group_rays> open_;
-    Parties parties_;
-    std::vector<Shooter> ways_;
+    Pairs pairs_{};
+    std::array<UnderWay, lanes> rays_;
+    Lanes open_;  // lanes in use come first, then the others
+    std::size_t open_count_ = 0;
+    std::vector<Shooter> ways_;            // of the sources of the rays under way: elements from the root to the leaf
+    std::uint32_t way_ = 0, way_end_ = 0;  // the root and the leaf whose rays are being taken, among them
 };
 
 }  // namespace interflect
