@@ -15,7 +15,10 @@
 namespace interflect {
 namespace {
 
+using testing::AnyOf;
+using testing::Each;
 using testing::ElementsAre;
+using testing::FloatEq;
 
 /// A square of 4 m^2 that reflects 1/4, 1/2 and 3/4 of the channels and is divided in four, and a black one of
 /// 2 m^2.
@@ -101,6 +104,8 @@ TEST_F(Weights, AreDrivenByImportanceAsItIsUnlessItIsSmoothed) {
     EXPECT_EQ(driving_importance(forest_, Importance(importance_), 0, 1), importance_);
     EXPECT_THAT(driving_importance(forest_, Importance(importance_), 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
     EXPECT_THAT(driving_importance(forest_, Importance(importance_), 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
+    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 1, 0.75),
+                Each(AnyOf(FloatEq(std::pow(9.0f, 0.75f)), 1)));
     EXPECT_THAT(driving_importance(forest_, Importance(importance_), 0.5, 0.5),
                 ElementsAre(3, 1, std::sqrt(6.0f), std::sqrt(6.0f), std::sqrt(4.5f), std::sqrt(4.875f)));
 }

@@ -132,6 +132,7 @@ Received run_step(Run& run, TransportStep step) {
     const std::uint32_t before = run.forest->size();
     Received received = transport(run.surfaces, *run.forest, run.ray_caster, std::move(step), run.streams);
     run.escaped_rays += received.escaped_rays;
+    if (run.forest->size() == before) return received;
     inherit(*run.forest, before, run.solution.irradiance);
     inherit(*run.forest, before, run.variance);
     inherit(*run.forest, before, run.history);

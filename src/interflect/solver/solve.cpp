@@ -49,13 +49,21 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     throw InputError(message);
 }
 
-/// What scales children to their parent's mean; where all of them are 0 there is nothing to scale.
-float scaled(float child, float children_mean, float parent_mean) {
-    return children_mean > 0 ? child * (parent_mean / children_mean) : parent_mean;
+/// What scales children to their parent's mean: factor child + offset. Where all of them are 0 there is nothing to
+/// scale, and they get the mean.
+template <class T>
+struct Scaling {
+    T factor, offset;
+};
+Scaling<float> scaling(float children_mean, float parent_mean) {
+    const bool is_scaled = children_mean > 0;
+    return {is_scaled ? parent_mean / children_mean : 0, is_scaled ? 0 : parent_mean};
 }
-Rgb scaled(const Rgb& child, const Rgb& children_mean, const Rgb& parent_mean) {
-    return Rgb(scaled(child.x, children_mean.x, parent_mean.x), scaled(child.y, children_mean.y, parent_mean.y),
-               scaled(child.z, children_mean.z, parent_mean.z));
+Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
+    const auto [fx, ox] = scaling(children_mean.x, parent_mean.x);
+    const auto [fy, oy] = scaling(children_mean.y, parent_mean.y);
+    const auto [fz, oz] = scaling(children_mean.z, parent_mean.z);
+    return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
 /// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. A patch has
@@ -81,8 +89,8 @@ void merge(const Run& run, std::vector<T>& mean, const std::vector<T>& received,
             sum += mean[e] * forest.area(e);
             area += forest.area(e);
         }
-        const T of_parent = mean[forest.parent(first)];
-        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = scaled(mean[e], sum / area, of_parent);
+        const auto [factor, offset] = scaling(sum / area, mean[forest.parent(first)]);
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = mean[e] * factor + offset;
     });
     pull(forest, mean);
 }
