@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -52,9 +53,17 @@ int run(int argc, char** argv) {
     return exit_code;
 }
 
+/// Large arrays go back to the system when they have served. By default glibc keeps them in its heap once one as large
+/// has been freed, and what that then takes depends on what lies between them.
+void return_large_arrays() {
+    constexpr int large = 4 << 20;  // [bytes]
+    mallopt(M_MMAP_THRESHOLD, large);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
+    return_large_arrays();
     spdlog::set_default_logger(spdlog::stderr_color_st("interflect"));
     spdlog::set_pattern("%^%l%$: %v");
     return run(argc, argv);

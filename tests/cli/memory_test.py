@@ -10,7 +10,7 @@ FINE = ("--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
 MIB = 1 << 20
 
 
-class MemoryLimit(CommandTest):
+class MemoryCase(CommandTest):
     def peak(self, *arguments):
         """Runs the command. @return its largest resident size [bytes] and what it said."""
         said = self.folder / "said"
@@ -25,6 +25,8 @@ class MemoryLimit(CommandTest):
         self.assertEqual(os.waitstatus_to_exitcode(status), DONE, said.read_text())
         return usage.ru_maxrss * 1024, said.read_text()
 
+
+class MemoryLimit(MemoryCase):
     def solve(self, *options):
         stats = self.folder / "stats"
         peak, said = self.peak(
@@ -51,6 +53,20 @@ class MemoryLimit(CommandTest):
         self.assertIn("need", result.stderr)
         self.assertIn("50 MiB", result.stderr)
         self.assertEqual(self.files(), [])
+
+
+class LongRuns(MemoryCase):
+    ITERATIONS = 6000
+    REPORT = 200  # bytes that are kept for each, with room to spare
+
+    def peak_after(self, iterations):
+        few = ("--no-incremental-start", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
+        mesh = ("--view", "room-0", "--mesh-size", "0.2", "--epsilon", "1e-3")  # no elements are made on the way
+        return self.peak("solve", "maze:2", "-o", str(self.folder / "out.h5"), *mesh, *few)[0]
+
+    def test_take_no_more_memory_than_short_ones(self):
+        growth = self.peak_after(self.ITERATIONS) - self.peak_after(self.ITERATIONS // 20)
+        self.assertLess(growth, self.ITERATIONS * self.REPORT + MIB // 2)
 
 
 if __name__ == "__main__":
