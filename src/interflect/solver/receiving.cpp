@@ -139,7 +139,9 @@ inline void Receiver::look_up_receiver(std::size_t i) {
 }
 
 inline bool Receiver::shooter_is_too_large(std::size_t i) const {
-    return (pairs_.shooter_area[i] > pairs_.area[i]) & (pairs_.way[i] < pairs_.way_end[i]);
+    const float shooter = pairs_.shooter_area[i], receiver = pairs_.area[i];
+    const std::uint32_t way = pairs_.way[i], lowest = pairs_.way_end[i];
+    return (shooter > receiver) & (way < lowest);
 }
 
 /// Lets the pair's shooter be the largest element that holds the ray's start and is no larger than the receiver, or the
