@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "interflect/solver/probabilities.h"
 #include "tests/solver/reference_rooms.h"
@@ -180,6 +181,22 @@ TEST(Transport, CarriesImportanceWithoutBias) {
     }
     EXPECT_GT(bonferroni(p_values), false_alarm);
     EXPECT_LT(bonferroni(p_values_off), false_alarm) << "would notice two percent";
+}
+
+TEST(Transport, BringsImportanceToTheLeavesWhereverPowerEnds) {
+    Room room(furnished_room());
+    SampleStreams streams = streams_of(1);
+    room.receive(streams, room.refining_step(0.01f));
+    const std::vector<float> importance(room.forest.size(), 1.0f);
+    TransportStep step = room.step();
+    step.importance = Importance(importance);
+    SampleStreams same = streams;
+    const Received at_leaves = room.receive(streams, step);
+    step.oracle.refines = true;
+    step.oracle.threshold = std::numeric_limits<double>::infinity();  // power ends at the patches
+    const Received at_patches = room.receive(same, step);
+    EXPECT_EQ(at_patches.importance, at_leaves.importance);
+    EXPECT_NE(at_patches.irradiance, at_leaves.irradiance);
 }
 
 TEST(Transport, AdvancesTheStreamsByWhatItShot) {
