@@ -2,6 +2,8 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -56,6 +58,27 @@ T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& 
     T sum = zero;
     for (const T& part : parts) sum += part;
     return sum;
+}
+
+/// Sorts on all threads. @param less  A total order: of equals it would be open which comes first.
+template <class T, class Less>
+void parallel_sort(std::vector<T>& values, const Less& less) {
+#ifdef INTERFLECT_THREAD_SANITIZER
+    std::sort(values.begin(), values.end(), less);
+#else
+    tbb::parallel_sort(values.begin(), values.end(), less);
+#endif
+}
+
+/// Calls both, at the same time if a thread is free.
+template <class A, class B>
+void parallel_invoke(const A& a, const B& b) {
+#ifdef INTERFLECT_THREAD_SANITIZER
+    a();
+    b();
+#else
+    tbb::parallel_invoke(a, b);
+#endif
 }
 
 }  // namespace interflect

@@ -15,9 +15,13 @@ ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
       nodes_(capacity),
       blocks_((capacity - scene.patches.size()) / 4) {
     assert(capacity >= scene.patches.size() && capacity < being_made);
-    geometry_.reserve(scene.patches.size());
-    for (const Patch& p : scene.patches) geometry_.emplace_back(scene, p);
-    for (std::uint32_t i = 0; i < patch_count(); ++i) nodes_[i] = {none, geometry_[i].area()};
+    geometry_.resize(scene.patches.size());
+    parallel_for_ranges(scene.patches.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            geometry_[i] = PatchGeometry(scene, scene.patches[i]);
+            nodes_[i] = {none, geometry_[i].area()};
+        }
+    });
     size_ = patch_count();
     generations_.push_back(patch_count());
 }
@@ -90,7 +94,7 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
     made.reserve((last - first) / 4);
     for (std::uint32_t e = first; e < last; e += 4)
         made.push_back({blocks_[number(e)], {nodes_[e], nodes_[e + 1], nodes_[e + 2], nodes_[e + 3]}, e});
-    std::sort(made.begin(), made.end(), [](const Siblings& a, const Siblings& b) {
+    parallel_sort(made, [](const Siblings& a, const Siblings& b) {
         const auto key = [](const Siblings& s) {
             return std::tuple(std::bit_width(s.block.parent_path), s.block.patch, s.block.parent_path);
         };

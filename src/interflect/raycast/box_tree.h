@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <span>
 
+#include "interflect/base/parallel.h"
+
 namespace interflect {
 
 /// Something with a box around it, as an element of a box tree.
@@ -30,8 +32,15 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
                      [axis](const Boxed& a, const Boxed& b) {
                          return a.box.min[axis] + a.box.max[axis] < b.box.min[axis] + b.box.max[axis];
                      });
-    arrange_box_tree(elements.first(middle));
-    arrange_box_tree(elements.subspan(middle + 1));
+    const auto arrange_first = [&] { arrange_box_tree(elements.first(middle)); };
+    const auto arrange_second = [&] { arrange_box_tree(elements.subspan(middle + 1)); };
+    constexpr std::size_t worth_a_task = 1 << 13;
+    if (elements.size() >= worth_a_task) {
+        parallel_invoke(arrange_first, arrange_second);
+    } else {
+        arrange_first();
+        arrange_second();
+    }
     elements[middle].box = all;
 }
 

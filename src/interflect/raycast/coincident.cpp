@@ -4,6 +4,7 @@
 #include <bit>
 #include <tuple>
 
+#include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/raycast/face_overlap.h"
 #include "interflect/raycast/flat_surfaces.h"
@@ -93,9 +94,15 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
     };
     std::vector<KeyedFace> faces;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
-        if (is_face(scene, i)) faces.push_back({corners_key(scene, scene.patches[i]), rank[i], i});
-    std::sort(faces.begin(), faces.end(),
-              [](const KeyedFace& a, const KeyedFace& b) { return std::tie(a.key, a.rank) < std::tie(b.key, b.rank); });
+        if (is_face(scene, i)) faces.push_back({0, rank[i], i});
+    constexpr std::size_t faces_at_once = 4096;
+    parallel_for_ranges(faces.size(), faces_at_once, [&](std::size_t begin, std::size_t end) {
+        for (KeyedFace& face : std::span(faces).subspan(begin, end - begin))
+            face.key = corners_key(scene, scene.patches[face.face]);
+    });
+    parallel_sort(faces, [](const KeyedFace& a, const KeyedFace& b) {
+        return std::tie(a.key, a.rank) < std::tie(b.key, b.rank);
+    });
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         if (i == 0 || faces[i].key != faces[i - 1].key) kept.clear();

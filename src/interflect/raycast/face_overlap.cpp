@@ -131,7 +131,11 @@ class LargerFace {
 std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& left_out) {
     std::vector<Boxed> tree;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
-        if (scene.patches[i].other_side >= i && !left_out[i]) tree.push_back({box_of(scene, scene.patches[i], 0), i});
+        if (scene.patches[i].other_side >= i && !left_out[i]) tree.push_back({Imath::Box3f(), i});
+    parallel_for_ranges(tree.size(), search_grain, [&](std::size_t begin, std::size_t end) {
+        for (Boxed& face : std::span(tree).subspan(begin, end - begin))
+            face.box = box_of(scene, scene.patches[face.index], 0);
+    });
     arrange_box_tree(tree);
     return tree;
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "interflect/base/parallel.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
@@ -14,6 +15,8 @@ namespace {
 /// Cosine of the angle (0.8 degrees) up to which neighbours count as one plane: above the rounding of the normals of
 /// small patches, below the creases that people model.
 constexpr float same_plane_cosine = 0.9999f;
+
+constexpr std::size_t patches_at_once = 4096;
 
 /// Faces beyond this that meet in one edge are compared with the last ones only, so that no file makes this quadratic.
 constexpr std::size_t most_faces_at_edge = 8;
@@ -39,7 +42,7 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
         for (std::size_t v = 0; v < count; ++v)
             edges.push_back({edge_key(patch.vertices[v], patch.vertices[(v + 1) % count]), i});
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    parallel_sort(edges, [](const Edge& a, const Edge& b) {
         return std::tie(a.vertices, a.patch) < std::tie(b.vertices, b.patch);
     });
     return edges;
@@ -69,12 +72,14 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     std::vector<V3f> normal(count);
     std::vector<double> area(count, 0.0);  // of each patch, then of the surface that it represents
-    for (std::uint32_t i = 0; i < count; ++i) {
-        if (is_back(scene, i)) continue;
-        const PatchGeometry geometry(scene, scene.patches[i]);
-        normal[i] = geometry.normal();
-        area[i] = geometry.area();
-    }
+    parallel_for_ranges(count, patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            if (is_back(scene, i)) continue;
+            const PatchGeometry geometry(scene, scene.patches[i]);
+            normal[i] = geometry.normal();
+            area[i] = geometry.area();
+        }
+    });
     const auto continues = [&](std::uint32_t a, std::uint32_t b) {
         const Patch &p = scene.patches[a], &q = scene.patches[b];
         return p.material == q.material && p.object == q.object &&
@@ -95,7 +100,7 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
 
     std::vector<std::uint32_t> order(count), rank(count);
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
         return std::tie(area[surface[a]], surface[a], a) < std::tie(area[surface[b]], surface[b], b);
     });
     for (std::uint32_t i = 0; i < count; ++i) rank[order[i]] = i;
