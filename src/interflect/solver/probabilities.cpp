@@ -4,37 +4,21 @@
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/base/stable_array.h"
 
 namespace interflect {
 
 namespace {
 
-/// Sum of body(e) over the leaves, in double precision and always in the same order.
-template <class T, class Body>
-T sum_over_leaves(const ElementForest& forest, const Body& body) {
-    return parallel_sum(forest.size(), elements_at_once, T(), [&](std::size_t begin, std::size_t end) {
-        T sum{};
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            if (forest.is_leaf(e)) sum += body(e);
-        return sum;
-    });
-}
-
-/// The weights of one element, or sums of them.
+/// The weights of one leaf.
 struct Weights {
+    double power = 0, importance = 0;
+};
+struct WeightSums {
     double power = 0, driven_power = 0, importance = 0;
     std::int64_t lost = 0;
 
-    Weights() = default;
-    Weights(const Sampled& s, const Shares& shares, std::uint32_t e) {
-        if (shares.power > 0 || shares.driven_power > 0) {
-            power = s.power(e);
-            lost = power == 0 && s.light.is_lost(s.forest, e);
-        }
-        if (shares.driven_power > 0) driven_power = power * s.driver[e];
-        if (shares.importance > 0) importance = s.importance(e);
-    }
-    Weights& operator+=(const Weights& other) {
+    WeightSums& operator+=(const WeightSums& other) {
         power += other.power;
         driven_power += other.driven_power;
         importance += other.importance;
@@ -42,6 +26,28 @@ struct Weights {
         return *this;
     }
 };
+
+/// Weighs every leaf, and adds up in double precision and always in the same order.
+WeightSums weigh_leaves(const Sampled& s, const Shares& shares, StableArray<Weights>& weights) {
+    const bool by_power = shares.power > 0 || shares.driven_power > 0;
+    return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
+        WeightSums sums;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            if (!s.forest.is_leaf(e)) continue;
+            Weights w;
+            if (by_power) {
+                w.power = s.power(e);
+                sums.lost += w.power == 0 && s.light.is_lost(s.forest, e);
+            }
+            if (shares.importance > 0) w.importance = s.importance(e);
+            sums.power += w.power;
+            sums.importance += w.importance;
+            if (shares.driven_power > 0) sums.driven_power += w.power * s.driver[e];
+            weights[e] = w;
+        }
+        return sums;
+    });
+}
 
 /// Raises numbers >= 0 to a power.
 void raise(std::span<float> numbers, float exponent) {
@@ -56,21 +62,21 @@ void raise(std::span<float> numbers, float exponent) {
 
 Mixture mixture(const Sampled& sampled, const Shares& shares) {
     const ElementForest& forest = sampled.forest;
-    const auto sum = sum_over_leaves<Weights>(forest, [&](std::uint32_t e) { return Weights(sampled, shares, e); });
+    StableArray<Weights> weights(forest.size());  // 0 for inner elements
+    const WeightSums sums = weigh_leaves(sampled, shares, weights);
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
-    const double for_power = factor(shares.power, sum.power),
-                 for_driven = factor(shares.driven_power, sum.driven_power),
-                 for_importance = factor(shares.importance, sum.importance);
+    const double for_power = factor(shares.power, sums.power),
+                 for_driven = factor(shares.driven_power, sums.driven_power),
+                 for_importance = factor(shares.importance, sums.importance);
     std::vector<float> q(forest.size());
     parallel_for_ranges(q.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            if (!forest.is_leaf(e)) continue;
-            const Weights w(sampled, shares, e);
-            q[e] =
-                static_cast<float>(for_power * w.power + for_driven * w.driven_power + for_importance * w.importance);
+        for (std::size_t e = begin; e < end; ++e) {
+            const double driver = for_driven > 0 ? sampled.driver[e] : 0;
+            const Weights& w = weights[e];
+            q[e] = static_cast<float>((for_power + for_driven * driver) * w.power + for_importance * w.importance);
         }
     });
-    return {std::move(q), sum.lost};
+    return {std::move(q), sums.lost};
 }
 
 std::vector<float> driving_importance(const ElementForest& forest, const Importance& importance, double from_parent,
