@@ -73,10 +73,10 @@ std::uint32_t CoincidentFaces::Winner::side_towards(const V3f& direction) const 
 
 bool CoincidentFaces::Winner::answers(const V3f& x, const V3f& direction) const {
     const V3f d = x - origin;
-    int inside = 0;
+    std::size_t inside = 0;
     for (std::size_t i = 0; i < inward.x.size(); ++i)
         inside += inward.x[i] * d.x + inward.y[i] * d.y + inward.z[i] * d.z >= inward.offset[i];
-    return inside == 4 && side_towards(direction) != none;
+    return inside == inward.x.size() && side_towards(direction) != none;
 }
 
 CoincidentFaces::CoincidentFaces(const Scene& scene, float tolerance) : hidden_(scene.patches.size()) {
