@@ -67,8 +67,10 @@ struct Workload {
         if (!(channel_sum(solution.emitted_power) > 0))
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
-        step = power_step(surfaces, solution, Light(surfaces, solution.irradiance), combined, options.rays);
-        if (options.method.refines) step.oracle = make_oracle(solution, step, options.rays, options.smallest_area);
+        const Light light(surfaces, solution.irradiance);
+        step = power_step(surfaces, solution, light, combined, options.rays).step;
+        if (options.method.refines && !refines_by_variance(options))
+            step.oracle = make_oracle(solution, light, options.rays, options.smallest_area);
         step.oracle.most_elements = forest->size();
         rays = transport_rays(*forest, ray_caster, step, streams);
     }

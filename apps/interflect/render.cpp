@@ -106,7 +106,7 @@ void run(RenderArguments& options, int& exit_code) {
     if (options.shown == Shown::mesh && !needs_tone_mapping(require_image_format(options.output)))
         throw InputError(options.output, 0, "outlines of the mesh are for pictures to look at: expected .png or .jpg");
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    const SolveOptions solve_options = options.solver.resolved({view}, aspect);
+    const SolveOptions solve_options = options.solver.resolved({view}, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(solved.scene);

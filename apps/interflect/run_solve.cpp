@@ -42,10 +42,12 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
                        {"seconds", limit(std::isfinite(o.seconds), o.seconds)},
                        {"until", limit(o.until > 0, o.until)},
                        {"points", o.points == PointSet::sobol ? "sobol" : "random"},
-                       {"incremental_start", o.incremental_start},
+                       {"complete_passes", o.complete_passes},
                        {"warm_up", o.warm_up},
                        {"iterations", o.iterations},
                        {"rays_per_iteration", o.rays_per_iteration},
+                       {"refinement", o.refinement == Refinement::variance ? "variance" : "power"},
+                       {"shrinkage", o.shrinks},
                        {"epsilon", o.epsilon},
                        {"epsilon_decay", o.epsilon_decay},
                        {"min_area", o.smallest_area},
@@ -71,6 +73,8 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
             {"emitted_power", json_of(emitted_power)}};
 }
 
+Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
 Json line_of(const IterationReport& r) {
     return {{"iteration", r.iteration},
             {"seconds", r.seconds},
@@ -81,7 +85,11 @@ Json line_of(const IterationReport& r) {
             {"leaves", r.leaves},
             {"total_power", json_of(r.total_power)},
             {"escaped_power", json_of(r.escaped_power)},
-            {"error_estimate", std::isfinite(r.error_estimate) ? Json(r.error_estimate) : Json(nullptr)}};
+            {"error_estimate", finite_or_null(r.error_estimate)},
+            {"noise_estimate", finite_or_null(r.noise_estimate)},
+            {"discretisation_estimate", finite_or_null(r.discretisation_estimate)},
+            {"largest_quantum", r.largest_quantum},
+            {"high_quantum", r.high_quantum}};
 }
 
 void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& command, const Solution& solution) {

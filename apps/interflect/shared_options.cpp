@@ -146,12 +146,18 @@ void SolverOptions::add_sampling(CLI::App& app) {
     group(add_parsed(app, "--rays-per-iteration", solve_.rays_per_iteration, parse_count,
                      "Rays of each iteration; default: small at first, then growing")
               ->type_name("COUNT"));
-    group(app.add_flag("--incremental-start,!--no-incremental-start", solve_.incremental_start,
-                       "First estimate by following the light bounce by bounce (default), or from darkness"));
+    group(app.add_flag("--complete-passes,!--one-bounce", solve_.complete_passes,
+                       "Each iteration follows light bounce by bounce to its end (default), or takes the mean one bounce further"));
 }
 
 void SolverOptions::add_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(refinement_group); };
+    group(add_choice<Refinement>(app, "--refinement", solve_.refinement,
+                                 {{"variance", Refinement::variance}, {"power", Refinement::power}},
+                                 "Elements are split by what rays tell of them, or pairs by power (Eq. 14, 15)")
+              ->default_str("variance"));
+    group(app.add_flag("--shrinkage,!--no-shrinkage", solve_.shrinks,
+                       "Reduce differences of neighbouring elements that are mostly noise (with --refinement variance)"));
     group(app.add_option("--epsilon", solve_.epsilon,
                          "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
                          "once 20M rays are averaged")
@@ -226,11 +232,11 @@ void SolverOptions::add_importance(CLI::App& app) {
               ->check(CLI::Range(1, 1 << 28)));
 }
 
-SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect) const {
+SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {
     SolveOptions options = solve_;
     options.method = method_.value_or(find_method(views.empty() ? "hsrr" : "ihsrr"));
     options.method.importance = importance_.value_or(options.method.importance);
-    for (const View& view : views) options.views.push_back({view, 1, aspect});
+    for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
     const bool other_limit = std::isfinite(options.seconds) || options.until > 0;
     if (other_limit && rays_->count() == 0) options.rays = std::numeric_limits<std::int64_t>::max();
     return options;

@@ -56,7 +56,7 @@ struct SolverOptions {
     /// What solve() is to be asked for. Where no method was named it is ihsrr if something is looked at, else hsrr; the
     /// default of rays goes where only another limit was given.
     /// @param aspect  Width over height of the pictures.
-    SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9) const;
+    SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
 
   private:
     void add_limits(CLI::App& app);

@@ -50,7 +50,7 @@ TEST(Importance, ChangesNothingWithoutAView) {
 TEST(AlphaZeroAndBetaOne, ShootEveryRayByPowerAlone) {
     const Scene scene = colourful_box();
     SolveOptions by_importance = options_of("isrr"), by_power = options_of("srr");
-    by_importance.incremental_start = by_power.incremental_start = false;
+    by_importance.complete_passes = by_power.complete_passes = false;
     by_importance.alpha = 0;
     by_importance.beta = 1;
     const std::vector<Rgb> driven = solve_all(scene, by_importance).irradiance;
@@ -113,7 +113,7 @@ TEST(InheritedTrust, NeitherLosesNorMakesLight) {
 TEST(OneIteration, FromDarknessIsOneBounce) {
     for (const char* method : {"srr", "hsrr"}) {
         SolveOptions options = options_of(method);
-        options.incremental_start = false;
+        options.complete_passes = false;
         options.iterations = 1;
         const Solution s = solve_all(furnace(1), options);
         ASSERT_EQ(s.iterations.size(), 1u);
@@ -123,7 +123,7 @@ TEST(OneIteration, FromDarknessIsOneBounce) {
 
 TEST(WarmUp, ThatNeverEndsKeepsOneMoreBounceEachTime) {
     SolveOptions options = options_of("hsrr");
-    options.incremental_start = false;
+    options.complete_passes = false;
     options.warm_up = 100;
     options.rays_per_iteration = 20'000;
     const Solution s = solve_all(furnace(1), options);

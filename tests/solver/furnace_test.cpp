@@ -43,7 +43,7 @@ double expected_irradiance(double rho) {
 
 SolveOptions paper_options(std::uint64_t seed) {
     SolveOptions options;
-    options.incremental_start = false;
+    options.complete_passes = false;
     options.warm_up = warm_up;
     options.iterations = averaged;
     options.rays_per_iteration = 10'000;
@@ -124,7 +124,7 @@ TEST(Furnace, WeighsEveryIterationByItsRays) {
     // Without noise in the mean, the power after each iteration tells its weight: tau = N_m / (N_1 + ... + N_m).
     constexpr double rho = 0.5;
     SolveOptions options;
-    options.incremental_start = false;
+    options.complete_passes = false;
     options.warm_up = 2;
     options.rays = 1'000'000;
     const Solution solution = solve(furnace(rho), RayCaster(furnace(rho)), options);
@@ -166,7 +166,7 @@ TEST_P(DeepFurnace, HasTheSameIrradianceEverywhere) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         SolveOptions options = GetParam().options;
         options.views = {{into_the_corner}};
-        options.incremental_start = false;
+        options.complete_passes = false;
         options.warm_up = warm_up;
         options.iterations = averaged;
         options.rays_per_iteration = 10'000;

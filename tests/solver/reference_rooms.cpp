@@ -51,7 +51,7 @@ SolveOptions unbiased_options(PointSet points, std::uint64_t seed) {
     SolveOptions options;
     options.seed = seed;
     options.points = points;
-    options.incremental_start = false;
+    options.complete_passes = false;
     options.warm_up = 20;  // the rooms' mean reflectance is below 0.6: 0.6^20 = 4e-5
     options.iterations = 8;
     options.rays_per_iteration = 20'000;

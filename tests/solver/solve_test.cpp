@@ -116,11 +116,11 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
 TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
     const Scene scene = colourful_box();
     for (const std::int64_t rays : {1, 2, 7, 1000, 123'457}) {
-        for (const bool incremental_start : {true, false}) {
+        for (const bool complete_passes : {true, false}) {
             SolveOptions options = with_rays(rays);
-            options.incremental_start = incremental_start;
+            options.complete_passes = complete_passes;
             const Solution solution = solve(scene, options);
-            EXPECT_EQ(solution.iterations.back().rays, rays) << incremental_start;
+            EXPECT_EQ(solution.iterations.back().rays, rays) << complete_passes;
             EXPECT_TRUE(all_finite(solution.irradiance)) << rays;
             EXPECT_FALSE(solution.interrupted);
         }
@@ -157,7 +157,7 @@ TEST(Solve, EndsAfterTheIterationUnderWayWhenTold) {
 TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
     const std::atomic<bool> stop{true};
     SolveOptions options = with_rays(1000);
-    options.incremental_start = false;
+    options.complete_passes = false;
     options.rays_per_iteration = 1000;
     std::atomic<bool> late{false};
     const Monitor monitor{[&](const IterationReport&) { late = true; }, &late};
@@ -184,7 +184,7 @@ TEST(Solve, StopsOnceTheErrorIsSmallEnough) {
 
 TEST(Solve, DoesAsManyIterationsAsItIsTold) {
     SolveOptions options = with_rays(1'000'000);
-    options.incremental_start = false;
+    options.complete_passes = false;
     options.warm_up = 3;
     options.iterations = 5;
     options.rays_per_iteration = 1000;

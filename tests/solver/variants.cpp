@@ -98,7 +98,7 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     options.views = {{into_the_corner}};
     options.seed = seed;
     // A kept ray has the colour that it was shot with, before any warm-up.
-    options.incremental_start = options.method.scheme == Scheme::well_distributed;
+    options.complete_passes = options.method.scheme == Scheme::well_distributed;
     options.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
     options.iterations = 4;
     options.rays_per_iteration = 10'000;

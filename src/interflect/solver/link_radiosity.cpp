@@ -289,7 +289,7 @@ std::vector<Overload> LinkedElements::overloaded_links() const {
 }
 
 bool LinkedElements::may_divide(std::uint32_t element) const {
-    return forest_.area(element) >= 4 * run_.smallest_element;
+    return forest_.area(element) >= 4.0 * static_cast<double>(run_.floor.unseen());
 }
 
 /// Where not all can be divided, keeps the worst.

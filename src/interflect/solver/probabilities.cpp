@@ -76,7 +76,7 @@ Mixture mixture(const Sampled& sampled, const Shares& shares) {
             q[e] = static_cast<float>((for_power + for_driven * driver) * w.power + for_importance * w.importance);
         }
     });
-    return {std::move(q), sums.lost};
+    return {std::move(q), sums.lost, sums.power, sums.driven_power};
 }
 
 std::vector<float> driving_importance(const ElementForest& forest, const Importance& importance, double from_parent,

@@ -9,6 +9,7 @@
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/solver/detail.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/steps.h"
@@ -233,6 +234,16 @@ Arrived follow_paths(Run& run, const Cargo& cargo, std::int64_t paths, std::uint
     return arrived;
 }
 
+/// What noise it has if all of it arrives in equal quanta, independently.
+FreshEstimate independent_arrivals(const Run& run, const Arrived& arrived) {
+    const double power = luminance(integral(*run.forest, arrived.irradiance));
+    FreshEstimate fresh{arrived.irradiance, {}};
+    for (std::uint32_t i = 0; i < arrived.irradiance.size(); ++i)
+        fresh.variance.push_back(static_cast<float>(luminance(arrived.irradiance[i]) * power /
+                                                    (static_cast<double>(arrived.rays) * run.forest->area(i))));
+    return fresh;
+}
+
 /// Follows as many paths as take about this many rays.
 Arrived walk(Run& run, const Cargo& cargo, std::int64_t rays, PathSeries& series) {
     std::int64_t pilot_rays = 0;
@@ -331,7 +342,7 @@ void RandomWalks::walk_light(Run& run, std::int64_t rays, const IterationPlan& p
     const Arrived arrived = walk(run, light(run), rays, light_);
     run.power_rays += arrived.rays;
     const bool tells_of_error = plan.rays >= run.schedule.start_rays();  // a remainder of the rays tells too little
-    if (run.schedule.averaged_rays() > 0 && tells_of_error) estimate_error(run, arrived.irradiance, plan.rays);
+    if (tells_of_error) estimate_noise(run, independent_arrivals(run, arrived), plan.rays);
     const double before = run.history[0], now = before + static_cast<double>(plan.rays);
     const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
     for (std::uint32_t i = 0; i < run.forest->size(); ++i)

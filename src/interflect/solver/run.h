@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "interflect/solver/element_floor.h"
+#include "interflect/solver/noise_model.h"
 #include "interflect/solver/schedule.h"
 #include "interflect/solver/solve.h"
 #include "interflect/solver/surfaces.h"
@@ -25,13 +27,13 @@ struct Run {
     const Monitor& monitor;
     const std::shared_ptr<ElementForest> forest;
     ViewImportance view;
-    const double smallest_element;  // [m^2]
+    const ElementFloor floor;
     SampleStreams streams;
     Schedule schedule;
-    ErrorEstimate error;
     Solution solution;
     std::vector<float> history;   // of each element: rays that its mean stands for
-    std::vector<float> variance;  // of the luminance of H from one ray [(lm/m^2)^2 or (W/m^2)^2]
+    NoiseModel noise;
+    Quanta quanta;                // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     Clock::time_point start = Clock::now();
 
@@ -43,17 +45,12 @@ struct Run {
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest.
 Received run_step(Run& run, TransportStep step);
 
+/// Gives elements from `first` on, made since, what their parents have.
+void grow_with_forest(Run& run, std::uint32_t first);
+
 /// Adds eye rays in proportion to the rays that have been averaged: as the mesh gets finer, what an eye sees of each
 /// element must be known as well.
 void look_closer(Run& run);
-
-/// Follows importance, then light, bounce by bounce, shooting only what has not been shot: an estimate of all bounces
-/// in which no ray is thrown away ('incremental shooting', Neumann et al. 1995). The mesh stays as it is.
-void start_incrementally(Run& run);
-
-/// Enters the difference between a new estimate of the irradiance, of so many rays, and the running mean into the
-/// estimates of the error: that of the whole and those of the elements. Call before the two are merged.
-void estimate_error(Run& run, const std::vector<Rgb>& fresh, std::int64_t rays);
 
 /// Adds a report of where the run stands. @param escaped_power  What the iteration lost.
 void report(Run& run, int iteration, const RgbD& escaped_power);

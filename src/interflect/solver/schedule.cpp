@@ -58,17 +58,4 @@ void Schedule::done(const IterationPlan& plan) {
     averaged_rays_ = warming_up ? 0 : averaged_rays_ + plan.rays;
 }
 
-void ErrorEstimate::add(const Sums& sums, std::int64_t mean_rays, std::int64_t rays) {
-    const double per_ray = 1.0 / static_cast<double>(rays) + 1.0 / static_cast<double>(mean_rays);
-    variance_sum_ += sums.square / sums.weight / per_ray;
-    ++terms_;
-    mean_ = sums.received / sums.weight;
-}
-
-double ErrorEstimate::relative(std::int64_t averaged_rays) const {
-    if (terms_ == 0 || averaged_rays == 0) return std::numeric_limits<double>::infinity();
-    if (mean_ == 0) return 0;
-    return std::sqrt(variance_sum_ / terms_ / static_cast<double>(averaged_rays)) / mean_;
-}
-
 }  // namespace interflect

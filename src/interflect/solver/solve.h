@@ -33,6 +33,12 @@ enum class Scheme {
     links,             ///< Deterministic: elements are linked, and gather over their links.
 };
 
+/// What decides where the mesh is refined, between the passes of Scheme::averaged. See refine_by_variance() and Oracle.
+enum class Refinement {
+    variance,  ///< Elements are split where their children are expected to differ by more than their noise.
+    power,     ///< Pairs of elements are split by the power that passes between them (Eq. 14, 15), as in the paper.
+};
+
 /// A method is data: how rays are used, what steers them, whether the mesh is refined.
 struct Method {
     const char* name;
@@ -67,21 +73,28 @@ struct SolveOptions {
     std::uint64_t seed = 1;
     PointSet points = PointSet::sobol;
 
-    /// The first estimate: true: light (and importance) is followed bounce by bounce, each time only what has not been
-    /// shot yet, until little is left (all rays count). False: the paper's, from darkness through warm_up iterations.
-    bool incremental_start = true;
+    /// True: each iteration is a pass of its own, which follows light from the emitters bounce by bounce until little
+    /// is left; passes are independent, and their mean is kept. False: the paper's, from darkness through warm_up
+    /// iterations, each of which is one bounce of the running mean. Scheme::well_distributed begins with a pass.
+    bool complete_passes = true;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Averaged iterations; 0: as many as the limits allow. >= 0.
     /// Rays of each iteration; 0: begins small and grows with the rays already averaged. >= 0.
     std::int64_t rays_per_iteration = 0;
 
-    /// Threshold of the oracle once 20 million rays are averaged, relative to the reference power (see
+    /// Of Scheme::averaged with complete passes; all others refine by power.
+    Refinement refinement = Refinement::variance;
+    bool shrinks = true;  ///< With Refinement::variance, differences that are mostly noise are reduced (shrinkage.h).
+
+    /// Threshold of Eq. 14 and 15 once 20 million rays are averaged, relative to the reference power (see
     /// reference_power); > 0. Scheme::links takes it as it is.
     double epsilon = 4e-8;
     /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
     /// 1]. At 0 it is the same for all iterations, as in the paper.
     double epsilon_decay = 0.75;
-    double smallest_area = 0;  ///< No element smaller than this [m^2]; 0: by the scene's size. >= 0.
+    /// No element smaller than this [m^2]; >= 0. 0: with a view, the area that a pixel shows of the element; of elements
+    /// that no view shows, and without a view, see ElementFloor.
+    double smallest_area = 0;
     std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
     /// At 1 all elements are averaged alike, as in the paper.
@@ -110,10 +123,15 @@ struct IterationReport {
     std::uint32_t elements = 0, leaves = 0;
     RgbD total_power{0, 0, 0};    ///< Sum of P [lm or W].
     RgbD escaped_power{0, 0, 0};  ///< What this iteration lost through the openings of the scene [lm or W].
-    /// Estimated relative standard error, luminance. With a view: of the radiosity that the view sees, root of its mean
-    /// square over the picture, over the mean. Without: of the irradiance, likewise over the area. From the spread of
-    /// independent iterations about their running mean (ErrorEstimate in schedule.h); infinite while only one is there.
+    /// Estimated relative error of the solution, element by element. With a view: of the luminance of the reflected
+    /// light that it shows, root of the mean square over the picture, over the mean; emission enters neither. Without:
+    /// of the irradiance, likewise over the area. The root of the sum of squares of the two below; infinite as long as
+    /// nothing is known, and where a view shows nothing that reflects light.
     double error_estimate = std::numeric_limits<double>::infinity();
+    double noise_estimate = std::numeric_limits<double>::infinity();           ///< Standard error.
+    double discretisation_estimate = std::numeric_limits<double>::infinity();  ///< What the mesh smooths away.
+    /// Power that a ray carries, over the mean of all: the largest, and that which 0.1% of the rays exceed.
+    double largest_quantum = 1, high_quantum = 1;
 };
 
 /// The light on the surfaces, and how it was found. Every vector has an entry for every element of the forest; inner
@@ -124,6 +142,7 @@ struct Solution {
     std::vector<float> view_importance;      ///< v; empty where there is no view.
     std::vector<float> indirect_importance;  ///< psi - v; likewise.
     std::vector<float> standard_error;       ///< Estimated, of the luminance of H [as H].
+    std::vector<float> discretisation_error;  ///< Estimated: how far H within the element is from its mean [as H].
     std::vector<float> rays;                 ///< How many started on it.
     SolveOptions options;
     std::vector<IterationReport> iterations;

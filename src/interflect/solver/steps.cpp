@@ -32,6 +32,11 @@ Shares power_step_shares(const Solution& so_far, bool combined) {
 
 }  // namespace
 
+bool refines_by_variance(const SolveOptions& o) {
+    return o.method.refines && o.method.scheme == Scheme::averaged && o.complete_passes &&
+           o.refinement == Refinement::variance;
+}
+
 ImportanceUse importance_use(const Solution& so_far) {
     return so_far.view_importance.empty() ? ImportanceUse::off : so_far.options.method.importance;
 }
@@ -46,19 +51,19 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-TransportStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
-                         std::int64_t rays) {
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
+                     std::int64_t rays) {
     TransportStep step;
     const Shares shares = power_step_shares(so_far, combined);
     const std::vector<float> drives = shares.driven_power > 0 ? driver(so_far) : std::vector<float>();
-    step.light = light;
+    step.light = step.known_light = light;
     if (combined) step.importance = importance_of(so_far);
-    auto [q, lost_leaves] = mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
+    auto [q, lost_leaves, power, driven_power] = mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;
     so_far.non_finite += lost_leaves;
-    return step;
+    return {std::move(step), power, driven_power};
 }
 
 TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, const Importance& importance,
@@ -71,12 +76,12 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
     return step;
 }
 
-Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64_t rays, double smallest_area) {
+Oracle make_oracle(const Solution& so_far, const Light& light, std::int64_t rays, double smallest_area) {
     const double fall = std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.epsilon_decay);
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, step.light);
+    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, light);
     if (oracle.by_importance) {
         // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
         oracle.importance =

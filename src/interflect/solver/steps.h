@@ -12,18 +12,27 @@ namespace interflect {
 /// What steers a run: what its method asks for, and nothing where there is no view.
 ImportanceUse importance_use(const Solution& so_far);
 
+/// Whether the mesh of a run is refined between its passes, by what they tell of its elements.
+bool refines_by_variance(const SolveOptions& options);
+
 /// psi of every element, which refers to the solution; empty where there is no view.
 Importance importance_of(const Solution& so_far);
 /// The same, added up.
 std::vector<float> total_importance(const Solution& so_far);
+
+/// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
+/// drives rays (Eq. 9, 10; 0 where none does).
+struct PowerStep {
+    TransportStep step;
+    double power = 0, driven_power = 0;
+};
 
 /// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
 /// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
 /// alone. No oracle is set.
 /// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
 /// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
-TransportStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
-                         std::int64_t rays);
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
 /// it.
@@ -31,8 +40,9 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
                               std::int64_t rays);
 
 /// The oracle of the run's method, Eq. 14 or 15, with the references below.
+/// @param light  All that is known to leave the elements.
 /// @param rays  That irradiance is the mean of, after this step; > 0. The more, the lower the threshold.
-Oracle make_oracle(const Solution& so_far, const TransportStep& step, std::int64_t rays, double smallest_area);
+Oracle make_oracle(const Solution& so_far, const Light& light, std::int64_t rays, double smallest_area);
 
 /// The power that the oracle's threshold is relative to [lm or W]. With a view: what leaves the surfaces it sees, as if
 /// all were as bright as they appear on average; so it does not depend on lights elsewhere, on how an emitter is

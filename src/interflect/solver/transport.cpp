@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -114,11 +115,15 @@ class Carried {
 /// What all rays of a step carry together.
 struct Totals {
     RgbD power{0, 0, 0};  ///< [lm or W]
+    double square = 0;  ///< Of the luminance of each ray's power, summed.
     double importance = 0;
+    Quanta quanta;
 
     Totals& operator+=(const Totals& other) {
         power += other.power;
+        square += other.square;
         importance += other.importance;
+        quanta += other.quanta;
         return *this;
     }
 };
@@ -131,7 +136,12 @@ Totals all_carried(const TransportStep& step, const RayAllocation& allocation, c
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
                 const auto leaf = static_cast<std::uint32_t>(s);
                 const auto count = static_cast<double>(next - first);
-                if (step.carries_power()) sum.power += carried.power(leaf) * count;
+                if (step.carries_power()) {
+                    const RgbD power = carried.power(leaf);
+                    sum.power += power * count;
+                    sum.square += std::pow(luminance(power), 2) * count;
+                    sum.quanta.add(channel_sum(power), next - first);
+                }
                 if (step.carries_importance()) sum.importance += carried.importance(leaf) * count;
                 return true;
             });
@@ -141,17 +151,20 @@ Totals all_carried(const TransportStep& step, const RayAllocation& allocation, c
 
 /// The units in which arrivals are counted: what all rays carry fits.
 struct Units {
-    FixedPoint power, importance;
+    FixedPoint power, square, importance;
 
-    explicit Units(const Totals& all) : power(channel_sum(all.power)), importance(all.importance) {}
+    explicit Units(const Totals& all)
+        : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
 
     Arrivals::Load load(const TransportStep& step, const Carried& carried, std::uint32_t leaf) const {
         Arrivals::Load load{};
         if (step.carries_power()) {
-            const FixedPoint::Value of_power = power.from(carried.power(leaf));
+            const RgbD carried_power = carried.power(leaf);
+            const FixedPoint::Value of_power = power.from(carried_power);
             std::copy(of_power.begin(), of_power.end(), load.begin());
+            load[3] = square.from(std::pow(luminance(carried_power), 2));
         }
-        if (step.carries_importance()) load[3] = importance.from(carried.importance(leaf));
+        if (step.carries_importance()) load[Arrivals::importance] = importance.from(carried.importance(leaf));
         return load;
     }
 };
@@ -205,23 +218,41 @@ void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_eleme
     }
 }
 
+/// The variance of the area-weighted mean of elements whose values are independent, from the leaves up.
+void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
+    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+        float sum = 0, area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            sum += variance[e] * forest.area(e) * forest.area(e);
+            area += forest.area(e);
+        }
+        variance[forest.parent(first)] = sum / (area * area);
+    });
+}
+
 /// Turns sums of arrivals into what each element receives, per unit of area, from its own and its ancestors' arrivals.
 void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
     constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums fill a large page of 2 MiB
-    if (step.carries_power()) received.irradiance.resize(forest.size());
+    if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const auto& [red, green, blue, importance] = arrived[e];
+            const auto& [red, green, blue, square, importance] = arrived[e];
             const float area = forest.area(e);
-            if (step.carries_power()) received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
+            if (step.carries_power()) {
+                received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
+                received.variance[e] = static_cast<float>(units.square.to_number(square) / area / area);
+            }
             if (step.carries_importance())
                 received.importance[e] = static_cast<float>(units.importance.to_number(importance) / area);
         }
         arrived.release(begin, end);
     });
-    if (step.carries_power()) push(forest, received.irradiance), pull(forest, received.irradiance);
+    if (step.carries_power()) {
+        push(forest, received.irradiance), pull(forest, received.irradiance);
+        push(forest, received.variance), pull_variance(forest, received.variance);
+    }
     if (step.carries_importance()) push(forest, received.importance), pull(forest, received.importance);
 }
 
@@ -235,6 +266,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     const RayAllocation& allocation = maker.allocation();
     if (!(allocation.q_sum() > 0)) {
         received.irradiance.assign(step.carries_power() ? forest.size() : 0, Rgb(0));
+        received.variance.assign(received.irradiance.size(), 0.0f);
         received.importance.assign(step.carries_importance() ? forest.size() : 0, 0.0f);
         return received;
     }
@@ -274,6 +306,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     step.oracle.importance = std::vector<float>();
     collect(forest, step, units, arrived, received);
     received.shot_power = all.power;
+    received.quanta = all.quanta;
     received.escaped_power = units.power.to_colour(escaped);
     return received;
 }

@@ -9,6 +9,7 @@
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/light.h"
 #include "interflect/solver/oracle.h"
+#include "interflect/solver/quanta.h"
 #include "interflect/solver/surfaces.h"
 
 namespace interflect {
@@ -35,6 +36,7 @@ struct TransportStep {
     Importance importance;  ///< psi, as it is reflected and shot on; empty: rays carry none.
     bool carries_power() const { return !light.empty(); }
     bool carries_importance() const { return !importance.empty(); }
+    Light known_light;  ///< What the oracle takes to leave the elements, be it shot in this step or not.
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
 };
@@ -42,7 +44,10 @@ struct TransportStep {
 /// What one step brought, for every element of the (grown) forest.
 struct Received {
     std::vector<Rgb> irradiance;    ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
+    /// Estimated variance of the luminance of that: as if rays arrived independently of each other (Poisson).
+    std::vector<float> variance;
     std::vector<float> importance;  ///< Importance per area, likewise; empty unless the step carried it.
+    Quanta quanta;                  ///< What its rays carried, one by one.
     RgbD shot_power{0, 0, 0};       ///< What all rays carried together [lm or W]: the sum of what arrived and escaped.
     RgbD escaped_power{0, 0, 0};    ///< What the rays that hit nothing carried.
     std::int64_t escaped_rays = 0;

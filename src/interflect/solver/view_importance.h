@@ -16,6 +16,7 @@ struct WeightedView {
     View view = {};
     double weight = 1;         ///< > 0; what counts is its share of the sum of all.
     float aspect = 16.0f / 9;  ///< Width over height of the picture.
+    int pixel_rows = 720;      ///< Of the picture, > 0: elements need be no smaller than what a pixel shows.
 };
 
 /// Where eyes look: the points that eye rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/solver/detail.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {
@@ -14,7 +15,7 @@ WellDistributedRays::WellDistributedRays(const Run& run)
 RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     const ElementForest& forest = *run.forest;
     const Light light(run.surfaces, run.solution.irradiance);
-    TransportStep step = power_step(run.surfaces, run.solution, light, false, plan.rays);
+    TransportStep step = power_step(run.surfaces, run.solution, light, false, plan.rays).step;
     step.equal_quanta = true;
     // These methods know no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(forest, light));
@@ -26,7 +27,7 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
     total_ += step.rays;
-    if (run.options.method.refines) step.oracle = make_oracle(run.solution, step, total_, run.smallest_element);
+    if (run.options.method.refines) step.oracle = make_oracle(run.solution, light, total_, run.floor.unseen());
 
     std::vector<std::uint64_t> used_before = run.streams.used;
     const std::uint32_t elements_before = forest.size();
@@ -41,13 +42,15 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     inherit(*run.forest, elements_before, arrived_);
 
     const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(total_));
-    std::vector<Rgb> fresh(arrived_.size());
+    const auto quantum = static_cast<float>(all_power / static_cast<double>(rays));
+    FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size())};
     for (std::size_t e = 0; e < arrived_.size(); ++e) {
-        fresh[e] = static_cast<float>(all_power / static_cast<double>(rays)) * received.irradiance[e];
+        fresh.irradiance[e] = quantum * received.irradiance[e];
+        fresh.variance[e] = quantum * quantum * received.variance[e];
         arrived_[e] += received.irradiance[e];
     }
     pull(*run.forest, arrived_);
-    if (run.schedule.averaged_rays() > 0) estimate_error(run, fresh, rays);
+    estimate_noise(run, fresh, rays);
     for (std::size_t e = 0; e < arrived_.size(); ++e) run.solution.irradiance[e] = power_per_ray * arrived_[e];
     run.history.assign(run.forest->size(), static_cast<float>(total_));
     run.power_rays += rays;

@@ -1,0 +1,213 @@
+#include "interflect/solver/detail.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "interflect/base/parallel.h"
+#include "interflect/solver/steps.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr float unknown = std::numeric_limits<float>::infinity();
+
+/// Irradiance within a leaf about which nothing is known varies by this share of itself.
+constexpr float assumed_variation = 0.1f;
+
+/// From level to level the mean square of differences falls at least to a quarter where irradiance is smooth, and to a
+/// half where it has edges; bounds for what is measured.
+constexpr double least_decay = 0.25, most_decay = 0.7;
+
+bool shrinks(const Run& run) { return run.options.shrinks && refines_by_variance(run.options); }
+
+/// The mean square errors that an element has beyond those of its parent.
+struct AddedError {
+    float noise = 0, bias = 0;
+};
+
+AddedError added_error(const Run& run, const Detail& detail) {
+    if (detail.noise == unknown) return {};  // they are what their parent is
+    if (!shrinks(run)) return {detail.noise, 0};
+    const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
+    return {noise, detail.risk() - noise};
+}
+
+/// Mean square errors of every element, and of what its siblings tell.
+struct ElementErrors {
+    std::vector<float> noise, bias;  // by element; bias may be negative
+};
+
+ElementErrors element_errors(const Run& run) {
+    const ElementForest& forest = *run.forest;
+    ElementErrors errors;
+    errors.noise.assign(forest.size(), 0);
+    errors.bias.assign(forest.size(), 0);
+    for (std::uint32_t root = 0; root < forest.patch_count(); ++root)
+        errors.noise[root] = run.noise.variance(forest, root, std::max(run.history[root], 1.0f));
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        const auto [noise, bias] = added_error(run, detail_of(run, first));
+        const std::uint32_t parent = forest.parent(first);
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            errors.noise[e] = errors.noise[parent] + noise;
+            errors.bias[e] = errors.bias[parent] + bias;
+        }
+    });
+    return errors;
+}
+
+/// The first of the siblings that an element is one of.
+std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
+    return forest.first_child(forest.parent(e));
+}
+
+/// Signal of an element's siblings, 0 where none is known.
+float signal_beside(const Run& run, std::uint32_t e) {
+    if (e < run.forest->patch_count()) return 0;
+    const Detail detail = detail_of(run, first_sibling(*run.forest, e));
+    return detail.noise == unknown ? 0 : detail.signal();
+}
+
+/// What is added up over the leaves, weighted by what counts.
+struct Sums {
+    double weight = 0, mean = 0, noise = 0, bias = 0;
+    double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
+    double assumed = 0;                       // within leaves without siblings
+
+    Sums& operator+=(const Sums& o) {
+        weight += o.weight, mean += o.mean, noise += o.noise, bias += o.bias;
+        signal += o.signal, signal_of_parent += o.signal_of_parent, assumed += o.assumed;
+        return *this;
+    }
+};
+
+double decay_of(const Sums& sums) {
+    if (!(sums.signal > 0) || !(sums.signal_of_parent > 0)) return least_decay;
+    return std::clamp(sums.signal / sums.signal_of_parent, least_decay, most_decay);
+}
+
+Sums sum_errors(const Run& run, const ElementErrors& errors) {
+    const ElementForest& forest = *run.forest;
+    return parallel_sum(forest.size(), elements_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
+        Sums sums;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const double w = error_weight(run, e) * forest.area(e);
+            if (!(w > 0)) continue;
+            const float h = luminance(run.solution.irradiance[e]);
+            sums.weight += w;
+            sums.noise += w * errors.noise[e];
+            sums.bias += w * errors.bias[e];
+            if (e < forest.patch_count()) {
+                sums.assumed += w * std::pow(assumed_variation * h, 2);
+                continue;
+            }
+            const std::uint32_t parent = forest.parent(e);
+            if (run.history[e] == 0) {  // made since: what is known is their parents' siblings' variation
+                sums.signal += w * signal_beside(run, parent) * least_decay;
+                continue;
+            }
+            sums.signal += w * signal_beside(run, e);
+            sums.signal_of_parent += w * signal_beside(run, parent);
+        }
+        return sums;
+    });
+}
+
+}  // namespace
+
+float Detail::shrinkage() const { return spread > noise ? 1 - noise / spread : 0.0f; }
+
+float Detail::risk() const {
+    // Of y = signal + noise in d = 3 dimensions, reduced by the factor 1 - d sigma^2 / |y|^2 or to zero.
+    return spread > noise ? noise + noise * noise / (3 * spread) : spread - noise;
+}
+
+Detail detail_of(const Run& run, std::uint32_t first) {
+    const ElementForest& forest = *run.forest;
+    const std::vector<Rgb>& irradiance = run.solution.irradiance;
+    if (run.history[first] == 0) return {0, unknown};
+    const float mean = luminance(irradiance[forest.parent(first)]);
+    float area = 0, spread = 0, variance = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) {
+        const float difference = luminance(irradiance[e]) - mean, a = forest.area(e);
+        area += a;
+        spread += a * difference * difference;
+        variance += a * run.noise.variance(forest, e, run.history[first]);
+    }
+    return {spread / area, variance / area};
+}
+
+void estimate_noise(Run& run, const FreshEstimate& fresh, std::int64_t rays) {
+    const auto weight = [&](std::uint32_t e) { return error_weight(run, e) * run.forest->area(e); };
+    run.noise.add(*run.forest, fresh, run.solution.irradiance, run.history, static_cast<float>(rays), weight);
+}
+
+double SolutionError::total() const { return std::hypot(noise, discretisation); }
+
+SolutionError solution_error(const Run& run) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double mean = error_reference(run);
+    if (!run.noise.is_known() || !(mean > 0)) return {infinity, infinity};
+    const Sums sums = sum_errors(run, element_errors(run));
+    if (!(sums.weight > 0)) return {infinity, infinity};
+    const double total_weight = run.view.empty() ? sums.weight : 1;
+    const double decay = decay_of(sums);
+    const double within_leaves = std::max(0.0, sums.signal) * decay / (1 - decay) + sums.assumed;
+    const double discretisation = run.options.method.refines ? std::max(0.0, sums.bias + within_leaves) : 0;
+    return {std::sqrt(sums.noise / total_weight) / mean, std::sqrt(discretisation / total_weight) / mean};
+}
+
+double error_reference(const Run& run) {
+    const ElementForest& forest = *run.forest;
+    const bool has_view = !run.view.empty();
+    double sum = 0, weight = 0;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+        const double w = has_view ? static_cast<double>(run.solution.view_importance[i]) : 1.0;
+        const Rgb& h = run.solution.irradiance[i];
+        sum += w * forest.area(i) * luminance(has_view ? Rgb(run.surfaces.reflectance(i) * h) : h);
+        weight += w * forest.area(i);
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+double error_weight(const Run& run, std::uint32_t element) {
+    if (run.view.empty()) return 1;
+    const Rgb& rho = run.surfaces.reflectance(run.forest->patch(element));
+    const Rgb& h = run.solution.irradiance[element];
+    const float all = luminance(h), reflected = luminance(Rgb(rho * h));
+    const float factor = all > 0 ? reflected / all : luminance(rho);
+    return static_cast<double>(run.solution.view_importance[element]) * factor * factor;
+}
+
+void finish_solution(Run& run) {
+    const ElementForest& forest = *run.forest;
+    Solution& solution = run.solution;
+    const ElementErrors errors = element_errors(run);
+    solution.standard_error.resize(forest.size());
+    solution.discretisation_error.resize(forest.size());
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        const float within = std::max(0.0f, signal_beside(run, e)) / 3;  // a quarter, a sixteenth, ... of it
+        solution.standard_error[e] = std::sqrt(errors.noise[e]);
+        solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
+    }
+    run.streams.used.resize(forest.size(), 0);
+    solution.rays.assign(run.streams.used.begin(), run.streams.used.end());
+    if (!shrinks(run)) return;
+    std::vector<Rgb> reduced = solution.irradiance;
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        const Detail detail = detail_of(run, first);
+        const float kept = detail.noise == unknown ? 1 : detail.shrinkage();
+        const std::uint32_t parent = forest.parent(first);
+        const Rgb &mean = solution.irradiance[parent], &target = reduced[parent];
+        for (std::uint32_t e = first; e < first + 4; ++e)
+            for (int c = 0; c < 3; ++c) {  // as ratios, lest anything becomes negative
+                const float ratio = mean[c] > 0 ? solution.irradiance[e][c] / mean[c] : 1;
+                reduced[e][c] = target[c] * (1 + kept * (ratio - 1));
+            }
+    });
+    solution.irradiance = std::move(reduced);
+}
+
+}  // namespace interflect

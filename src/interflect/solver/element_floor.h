@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "interflect/scene/scene.h"
+#include "interflect/solver/solve.h"
+
+namespace interflect {
+
+/// The smallest area that elements are divided to. Depends on the views and on how large the scene's surfaces are, not
+/// on the size of the world.
+class ElementFloor {
+  public:
+    ElementFloor(const Scene& scene, const SolveOptions& options);
+
+    /// @param is_seen  By a view: then the area that a pixel of the nearest view shows there; else as below.
+    /// @return         [m^2]; SolveOptions::smallest_area wherever that is given.
+    float smallest_area(const V3f& centre, const V3f& normal, bool is_seen) const;
+
+    /// Where no view looks: 5 mm squared, or a thousandth of the side of a typical surface squared if that is less (a
+    /// model in kilometres): the median of all surfaces' by area.
+    float unseen() const { return unseen_; }
+
+  private:
+    struct Eye {
+        V3f position;
+        float pixel;  // width at distance 1
+    };
+    std::vector<Eye> eyes_;
+    float unseen_;
+    bool is_given_;
+};
+
+}  // namespace interflect

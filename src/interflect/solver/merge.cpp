@@ -1,0 +1,68 @@
+#include "interflect/solver/merge.h"
+
+#include "interflect/base/parallel.h"
+
+namespace interflect {
+
+namespace {
+
+/// What scales children to their parent's mean: factor child + offset. Where all of them are 0 there is nothing to
+/// scale, and they get the mean.
+template <class T>
+struct Scaling {
+    T factor, offset;
+};
+Scaling<float> scaling(float children_mean, float parent_mean) {
+    const bool is_scaled = children_mean > 0;
+    return {is_scaled ? parent_mean / children_mean : 0, is_scaled ? 0 : parent_mean};
+}
+Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
+    const auto [fx, ox] = scaling(children_mean.x, parent_mean.x);
+    const auto [fy, oy] = scaling(children_mean.y, parent_mean.y);
+    const auto [fz, oz] = scaling(children_mean.z, parent_mean.z);
+    return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
+}
+
+template <class T>
+void merge_into(const Run& run, std::vector<T>& mean, const std::vector<T>& received, const IterationPlan& plan) {
+    const ElementForest& forest = *run.forest;
+    const auto rays = static_cast<float>(plan.rays);
+    const auto merge_one = [&](std::uint32_t e) {
+        const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
+        mean[e] += tau * (received[e] - mean[e]);
+    };
+    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) merge_one(e);
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        T sum(0);
+        float area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            merge_one(e);
+            sum += mean[e] * forest.area(e);
+            area += forest.area(e);
+        }
+        const auto [factor, offset] = scaling(sum / area, mean[forest.parent(first)]);
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = mean[e] * factor + offset;
+    });
+    pull(forest, mean);
+}
+
+}  // namespace
+
+void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan) {
+    merge_into(run, mean, received, plan);
+}
+void merge(const Run& run, std::vector<float>& mean, const std::vector<float>& received, const IterationPlan& plan) {
+    merge_into(run, mean, received, plan);
+}
+
+void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new) {
+    const auto rays = static_cast<float>(plan.rays), trust = static_cast<float>(run.options.inherited_trust);
+    parallel_for_ranges(run.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e)
+            run.history[e] = plan.warms_up ? 0.0f : (run.history[e] + rays) * (e < first_new ? 1.0f : trust);
+    });
+}
+
+}  // namespace interflect

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/solver/run.h"
+
+namespace interflect {
+
+/// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. A patch has
+/// the same tau as all others. Children made later have a larger one, but only for how they share what their parent
+/// has: so none of the light is forgotten, and none counts twice. Where no element is younger than others this is
+/// Eq. 6 as it is.
+void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan);
+void merge(const Run& run, std::vector<float>& mean, const std::vector<float>& received, const IterationPlan& plan);
+
+/// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
+/// inherited a mean that is too smooth, less of them count.
+void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new);
+
+}  // namespace interflect

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "interflect/base/colour.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect {
+
+/// An estimate of irradiance that an iteration made, before it is merged.
+struct FreshEstimate {
+    std::vector<Rgb> irradiance;  ///< H of every element [lm/m^2 or W/m^2].
+    std::vector<float> variance;  ///< Of its luminance, if rays arrived independently of each other.
+};
+
+/// How noisy the running mean of irradiance is. Of every element it keeps the variance that one ray would cause if rays
+/// arrived independently: that is known from few rays. How much less it is thanks to low-discrepancy points, or more
+/// since noise is reflected on, is told by how much independent iterations differ, for the elements of a level together.
+class NoiseModel {
+  public:
+    explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
+
+    /// Variance of the luminance of an element's irradiance where that is the mean of so many rays: of a root; of
+    /// others, of their difference from their parent.
+    float variance(const ElementForest& forest, std::uint32_t e, float rays) const {
+        return scale_[static_cast<std::size_t>(forest.level(e))] * independent_variance(forest, e) / rays;
+    }
+    /// Whether two iterations have been compared.
+    bool is_known() const { return iterations_ > 1; }
+
+    /// Gives elements from `first` on, made since, a quarter of their parents' rays on a quarter of the area.
+    void grow(const ElementForest& forest, std::uint32_t first);
+
+    /// Enters an iteration of so many rays, before it is merged.
+    /// @param mean     The running mean.
+    /// @param history  Rays that it stands for, by element; 0: nothing is known of how the element differs from its
+    ///                 parent.
+    /// @param weight   How much a leaf's squared error counts; inner elements count as their leaves together.
+    void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
+             std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
+
+  private:
+    static constexpr std::size_t levels = ElementForest::deepest_level + 1;
+    /// Squares of differences between an iteration and the mean, summed over the elements of each level.
+    struct Spread {
+        std::array<double, levels> observed{}, independent{};
+        Spread& operator+=(const Spread& other);
+    };
+
+    /// Of siblings' independent variance three quarters are left of that of their differences from their mean.
+    float independent_variance(const ElementForest& forest, std::uint32_t e) const {
+        return (e < forest.patch_count() ? 1.0f : 0.75f) * per_ray_[e];
+    }
+
+    std::vector<float> per_ray_;  // [irradiance^2]
+    std::array<float, levels> scale_;
+    Spread spread_;  // of all iterations, later ones counting more
+    int iterations_ = 0;
+};
+
+}  // namespace interflect

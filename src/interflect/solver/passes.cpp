@@ -1,0 +1,194 @@
+#include "interflect/solver/passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "interflect/base/parallel.h"
+#include "interflect/solver/detail.h"
+#include "interflect/solver/merge.h"
+#include "interflect/solver/steps.h"
+#include "interflect/solver/variance_refinement.h"
+
+namespace interflect {
+
+namespace {
+
+/// A pass ends when the next bounce would get fewer rays; what is left to shoot is handed on to the next pass.
+constexpr double fewest_rays_of_bounce = 16;
+/// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
+constexpr double assumed_bounces = 2;
+/// Importance is followed at first until this share of it is left.
+constexpr double negligible_importance = 0.005;
+
+/// Shares the rays of a pass among its bounces.
+class BounceBudget {
+  public:
+    BounceBudget(std::int64_t rays, double bounces) : rays_(rays), left_(rays), bounces_(bounces) {}
+
+    /// @param unshot  What is left to shoot, relative to the first bounce.
+    /// @return        The rays of the next bounce; all that are left if it is the last; 0 if there are none.
+    std::int64_t next(double unshot) {
+        const double decay = last_unshot_ > 0 ? std::min(1.0, unshot / last_unshot_) : 0.5;
+        last_unshot_ = unshot;
+        // If all bounces to come decay alike, they must do with what is left.
+        const double affordable = (1 - decay) * static_cast<double>(left_);
+        const double share = static_cast<double>(rays_) * unshot / (bounces_ > 0 ? bounces_ : assumed_bounces);
+        const double rays = first_ && bounces_ > 0 ? share : std::min(share, std::max(affordable, 1.0));
+        first_ = false;
+        is_last_ = rays < fewest_rays_of_bounce;
+        const std::int64_t taken = is_last_ ? left_ : std::min<std::int64_t>(left_, std::llround(rays));
+        left_ -= taken;
+        return taken;
+    }
+    bool is_last() const { return is_last_ || left_ == 0; }
+
+  private:
+    std::int64_t rays_, left_;
+    double bounces_, last_unshot_ = 0;
+    bool first_ = true, is_last_ = false;
+};
+
+/// What a bounce has to shoot, as a number that rays are shared by.
+double unshot_weight(const PowerStep& bounce, const PowerStep& first, double beta) {
+    const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
+    const double power = relative(bounce.power, first.power);
+    if (!(first.driven_power > 0)) return power;
+    return beta * power + (1 - beta) * relative(bounce.driven_power, first.driven_power);
+}
+
+void add(FreshEstimate& sum, const Received& received) {
+    parallel_for_ranges(sum.irradiance.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e) {
+            sum.irradiance[e] += received.irradiance[e];
+            sum.variance[e] += received.variance[e];
+        }
+    });
+}
+
+/// Follows importance bounce by bounce, with so many rays at first; what it finds at each is added to the estimate.
+void start_importance(Run& run, std::int64_t rays) {
+    Solution& solution = run.solution;
+    BounceBudget budget(rays, 0);
+    std::vector<float> unshot = solution.view_importance;
+    for (double left = 1; left > negligible_importance && !budget.is_last();) {
+        TransportStep step = importance_step(run.surfaces, solution, Importance(unshot), std::max<std::int64_t>(1, budget.next(left)));
+        run.importance_rays += step.rays;
+        unshot = run_step(run, std::move(step)).importance;
+        left = 0;  // of the reflected importance; at first all of V is to be shot
+        for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
+            solution.indirect_importance[e] += unshot[e];
+            if (e < run.forest->patch_count()) left += static_cast<double>(unshot[e]) * run.forest->area(e);
+        }
+    }
+}
+
+/// Hands on what the pass did not shoot.
+std::vector<Rgb> handed_on(PassState& state, std::size_t elements, std::int64_t rays) {
+    std::vector<Rgb> unshot = std::exchange(state.unshot, {});
+    if (unshot.empty()) unshot.assign(elements, Rgb(0));
+    const auto factor = static_cast<float>(state.unshot_rays / static_cast<double>(rays));
+    for (Rgb& h : unshot) h *= factor;
+    return unshot;
+}
+
+}  // namespace
+
+FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool oracle_refines, RgbD& escaped_power) {
+    Solution& solution = run.solution;
+    const bool carries_importance = importance_use(solution) == ImportanceUse::full && !run.options.separate_iterations;
+    BounceBudget budget(rays, state.bounces);
+    FreshEstimate fresh{std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
+    std::vector<Rgb> unshot = handed_on(state, run.forest->size(), rays);
+    PowerStep first;
+    double bounces = 0;
+    run.quanta = {};
+    for (bool emits = true; !budget.is_last(); emits = false) {
+        const Light light(run.surfaces, unshot, emits);
+        PowerStep bounce = power_step(run.surfaces, solution, light, carries_importance && emits, 0);
+        if (emits) first = PowerStep{{}, bounce.power, bounce.driven_power};
+        const double weight = unshot_weight(bounce, first, run.options.beta);
+        bounce.step.rays = budget.next(weight);
+        if (bounce.step.rays == 0 || !(bounce.power > 0)) break;
+        bounces += weight;
+        const std::int64_t for_importance =
+            bounce.step.carries_importance() ? std::llround(run.options.alpha * static_cast<double>(bounce.step.rays)) : 0;
+        run.importance_rays += for_importance;
+        run.power_rays += bounce.step.rays - for_importance;
+        bounce.step.known_light = Light(run.surfaces, solution.irradiance);
+        if (oracle_refines) bounce.step.oracle = make_oracle(solution, bounce.step.known_light, run.schedule.averaged_rays() + rays, run.floor.unseen());
+        const bool brings_importance = bounce.step.carries_importance();
+        const IterationPlan plan{bounce.step.rays, false};
+        const std::uint32_t before = run.forest->size();
+        Received received = run_step(run, std::move(bounce.step));
+        escaped_power += received.escaped_power;
+        run.quanta += received.quanta;
+        inherit(*run.forest, before, fresh.irradiance);
+        inherit(*run.forest, before, fresh.variance);
+        add(fresh, received);
+        if (brings_importance) merge(run, solution.indirect_importance, received.importance, plan);
+        unshot = std::move(received.irradiance);
+    }
+    state.unshot = std::move(unshot);
+    state.unshot_rays = static_cast<double>(rays);
+    state.bounces = bounces;
+    return fresh;
+}
+
+PassState prepare_passes(Run& run) {
+    const std::int64_t rays = run.schedule.start_rays();
+    if (importance_use(run.solution) == ImportanceUse::full) start_importance(run, rays);
+    PassState state;
+    RgbD escaped_power(0, 0, 0);
+    if (run.options.method.refines) {
+        run.solution.irradiance = trace_pass(run, state, rays, false, escaped_power).irradiance;
+        PassState refined;
+        refined.bounces = state.bounces;
+        run.solution.irradiance = trace_pass(run, refined, rays, true, escaped_power).irradiance;
+        state.bounces = refined.bounces;
+    }
+    state.unshot.clear();
+    const std::int64_t traced = run.power_rays + run.importance_rays;
+    run.schedule.began_with(0, traced);
+    if (traced > 0) report(run, 0, escaped_power);
+    return state;
+}
+
+void make_first_estimate(Run& run) {
+    PassState state = prepare_passes(run);
+    if (run.power_rays == 0) {
+        RgbD escaped_power(0, 0, 0);
+        run.solution.irradiance = trace_pass(run, state, run.schedule.start_rays(), false, escaped_power).irradiance;
+        run.schedule.began_with(0, run.power_rays + run.importance_rays);
+        report(run, 0, escaped_power);
+    }
+}
+
+RgbD iterate_pass(Run& run, PassState& state, IterationPlan& plan) {
+    RgbD escaped_power(0, 0, 0);
+    const std::int64_t rays_before = run.power_rays + run.importance_rays;
+    const bool has_importance_step = importance_use(run.solution) == ImportanceUse::full && run.options.separate_iterations;
+    const std::int64_t for_importance = has_importance_step ? std::llround(run.options.alpha * static_cast<double>(plan.rays)) : 0;
+    if (for_importance > 0) {
+        const Importance psi = importance_of(run.solution);
+        const Received received = run_step(run, importance_step(run.surfaces, run.solution, psi, for_importance));
+        merge(run, run.solution.indirect_importance, received.importance, plan);
+        run.importance_rays += for_importance;
+    }
+    if (plan.rays == for_importance) return escaped_power;
+    const bool by_power = run.options.method.refines && !refines_by_variance(run.options);
+    const std::uint32_t before = run.forest->size();
+    const FreshEstimate fresh = trace_pass(run, state, plan.rays - for_importance, by_power, escaped_power);
+    plan.rays = std::max<std::int64_t>(1, run.power_rays + run.importance_rays - rays_before);
+    estimate_noise(run, fresh, plan.rays);
+    merge(run, run.solution.irradiance, fresh.irradiance, plan);
+    remember(run, plan, before);
+    if (run.options.method.refines && !by_power && run.noise.is_known()) {
+        const std::uint32_t size = run.forest->size();
+        refine_by_variance(run);
+        inherit(*run.forest, size, state.unshot);
+    }
+    return escaped_power;
+}
+
+}  // namespace interflect

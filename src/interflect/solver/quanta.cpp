@@ -1,0 +1,40 @@
+#include "interflect/solver/quanta.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace interflect {
+
+void Quanta::add(double power, std::int64_t rays) {
+    if (!(power > 0) || rays == 0) return;
+    if (rays_.empty()) rays_.resize(bins, 0);
+    const double bin = std::floor(bins_per_octave * std::log2(power)) + bins / 2;
+    rays_[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1.0))] += rays;
+    power_ += power * static_cast<double>(rays);
+    largest_ = std::max(largest_, power);
+    count_ += rays;
+}
+
+Quanta& Quanta::operator+=(const Quanta& other) {
+    if (other.rays_.empty()) return *this;
+    rays_.resize(bins, 0);
+    for (std::size_t i = 0; i < rays_.size(); ++i) rays_[i] += other.rays_[i];
+    power_ += other.power_;
+    largest_ = std::max(largest_, other.largest_);
+    count_ += other.count_;
+    return *this;
+}
+
+double Quanta::largest_over_mean() const { return count_ > 0 ? largest_ / power_ * static_cast<double>(count_) : 1; }
+
+double Quanta::quantile_over_mean(double share) const {
+    if (count_ == 0) return 1;
+    const double exceeding = share * static_cast<double>(count_);
+    double above = 0;
+    std::size_t bin = rays_.size();
+    while (bin > 0 && above + static_cast<double>(rays_[bin - 1]) <= exceeding) above += static_cast<double>(rays_[--bin]);
+    const double upper_end = std::exp2((static_cast<double>(bin) - bins / 2) / bins_per_octave);
+    return std::min(upper_end, largest_) / power_ * static_cast<double>(count_);
+}
+
+}  // namespace interflect

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace interflect {
+
+/// How much power rays carry, counted in bins of a quarter of an octave.
+class Quanta {
+  public:
+    /// @param power  Sum of the channels [lm or W].
+    void add(double power, std::int64_t rays);
+    Quanta& operator+=(const Quanta& other);
+
+    double largest_over_mean() const;  ///< 1 where nothing was carried.
+    /// The power over the mean that a share of the rays exceeds, to 19%.
+    double quantile_over_mean(double share) const;
+
+  private:
+    static constexpr int bins_per_octave = 4, bins = 1024;
+    std::vector<std::int64_t> rays_;  // of each bin; empty as long as there are none
+    double power_ = 0, largest_ = 0;
+    std::int64_t count_ = 0;
+};
+
+}  // namespace interflect

@@ -1,0 +1,101 @@
+#include "interflect/solver/variance_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "interflect/solver/detail.h"
+#include "interflect/solver/element_floor.h"
+
+namespace interflect {
+
+namespace {
+
+/// The mean square by which a leaf's children will differ, over that of its own siblings: a quarter where irradiance is
+/// linear, a half where an edge runs through.
+constexpr float expected_decay = 0.3f;
+/// The same over the square of its irradiance, for a leaf without siblings: nothing is known of it.
+constexpr float assumed_square = 0.04f;
+/// Children are made once their expected differences are this share of the noise that they would have with the rays so
+/// far. More rays will come, and until then the differences are reduced to what they are worth.
+constexpr float least_signal = 0.25f;
+/// A leaf is left alone if what splitting it gains is less than this share of the whole squared error.
+constexpr double negligible_gain = 1e-6;
+/// How much the squared error of the shape of what is not seen counts beside what is: it reaches the view spread out.
+constexpr double unseen_shape = 0.02;
+
+/// Decides about the leaves of a run.
+class VarianceOracle {
+  public:
+    explicit VarianceOracle(const Run& run) : run_(run), forest_(*run.forest), floor_(run.floor) {
+        const double error = solution_error(run).total();
+        least_gain_ = std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
+    }
+
+    bool splits(std::uint32_t leaf) const {
+        float signal, noise;  // of the children to be
+        if (leaf < forest_.patch_count()) {
+            const float h = luminance(run_.solution.irradiance[leaf]);
+            signal = assumed_square * h * h;
+            noise = 3 * run_.noise.variance(forest_, leaf, run_.history[leaf]);
+        } else {
+            const Detail detail = detail_of(run_, forest_.first_child(forest_.parent(leaf)));
+            signal = expected_decay * detail.signal();
+            noise = 4 * detail.noise;
+        }
+        if (!(signal > least_signal * noise)) return false;
+        return weight(leaf) * static_cast<double>(signal) > least_gain_ && is_large_enough(leaf);
+    }
+
+  private:
+    /// Of the squared error of the luminance of its irradiance.
+    double weight(std::uint32_t leaf) const {
+        double w = error_weight(run_, leaf);
+        if (!run_.solution.indirect_importance.empty()) {
+            const double rho = luminance(run_.surfaces.reflectance(forest_.patch(leaf)));
+            w += unseen_shape * rho * rho * static_cast<double>(run_.solution.indirect_importance[leaf]);
+        }
+        return w * forest_.area(leaf);
+    }
+    bool is_large_enough(std::uint32_t leaf) const {
+        const std::uint32_t patch = forest_.patch(leaf);
+        const PatchGeometry& geometry = forest_.geometry(patch);
+        const bool is_seen = !run_.view.empty() && run_.solution.view_importance[patch] > 0;
+        const V3f centre = geometry.point(forest_.cell(leaf).centre(geometry.is_triangle()));
+        return forest_.area(leaf) >= 4 * floor_.smallest_area(centre, geometry.normal(), is_seen);
+    }
+    double weighted_mean_square() const {
+        const double mean = error_reference(run_);
+        double weight = run_.view.empty() ? 0 : 1;
+        if (run_.view.empty())
+            for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) weight += forest_.area(i);
+        return mean * mean * weight;
+    }
+
+    const Run& run_;
+    const ElementForest& forest_;
+    const ElementFloor& floor_;
+    double least_gain_ = 0;  // [weight times irradiance^2]
+};
+
+}  // namespace
+
+void refine_by_variance(Run& run) {
+    ElementForest& forest = *run.forest;
+    const std::uint32_t before = forest.size();
+    const VarianceOracle oracle(run);
+    std::vector<std::uint8_t> splits(before, 0);
+    parallel_for_ranges(before, elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+            splits[e] = forest.is_leaf(e) && run.history[e] > 0 && oracle.splits(e);
+    });
+    for (std::uint32_t e = 0; e < before && forest.size() + 4 <= run.options.most_elements; ++e)
+        if (splits[e]) forest.subdivide(e);
+    if (forest.size() == before) return;
+    forest.put_in_order(before);
+    grow_with_forest(run, before);
+    std::fill(run.history.begin() + before, run.history.end(), 0.0f);
+}
+
+}  // namespace interflect

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "interflect/scene/scene.h"
+#include "interflect/solver/run.h"
+
+namespace interflect {
+
+/// Splits every leaf within which irradiance is expected to vary by more than the noise that its children will have:
+/// the variation is extrapolated from how the leaf and its siblings differ, beyond their noise (detail.h). Not where
+/// that matters nothing to the error of the whole, nor below the smallest area (ElementFloor). New elements inherit
+/// what their parents have; how they differ is measured by later rays alone, so it is not biased by the choice.
+/// To be called between iterations.
+void refine_by_variance(Run& run);
+
+}  // namespace interflect
