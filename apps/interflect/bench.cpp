@@ -70,7 +70,7 @@ struct Workload {
         const Light light(surfaces, solution.irradiance);
         step = power_step(surfaces, solution, light, combined, options.rays).step;
         if (options.method.refines && !refines_by_variance(options))
-            step.oracle = make_oracle(solution, light, options.rays, options.smallest_area);
+            step.oracle = make_oracle(solution, options.rays, options.smallest_area);
         step.oracle.most_elements = forest->size();
         rays = transport_rays(*forest, ray_caster, step, streams);
     }

@@ -16,27 +16,27 @@ using Load = Arrivals::Load;
 TEST(Arrivals, GivesEachElementThePartsOfTheLoadsThatArriveThere) {
     Arrivals arrivals(3, 5);
     Arrivals::Sorter sorter(arrivals);
-    const std::uint32_t a = sorter.add_source({1, 10, 100, 1000}), b = sorter.add_source({2, 20, 200, 2000});
+    const std::uint32_t a = sorter.add_source({1, 10, 100, 5, 1000}), b = sorter.add_source({2, 20, 200, 7, 2000});
     sorter.add(0, a, true, true);
     sorter.add(0, b, true, false);
     sorter.add(2, b, false, true);
     sorter.add(4, a, true, false);  // made since the step began
     sorter.hand_on_all();
-    EXPECT_EQ(arrivals[0], (Load{3, 30, 300, 1000}));
-    EXPECT_EQ(arrivals[1], (Load{0, 0, 0, 0}));
-    EXPECT_EQ(arrivals[2], (Load{0, 0, 0, 2000}));
-    EXPECT_EQ(arrivals[4], (Load{1, 10, 100, 0}));
+    EXPECT_EQ(arrivals[0], (Load{3, 30, 300, 12, 1000}));
+    EXPECT_EQ(arrivals[1], (Load{0, 0, 0, 0, 0}));
+    EXPECT_EQ(arrivals[2], (Load{0, 0, 0, 0, 2000}));
+    EXPECT_EQ(arrivals[4], (Load{1, 10, 100, 5, 0}));
 }
 
 TEST(Arrivals, AreTheSameWhateverThreadsBringThem) {
     constexpr std::size_t elements = 1000, sources = 7, rays = 200'000;
     std::vector<Load> loads;
-    for (std::int64_t s = 0; s < static_cast<std::int64_t>(sources); ++s) loads.push_back({s, 3 * s, -s, 1 + s});
+    for (std::int64_t s = 0; s < static_cast<std::int64_t>(sources); ++s) loads.push_back({s, 3 * s, -s, s * s, 1 + s});
     std::vector<Load> expected(elements, Load{});
     Arrivals arrivals(elements, elements);
     const auto element = [](std::size_t ray) { return static_cast<std::uint32_t>(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
-        for (std::size_t c = 0; c < 4; ++c) expected[element(ray)][c] += loads[ray % sources][c];
+        for (std::size_t c = 0; c < loads[0].size(); ++c) expected[element(ray)][c] += loads[ray % sources][c];
     parallel_for_ranges(rays, 10'000, [&](std::size_t begin, std::size_t end) {
         Arrivals::Sorter sorter(arrivals);
         for (std::size_t ray = begin; ray < end; ++ray) {

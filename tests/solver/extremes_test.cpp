@@ -86,6 +86,7 @@ Solution two_iterations_trusting(double inherited_trust) {
     SolveOptions options = options_of("hsrr");
     options.views.clear();
     options.rays_per_iteration = 1000;
+    options.refinement = Refinement::power;
     options.inherited_trust = inherited_trust;
     divide_everything(options, 0.03);  // m^2; the walls have 2, 3 and 6: three levels
     return solve_until(2, furnace(1), options);

@@ -87,10 +87,10 @@ TEST_F(Weights, ThatAre0EverywhereLeaveTheirShareToTheOthers) {
 
 TEST_F(Weights, CountTheLeavesOfWhichNothingFiniteCanBeShot) {
     irradiance_[0].x = irradiance_[2].y = irradiance_[4].z = std::numeric_limits<float>::infinity();
-    const auto [q, lost_leaves] = mixture(sampled(), {.power = 1});
-    EXPECT_EQ(lost_leaves, 2) << "and the inner element is none";
-    EXPECT_EQ(q[2], 0);
-    EXPECT_EQ(q[4], 0);
+    const Mixture mixed = mixture(sampled(), {.power = 1});
+    EXPECT_EQ(mixed.lost_leaves, 2) << "and the inner element is none";
+    EXPECT_EQ(mixed.q[2], 0);
+    EXPECT_EQ(mixed.q[4], 0);
 }
 
 TEST_F(Weights, AreFiniteShares) {

@@ -1,15 +1,12 @@
-// Sizes of iterations, which of them are averaged (Eq. 6, Prikryl et al. 2000), and the estimate of the error.
-// Seen to fail when the rays of the warm-up or of importance count as averaged, and (scripts/plant-faults) when the
-// estimate forgets the noise of the earlier mean.
+// Sizes of iterations, which of them are averaged (Eq. 6, Prikryl et al. 2000).
+// Seen to fail when the rays of the warm-up or of importance count as averaged.
 
 #include "interflect/solver/schedule.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <random>
 
 namespace interflect {
 namespace {
@@ -110,72 +107,6 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
     EXPECT_EQ(schedule.next(9).rays, 111'111) << "a million took nine seconds, one is left";
     EXPECT_EQ(schedule.next(10).rays, 0);
     EXPECT_EQ(schedule.next(11).rays, 0);
-}
-
-class ErrorEstimates : public testing::Test {
-  protected:
-    static constexpr std::size_t elements = 600;
-    const std::vector<double> weights_ = alternating_weights();
-
-    /// What `rays` rays would estimate: `value` with a standard deviation of `spread` / sqrt(rays) in each element.
-    static std::vector<double> estimate(double value, double spread, std::int64_t rays, std::uint64_t seed) {
-        std::mt19937_64 random(seed);
-        std::normal_distribution<double> estimated(value, spread / std::sqrt(static_cast<double>(rays)));
-        std::vector<double> values(elements);
-        for (double& v : values) v = estimated(random);
-        return values;
-    }
-
-    static ErrorEstimate::Sums sums(const std::vector<double>& weights, const std::vector<double>& mean,
-                                    const std::vector<double>& fresh) {
-        ErrorEstimate::Sums sums;
-        for (std::size_t i = 0; i < weights.size(); ++i) sums.add(weights[i], mean[i], fresh[i]);
-        return sums;
-    }
-
-  private:
-    static std::vector<double> alternating_weights() {
-        std::vector<double> weights(elements, 1.0);
-        for (std::size_t i = 0; i < elements; i += 2) weights[i] = 3;
-        return weights;
-    }
-};
-
-TEST_F(ErrorEstimates, FindTheErrorOfTheMean) {
-    constexpr double value = 5, spread = 100;
-    constexpr std::int64_t mean_rays = 30'000, rays = 10'000;
-    ErrorEstimate error;
-    for (std::uint64_t seed = 0; seed < 10; ++seed)
-        error.add(
-            sums(weights_, estimate(value, spread, mean_rays, 2 * seed), estimate(value, spread, rays, 2 * seed + 1)),
-            mean_rays, rays);
-    const double expected = spread / std::sqrt(40'000.0) / value;
-    EXPECT_NEAR(error.relative(40'000) / expected, 1, 0.05);  // 6,000 differences: 1% noise
-}
-
-TEST_F(ErrorEstimates, DoNotSeeWhatDoesNotCount) {
-    std::vector<double> first_half(elements, 0.0);
-    std::fill_n(first_half.begin(), elements / 2, 2.0);
-    std::vector<double> mean(elements, 5.0), received = mean;
-    mean[0] = 5.5;
-    ErrorEstimate without, with;
-    without.add(sums(first_half, mean, received), 1000, 1000);
-    received.back() = mean.back() = 1e9;
-    mean[elements / 2] = -1e9;
-    with.add(sums(first_half, mean, received), 1000, 1000);
-    EXPECT_GT(without.relative(2000), 0);
-    EXPECT_EQ(with.relative(2000), without.relative(2000));
-}
-
-TEST_F(ErrorEstimates, AreInfiniteUntilThereAreTwoIterations) {
-    EXPECT_TRUE(std::isinf(ErrorEstimate().relative(1000)));
-}
-
-TEST_F(ErrorEstimates, AreZeroInTheDark) {
-    ErrorEstimate error;
-    const std::vector<double> dark(elements, 0.0);
-    error.add(sums(weights_, dark, dark), 1000, 1000);
-    EXPECT_EQ(error.relative(2000), 0);
 }
 
 }  // namespace

@@ -133,10 +133,10 @@ TEST(Solve, ReportsEveryIterationInOrder) {
                                     {[&](const IterationReport& report) { reports.push_back(report); }, nullptr});
     ASSERT_EQ(reports.size(), solution.iterations.size());
     ASSERT_GE(reports.size(), 3u);
-    EXPECT_EQ(reports[0].iteration, 0) << "the incremental start";
+    EXPECT_EQ(reports[0].iteration, 1) << "there was nothing to prepare";
     EXPECT_TRUE(std::isinf(reports[0].error_estimate));
     for (std::size_t k = 1; k < reports.size(); ++k) {
-        EXPECT_EQ(reports[k].iteration, static_cast<int>(k));
+        EXPECT_EQ(reports[k].iteration, static_cast<int>(k + 1));
         EXPECT_GT(reports[k].rays, reports[k - 1].rays);
         EXPECT_GE(reports[k].seconds, reports[k - 1].seconds);
         EXPECT_TRUE(std::isfinite(reports[k].error_estimate));

@@ -69,16 +69,13 @@ TEST(ImportanceOfTheOracle, LeansOnTheParents) {
     solution.indirect_importance.assign(forest->size(), 1.0f);
     solution.view_importance[child] = 0;
     solution.indirect_importance[grandchild] = 5;
-    TransportStep step;
-    const Surfaces surfaces(box.scene);
-    const std::vector<Rgb> irradiance(forest->size(), Rgb(1));
-    step.light = Light(surfaces, irradiance);
-    const Oracle oracle = make_oracle(solution, step, 1, 0);
+    solution.irradiance.assign(forest->size(), Rgb(1));
+    const Oracle oracle = make_oracle(solution, 1, 0);
     EXPECT_EQ(oracle.importance[wall_x0], 2);
     EXPECT_EQ(oracle.importance[child], 1.5f) << "half of 1, half of the parent's 2";
     EXPECT_EQ(oracle.importance[grandchild], 3.75f) << "half of 6, half of the parent's 1.5";
     solution.options.importance_smoothing = 0;
-    EXPECT_EQ(make_oracle(solution, step, 1, 0).importance, total_importance(solution)) << "as in the paper";
+    EXPECT_EQ(make_oracle(solution, 1, 0).importance, total_importance(solution)) << "as in the paper";
 }
 
 }  // namespace

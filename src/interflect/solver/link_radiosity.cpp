@@ -267,7 +267,7 @@ std::vector<Overload> LinkedElements::overloaded_links() const {
     const std::vector<float> psi =
         use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
     const double threshold = solution.options.epsilon *
-                             reference_power(solution, Light(run_.surfaces, solution.irradiance)) *
+                             reference_power(solution) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi));
     std::vector<Overload> overloads;
     if (!(threshold > 0)) return overloads;

@@ -116,7 +116,7 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
         run.importance_rays += for_importance;
         run.power_rays += bounce.step.rays - for_importance;
         bounce.step.known_light = Light(run.surfaces, solution.irradiance);
-        if (oracle_refines) bounce.step.oracle = make_oracle(solution, bounce.step.known_light, run.schedule.averaged_rays() + rays, run.floor.unseen());
+        if (oracle_refines) bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
         const bool brings_importance = bounce.step.carries_importance();
         const IterationPlan plan{bounce.step.rays, false};
         const std::uint32_t before = run.forest->size();

@@ -75,7 +75,7 @@ RgbD iterate(Run& run, IterationPlan& plan) {
         TransportStep step = power_step(run.surfaces, solution, light, combined, rays).step;
         const bool deferred = run.options.defer_refinement && plan.warms_up;
         if (run.options.method.refines && !deferred)
-            step.oracle = make_oracle(solution, light, run.schedule.averaged_rays() + rays, run.floor.unseen());
+            step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
         Received received = run_step(run, std::move(step));
         const FreshEstimate fresh{std::move(received.irradiance), std::move(received.variance)};
         if (!plan.warms_up) estimate_noise(run, fresh, rays);

@@ -76,12 +76,12 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
     return step;
 }
 
-Oracle make_oracle(const Solution& so_far, const Light& light, std::int64_t rays, double smallest_area) {
+Oracle make_oracle(const Solution& so_far, std::int64_t rays, double smallest_area) {
     const double fall = std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.epsilon_decay);
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far, light);
+    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far);
     if (oracle.by_importance) {
         // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
         oracle.importance =
@@ -93,17 +93,17 @@ Oracle make_oracle(const Solution& so_far, const Light& light, std::int64_t rays
     return oracle;
 }
 
-double reference_power(const Solution& so_far, const Light& light) {
+double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
-    double seen = 0, area = 0;  // sum of V B, the mean radiosity of the picture; of the patches in it [m^2]
+    double seen = 0, area = 0;  // sum of V H, the mean irradiance of the picture; of the patches in it [m^2]
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         seen += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *
-                channel_sum(RgbD(light.radiosity(forest, i))) / 3;
+                channel_sum(RgbD(so_far.irradiance[i])) / 3;
         area += forest.area(i);
     }
-    return seen * area;
+    return seen > 0 ? seen * area : channel_sum(so_far.emitted_power) / 3;
 }
 
 double reference_importance(const Solution& so_far, const std::vector<float>& psi) {

@@ -36,7 +36,8 @@ struct TransportStep {
     Importance importance;  ///< psi, as it is reflected and shot on; empty: rays carry none.
     bool carries_power() const { return !light.empty(); }
     bool carries_importance() const { return !importance.empty(); }
-    Light known_light;  ///< What the oracle takes to leave the elements, be it shot in this step or not.
+    Light known_light;  ///< What the oracle takes to leave the elements, be it shot in this step or not; empty: `light`.
+    const Light& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
 };

@@ -27,7 +27,7 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
     total_ += step.rays;
-    if (run.options.method.refines) step.oracle = make_oracle(run.solution, light, total_, run.floor.unseen());
+    if (run.options.method.refines) step.oracle = make_oracle(run.solution, total_, run.floor.unseen());
 
     std::vector<std::uint64_t> used_before = run.streams.used;
     const std::uint32_t elements_before = forest.size();
