@@ -1,12 +1,11 @@
 #include "interflect/solver/run.h"
 
-#include <ImathBox.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/scene/core.h"
 #include "interflect/solver/light.h"
 #include "interflect/solver/steps.h"
 
@@ -21,9 +20,7 @@ constexpr double diagonal_over_smallest = 1500;
 
 double smallest_area(const Scene& scene, const SolveOptions& options) {
     if (options.smallest_area > 0) return options.smallest_area;
-    Imath::Box3f box;
-    for (const V3f& v : scene.vertices) box.extendBy(v);
-    return std::pow(box.size().length() / diagonal_over_smallest, 2);
+    return std::pow(core_bounds(scene).size().length() / diagonal_over_smallest, 2);
 }
 
 /// A step of rays may make more elements than are kept at its end (Oracle::most_elements): addresses are set aside for
@@ -107,7 +104,7 @@ std::int64_t start_power(Run& run, std::int64_t rays, RgbD& escaped_power) {
 }  // namespace
 
 Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m)
-    : surfaces(scene),
+    : surfaces(scene, caster),
       ray_caster(caster),
       options(o),
       monitor(m),
