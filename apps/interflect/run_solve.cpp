@@ -128,15 +128,9 @@ void log_outcome(const Solution& solution) {
 
 void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
     const CoveredEmission covered = covered_emission(scene, ray_caster);
-    if (covered.wholly > 0)
-        spdlog::warn("{} emitting patches lie wholly under coincident faces and emit nothing", covered.wholly);
-    if (covered.partly > 0)
-        spdlog::warn(
-            "{} emitting patches lie partly under coincident faces; the rest of their light leaves all of each",
-            covered.partly);
-    if (covered.wholly + covered.partly > 0)
-        spdlog::warn("coincident faces keep {:.6g} lm of the emitters under them from the scene",
-                     luminance(covered.power));
+    if (covered.wholly + covered.partly == 0) return;
+    spdlog::warn("of the emitting patches {} lie wholly and {} partly under coincident faces, which take {:.6g} lm",
+                 covered.wholly, covered.partly, luminance(covered.power));
 }
 
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,

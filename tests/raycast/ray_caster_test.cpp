@@ -320,7 +320,7 @@ TEST(RayOffset, DependsOnNothingFarAway) {
 TEST(RayOffset, KeepsContactShadows) {
     Scene scene = empty_scene();
     const std::uint32_t floor = add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
-    const std::uint32_t screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 1}, 0, 1, 1, true);
+    const std::uint32_t screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 0.01f}, 0, 1, 1, true);
     add_rectangle(scene, {-1e5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     const RayCaster ray_caster(scene);
     const V3f start(1.9999f, 2, ray_caster.lift(floor));
