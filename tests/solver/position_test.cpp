@@ -2,8 +2,8 @@
 // furnished room is written as MGF in many such ways, read and solved; what is absorbed, and the mean of a view, must
 // be those of the room as it is, within the noise.
 //
-// Seen to fail: with all scenes relative to the world's origin (at 100 km and beyond), and with one ray offset for the whole
-// scene, of its largest coordinate (the stray faces). A change of 1% in all, of 6% in the view would be noticed.
+// Seen to fail: with all scenes relative to the world's origin (at 100 km and beyond), and with one ray offset for the
+// whole scene, of its largest coordinate (the stray faces). A change of 1% in all, of 6% in the view would be noticed.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
