@@ -79,7 +79,7 @@ void shoot_rays_from_a_patch(benchmark::State& state) {
     std::vector<Parameters> origins(rays_each);
     std::uint64_t first = 0;
     for (auto _ : state) {
-        shoot_rays(m.forest.geometry(0), Cell(), m.ray_caster.lift(), PointSet::sobol, 1, first += rays_each, points,
+        shoot_rays(m.forest.geometry(0), Cell(), m.ray_caster.lift(0), PointSet::sobol, 1, first += rays_each, points,
                    rays, origins);
         benchmark::DoNotOptimize(rays.back());
     }

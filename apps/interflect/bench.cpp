@@ -60,7 +60,7 @@ double median(std::vector<double> values) {
 /// What the solver traces when the light has already spread through the scene and the mesh is there.
 struct Workload {
     Workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options)
-        : surfaces(scene),
+        : surfaces(scene, ray_caster),
           solution(solve(scene, ray_caster, options)),
           forest(std::const_pointer_cast<ElementForest>(solution.forest)),
           streams(options.points, options.seed) {

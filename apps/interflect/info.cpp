@@ -1,6 +1,7 @@
 #include <ImathBox.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -8,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/run_solve.h"
 #include "apps/interflect/shared_options.h"
 #include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/memory.h"
+#include "interflect/solver/surfaces.h"
 
 namespace interflect::command {
 
@@ -27,21 +30,24 @@ struct Emitter {
 
 struct Summary {
     std::size_t triangles = 0, two_sided = 0;
-    Imath::Box3f bounds;  // [m]
+    Imath::Box3d bounds;  // in the world [m]
     double area = 0;      // [m^2]
     RgbD emitted_power{0, 0, 0};
     std::map<std::uint32_t, Emitter> emitters;  // by material
 };
 
-Summary summarise(const Scene& scene) {
+Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
     Summary s;
-    for (const Patch& patch : scene.patches) {
+    const Surfaces surfaces(scene, ray_caster);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const Patch& patch = scene.patches[i];
         const double area = patch_area(scene, patch);
         s.area += area;
-        for (int k = 0; k < patch.vertex_count(); ++k) s.bounds.extendBy(scene.vertices[patch.vertices[k]]);
+        for (int k = 0; k < patch.vertex_count(); ++k)
+            s.bounds.extendBy(scene.origin + Imath::V3d(scene.vertices[patch.vertices[k]]));
         s.triangles += patch.is_triangle();
         s.two_sided += patch.other_side != none;
-        const Rgb& exitance = scene.materials[patch.material].exitance;
+        const Rgb& exitance = surfaces.exitance(i);
         if (!(channel_sum(exitance) > 0)) continue;
         Emitter& emitter = s.emitters[patch.material];
         ++emitter.patches;
@@ -103,16 +109,24 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
 }
 
 /// "-0.15 to 6": the ends of an interval, without digits that are rounding error in a scene of that size.
-std::string interval(float low, float high, float scene_size) {
-    const float step = 1e-4f * scene_size;
-    const auto rounded = [step](float x) { return std::round(x / step) * step + 0.0f; };  // no -0
-    return fmt::format("{:.4g} to {:.4g}", rounded(low), rounded(high));
+std::string interval(double low, double high, double scene_size) {
+    const int decimals = std::clamp(static_cast<int>(std::ceil(4 - std::log10(scene_size))), 0, 30);
+    const auto rounded = [&](double x) {
+        std::string text = fmt::format("{:.{}f}", x, decimals);
+        if (text.find('.') != text.npos) text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') text.pop_back();
+        return text == "-0" ? "0" : text;
+    };
+    return fmt::format("{} to {}", rounded(low), rounded(high));
 }
 
 template <class Vector>
 std::string text_of(const Vector& v) {
     return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);
 }
+
+/// A point of the world, far from its origin too.
+std::string text_of_point(const Imath::V3d& p) { return fmt::format("{:.10g} {:.10g} {:.10g}", p.x, p.y, p.z); }
 
 /// [MiB], rounded up.
 std::size_t mebibytes(std::size_t bytes) { return (bytes + (1 << 20) - 1) >> 20; }
@@ -121,8 +135,8 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     fmt::print("{}\n", scene.name);
     fmt::print("  patches   {} ({} triangles; {} on two-sided faces)\n", scene.patches.size(), s.triangles,
                s.two_sided);
-    const V3f low = s.bounds.min, high = s.bounds.max;
-    const float size = s.bounds.size().length();
+    const Imath::V3d low = s.bounds.min, high = s.bounds.max;
+    const double size = s.bounds.size().length();
     fmt::print("  bounds    x {}, y {}, z {} m\n", interval(low.x, high.x, size), interval(low.y, high.y, size),
                interval(low.z, high.z, size));
     fmt::print("  area      {:.6g} m2\n", s.area);
@@ -131,8 +145,8 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
         fmt::print("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm\n", scene.materials[material].name, e.patches,
                    e.area, luminance(e.power));
     for (const View& v : scene.views)
-        fmt::print("  view      {}: eye {}, look at {}, up {}, fov {:.4g}\n", v.name, text_of(v.eye),
-                   text_of(v.look_at), text_of(v.up), v.fov);
+        fmt::print("  view      {}: eye {}, look at {}, up {}, fov {:.4g}\n", v.name, text_of_point(v.eye),
+                   text_of_point(v.look_at), text_of(v.up), v.fov);
     fmt::print("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements\n",
                mebibytes(need.with(scene.patches.size())), mebibytes(need.scene), mebibytes(need.ray_tracer),
                mebibytes(need.patches), mebibytes(1'000'000 * MemoryNeed::per_element));
@@ -153,9 +167,11 @@ void add_info(CLI::App& app) {
     command.add_flag("--json", options->json, "As JSON on stdout");
     command.callback([options] {
         const Scene scene = options->scene.load();
-        const Summary summary = summarise(scene);
+        const RayCaster ray_caster(scene);
+        warn_of_covered_emission(scene, ray_caster);
+        const Summary summary = summarise(scene, ray_caster);
         const std::vector<std::string> outside = outside_files(scene, options->scene.path);
-        const MemoryNeed need = memory_need(scene, RayCaster(scene));
+        const MemoryNeed need = memory_need(scene, ray_caster);
         if (options->json)
             std::cout << to_json(scene, summary, outside, need).dump(2) << '\n';
         else

@@ -74,13 +74,13 @@ double parse_share(const std::string& text) {
     return number;
 }
 
-V3f parse_vector(const std::string& text) {
+Imath::V3d parse_vector(const std::string& text) {
     std::string_view rest = text;
     double x = 0, y = 0, z = 0;
     const bool parsed = take_number(rest, x) && take(rest, ',') && take_number(rest, y) && take(rest, ',') &&
                         take_number(rest, z) && rest.empty();
-    const V3f v(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-    if (!parsed || !is_finite(v)) refuse(text, "three numbers with commas between, such as 1,2.5,-3");
+    const Imath::V3d v(x, y, z);
+    if (!parsed || !is_finite(V3f(v))) refuse(text, "three numbers with commas between, such as 1,2.5,-3");
     return v;
 }
 

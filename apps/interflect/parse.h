@@ -24,8 +24,8 @@ std::size_t parse_memory(const std::string& text);
 std::uint64_t parse_seed(const std::string& text);
 /// "2%" or "0.02" -> 0.02, above 0 and below 1.
 double parse_share(const std::string& text);
-/// "1,2.5,-3" -> (1, 2.5, -3).
-V3f parse_vector(const std::string& text);
+/// "1,2.5,-3" -> (1, 2.5, -3), finite also in single precision.
+Imath::V3d parse_vector(const std::string& text);
 /// "640x360" -> {640, 360}, each from 1 to 32768.
 struct Size {
     int width = 1280, height = 720;

@@ -102,7 +102,7 @@ void run(RenderArguments& options, int& exit_code) {
     else
         solved.scene = options.scene.load();
     const View view = view_to_draw(solved.scene, options.view);
-    Camera(view, options.size.width, options.size.height);  // refuses what defines no picture
+    Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses what defines no picture
     if (options.shown == Shown::mesh && !needs_tone_mapping(require_image_format(options.output)))
         throw InputError(options.output, 0, "outlines of the mesh are for pictures to look at: expected .png or .jpg");
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);

@@ -10,10 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/interflect/leaks.h"
 #include "apps/interflect/progress.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/memory.h"
+#include "interflect/solver/surfaces.h"
 
 namespace interflect::command {
 
@@ -100,6 +102,16 @@ void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& com
     file.commit();
 }
 
+void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    if (solution.iterations.empty() || solution.iterations.back().escaped_rays == 0) return;
+    const Escapes escapes = find_escapes(scene, ray_caster, solution);
+    if (leaks(escapes))
+        spdlog::warn(
+            "the scene looks closed but leaks: {:.2g}% of the light leaves it, most of that through gaps "
+            "between faces",
+            100 * escapes.share());
+}
+
 void log_outcome(const Solution& solution) {
     if (solution.non_finite > 0)
         spdlog::warn("{} powers were not finite and were left out: the result is not to be trusted",
@@ -122,10 +134,18 @@ void log_outcome(const Solution& solution) {
 
 }  // namespace
 
+void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
+    const CoveredEmission covered = covered_emission(scene, ray_caster);
+    if (covered.wholly + covered.partly == 0) return;
+    spdlog::warn("of the emitting patches {} lie wholly and {} partly under coincident faces, which take {:.6g} lm",
+                 covered.wholly, covered.partly, luminance(covered.power));
+}
+
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,
                    const SolverOptions& command) {
     std::optional<PendingFile> stats;
     if (!command.stats.empty()) stats.emplace(command.stats);
+    warn_of_covered_emission(scene, ray_caster);
     SolveOptions options = asked_for;
     const std::size_t bytes = command.memory > 0 ? command.memory : machine_memory() / 10 * 9;
     options.most_elements =
@@ -138,6 +158,7 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
         solution = solve(scene, ray_caster, options, monitor);
     }
     log_outcome(solution);
+    warn_of_leaks(scene, ray_caster, solution);
     if (stats) write_stats(*stats, scene, command, solution);
     return solution;
 }

@@ -74,7 +74,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back({"command line", *eye, *look_at, up, fov});
-    for (const View& view : views) Camera(view, 1, 1);  // refuses what defines no picture
+    for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses what defines no picture
     return views;
 }
 

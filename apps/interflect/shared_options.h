@@ -36,7 +36,7 @@ struct MeshOptions {
 struct ViewOptions {
     std::vector<std::string> names;
     std::vector<std::filesystem::path> files;
-    std::optional<V3f> eye, look_at;
+    std::optional<Imath::V3d> eye, look_at;  // in the world
     V3f up{0, 0, 1};
     float fov = 45;
 

@@ -4,7 +4,7 @@ import json
 import math
 import unittest
 
-from command import ROOT, VIEWS, CommandTest, room
+from command import ROOT, VIEWS, CommandTest, room, vertices
 
 
 class Info(CommandTest):
@@ -49,7 +49,8 @@ class Info(CommandTest):
         self.assertIn("rooms/../parts/paint.mgf", self.interflect("info", "rooms/room.mgf").stdout)
 
     def test_what_is_left_out_is_reported_once_a_kind_with_file_and_line(self):
-        self.write("room.mgf", room() + "m shiny =\n\trs .2 0\n\trd .3\nf v0 v1 v2\nglow a\nglow b\n")
+        shiny = vertices((0.5, 1, 1), (0.5, 2, 1), (1.5, 2, 1)) + "m shiny =\n\trs .2 0\n\trd .3\nf v0 v1 v2\n"
+        self.write("room.mgf", room() + shiny + "glow a\nglow b\n")
         result = self.interflect("info", "room.mgf", "--json")
         warnings = {warning["kind"]: warning for warning in json.loads(result.stdout)["warnings"]}
         self.assertEqual(len(warnings), 2, warnings)

@@ -148,7 +148,8 @@ class Pictures(RenderTest):
         for name, value in expected.items():
             self.assertEqual(attributes[name], ("string", value.encode()), name)
         for name, vector in (("eye", (1, 0.1, 2.2)), ("look_at", (1, 2, 0)), ("up", (0, 0, 1))):
-            self.assertEqual(attributes["interflect." + name], ("v3f", struct.pack("<3f", *vector)))
+            kind, layout = ("v3f", "<3f") if name == "up" else ("v3d", "<3d")
+            self.assertEqual(attributes["interflect." + name], (kind, struct.pack(layout, *vector)))
         self.assertEqual(attributes["interflect.fov"], ("float", struct.pack("<f", 60)))
         self.assertEqual(attributes["dataWindow"], ("box2i", struct.pack("<4i", 0, 0, 31, 17)))
 

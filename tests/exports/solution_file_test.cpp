@@ -68,6 +68,7 @@ void expect_equal(const ElementForest& a, const ElementForest& b) {
 
 void expect_equal(const SolvedScene& a, const SolvedScene& b) {
     EXPECT_EQ(a.scene.name, b.scene.name);
+    EXPECT_EQ(a.scene.origin, b.scene.origin);
     EXPECT_EQ(a.scene.vertices, b.scene.vertices);
     EXPECT_EQ(a.scene.objects, b.scene.objects);
     ASSERT_EQ(a.scene.patches.size(), b.scene.patches.size());
@@ -170,6 +171,28 @@ TEST_F(SolutionFile, ReadsWhatWasWritten) {
         expect_equal(read_solution(path_), solved);
         EXPECT_EQ(read_solution(path_).solution.options.rays, 10'000) << "as many as were traced";
     }
+}
+
+TEST_F(SolutionFile, KeepsTheOriginAndViewsFarFromTheWorlds) {
+    SolvedScene solved = example();
+    solved.scene.origin = {1e8 + 0.125, -3e5, 7};
+    solved.scene.views[0].eye = {1e8 + 0.3, -3e5 + 0.1, 7.7};
+    write_solution(path_, solved.scene, solved.solution);
+    expect_equal(read_solution(path_), solved);
+}
+
+// Version 2 had no origin, and views in single precision.
+TEST_F(SolutionFile, OpensAnOlderOneAboutTheWorldsOrigin) {
+    const SolvedScene solved = example();
+    std::string bytes = bytes_of(solved);
+    for (const auto& [now, before] :
+         {std::pair<std::string, std::string>{"\"format_version\": 3", "\"format_version\": 2"},
+          {"\"origin\": ", "\"nothing\":"}}) {
+        ASSERT_NE(bytes.find(now), std::string::npos) << now;
+        bytes.replace(bytes.find(now), now.size(), before);
+    }
+    std::ofstream(path_, std::ios::binary) << bytes;
+    expect_equal(read_solution(path_), solved);
 }
 
 TEST_F(SolutionFile, ReadsARefinedForestWithImportance) {

@@ -15,6 +15,8 @@ namespace {
 /// From the origin along +y with z up, so that +x is to the right; 90 degrees: the image plane at distance 1 is 2 high.
 View straight_view() { return {"straight", V3f(0, 0, 0), V3f(0, 5, 0), V3f(0, 0, 1), 90}; }
 
+const Imath::V3d world(0);  // the origin of a scene in world coordinates
+
 void expect_direction(const Ray& ray, V3f expected) {
     expected.normalize();
     EXPECT_NEAR((ray.direction - expected).length(), 0, 1e-6) << ray.direction << " instead of " << expected;
@@ -23,13 +25,32 @@ void expect_direction(const Ray& ray, V3f expected) {
 TEST(Camera, LooksFromTheEyeThroughTheMiddle) {
     View view = straight_view();
     view.eye = V3f(1, 2, 3);
-    const Ray ray = Camera(view, 40, 20).ray(20, 10);
-    EXPECT_EQ(ray.origin, view.eye);
+    const Ray ray = Camera(view, 40, 20, world).ray(20, 10);
+    EXPECT_EQ(ray.origin, V3f(1, 2, 3));
     expect_direction(ray, V3f(-1, 3, -3));
 }
 
+TEST(Camera, FarFromTheWorldsOriginIsExactRelativeToTheScenes) {
+    const Imath::V3d origin(1e7, -1e7, 3e6);
+    View view = straight_view();
+    view.eye = origin + Imath::V3d(0.1, 0.2, 0.3);
+    view.look_at = origin + Imath::V3d(0.1, 0.7, 0.3);
+    const Ray ray = Camera(view, 40, 20, origin).ray(20, 10);
+    EXPECT_LT((ray.origin - V3f(0.1f, 0.2f, 0.3f)).length(), 1e-6f);
+    expect_direction(ray, V3f(0, 1, 0));
+}
+
+TEST(Camera, RefusesViewsTooFarOut) {
+    View view = straight_view();
+    view.eye.x = 1e16;
+    EXPECT_THROW(Camera(view, 16, 9, world), InputError);
+    view = straight_view();
+    view.look_at.z = -1e30;
+    EXPECT_THROW(Camera(view, 16, 9, world), InputError);
+}
+
 TEST(Camera, FieldOfViewSpansTheHeightAndPixelsAreSquare) {
-    const Camera camera(straight_view(), 40, 20);
+    const Camera camera(straight_view(), 40, 20, world);
     expect_direction(camera.ray(20, 0), V3f(0, 1, 1));    // top edge: 45 degrees up
     expect_direction(camera.ray(20, 20), V3f(0, 1, -1));  // bottom edge
     expect_direction(camera.ray(0, 0), V3f(-2, 1, 1));    // twice as wide as high
@@ -40,21 +61,22 @@ TEST(Camera, FieldOfViewSpansTheHeightAndPixelsAreSquare) {
 TEST(Camera, UpNeedBeNeitherUnitNorPerpendicular) {
     View tilted = straight_view();
     tilted.up = V3f(0, 7, 0.5f);
-    const Ray expected = Camera(straight_view(), 40, 20).ray(3, 4), found = Camera(tilted, 40, 20).ray(3, 4);
+    const Ray expected = Camera(straight_view(), 40, 20, world).ray(3, 4),
+              found = Camera(tilted, 40, 20, world).ray(3, 4);
     expect_direction(found, expected.direction);
 }
 
 TEST(Camera, NarrowFieldOfView) {
     View view = straight_view();
     view.fov = 10;
-    const Ray top = Camera(view, 10, 10).ray(5, 0);
+    const Ray top = Camera(view, 10, 10, world).ray(5, 0);
     EXPECT_NEAR(std::atan2(top.direction.z, top.direction.y), 5 * std::numbers::pi / 180, 1e-6);
 }
 
 /// The message with which a view is refused.
 std::string refusal(const View& view, int width = 16, int height = 9) {
     try {
-        Camera(view, width, height);
+        Camera(view, width, height, world);
     } catch (const InputError& error) {
         return error.what();
     }

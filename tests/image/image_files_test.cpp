@@ -168,7 +168,7 @@ TEST(ImageFiles, OpenExrSaysWhatItShows) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.exr";
     ImageMetadata metadata;
-    metadata.view = {"desk", V3f(1, 2, 3), V3f(4, 5, 6), V3f(0, 0, 1), 45};
+    metadata.view = {"desk", {100000.1, 2, 3}, {4, 5, 6}, V3f(0, 0, 1), 45};
     metadata.scene = "office.mgf";
     metadata.version = "1.2.3";
     metadata.seed = 0xfedcba9876543210u;
@@ -180,12 +180,13 @@ TEST(ImageFiles, OpenExrSaysWhatItShows) {
         return file.header().typedAttribute<Imf::StringAttribute>(name).value();
     };
     const auto vector = [&](const char* name) { return file.header().typedAttribute<Imf::V3fAttribute>(name).value(); };
+    const auto point = [&](const char* name) { return file.header().typedAttribute<Imf::V3dAttribute>(name).value(); };
     const auto number = [&](const char* name) {
         return file.header().typedAttribute<Imf::FloatAttribute>(name).value();
     };
     EXPECT_EQ(text("interflect.view"), "desk");
-    EXPECT_EQ(vector("interflect.eye"), V3f(1, 2, 3));
-    EXPECT_EQ(vector("interflect.look_at"), V3f(4, 5, 6));
+    EXPECT_EQ(point("interflect.eye"), Imath::V3d(100000.1, 2, 3));
+    EXPECT_EQ(point("interflect.look_at"), Imath::V3d(4, 5, 6));
     EXPECT_EQ(vector("interflect.up"), V3f(0, 0, 1));
     EXPECT_EQ(number("interflect.fov"), 45);
     EXPECT_EQ(text("interflect.quantity"), "luminance [cd/m^2]");

@@ -155,7 +155,7 @@ struct DecalOnTable {
     Target table, decal;
     std::uint32_t table_face = 0, decal_face = 0;
 
-    /// @param offset  Of the decal above the table, in lifts.
+    /// @param offset  Of the decal above the table, in lifts of the decal.
     DecalOnTable(unsigned position, float offset, bool decal_first) {
         std::mt19937 random(position);
         std::uniform_real_distribution<float> uniform(-1, 1);
@@ -169,7 +169,11 @@ struct DecalOnTable {
         const std::uint32_t paint = add_material(scene, Rgb(0.5f), Rgb(1)), paper = add_material(scene, Rgb(0.8f), {});
         if (decal_first) decal_face = add_rectangle(scene, decal.corner, decal.u, decal.v, paper, 1, 1, true);
         table_face = add_rectangle(scene, table.corner, table.u, table.v, paint, 1, 1, true);
-        const float lift = RayCaster(scene).lift();
+        float largest = 0;  // of the decal's coordinates
+        for (const V3f& x :
+             {decal.corner, decal.corner + decal.u, decal.corner + decal.v, decal.corner + decal.u + decal.v})
+            largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+        const float lift = 0x1p-17f * largest;
         decal.corner += offset * lift * n;
         if (decal_first)
             for (int i : {0, 1, 2, 3}) scene.vertices[static_cast<std::size_t>(i)] += offset * lift * n;
@@ -288,11 +292,105 @@ TEST(Boxes, WithACommonSideAnswerByTheSmallerOneWhereTheyOverlap) {
     EXPECT_EQ(CoincidentFaces(scene, 1e-5f).pair_count(), 1u);
 }
 
+// ---- What never answers sends nothing
+
+float share_left(const Scene& scene, std::uint32_t patch) {
+    return CoincidentFaces(scene, 1e-6f).uncovered_share(patch);
+}
+
+TEST(Covered, AreDuplicatesOnBothSides) {
+    Scene scene = empty_scene();
+    const std::uint32_t first = add_face(scene, unit_square, true);
+    const std::uint32_t second = add_face(scene, rotated(unit_square, 1), true);
+    for (const std::uint32_t side : {0u, 1u}) {
+        EXPECT_EQ(share_left(scene, first + side), 1);
+        EXPECT_EQ(share_left(scene, second + side), 0);
+    }
+}
+
+TEST(Covered, AreNotFacesBackToBack) {
+    Scene scene = empty_scene();
+    const std::uint32_t up = add_face(scene, unit_square, false), down = add_face(scene, reversed(unit_square), false);
+    EXPECT_EQ(share_left(scene, up), 1);
+    EXPECT_EQ(share_left(scene, down), 1);
+}
+
+TEST(Covered, IsOnlyTheSideThatTheOtherFaceHasAsItsFront) {
+    Scene scene = empty_scene();
+    const std::uint32_t both = add_face(scene, unit_square, true);
+    add_rectangle(scene, {0, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);  // looks up
+    add_rectangle(scene, {0.5f, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);
+    EXPECT_EQ(share_left(scene, both), 0);
+    EXPECT_EQ(share_left(scene, both + 1), 1);
+}
+
+TEST(Covered, IsTheExactShareWhereOthersOverlapEachOther) {
+    Scene scene = empty_scene();
+    const std::uint32_t face = add_face(scene, unit_square, false);
+    add_rectangle(scene, {0.1f, 0.1f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);         // 0.08
+    add_rectangle(scene, {0.3f, 0.2f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);         // 0.08, of which 0.02 are the first's
+    add_rectangle(scene, {0.9f, 0.9f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, 0);         // 0.01, and the rest outside
+    add_rectangle(scene, {0.6f, 0.6f, 0}, {0.1f, 0.1f, 0}, {-0.1f, 0.1f, 0}, 0);  // 0.02, turned
+    EXPECT_NEAR(share_left(scene, face), 1 - 0.17, 1e-5);
+}
+
+TEST(Covered, IsAllOfAFaceUnderManyTilesAndNothingOfTheTiles) {
+    Scene scene = empty_scene();
+    const std::uint32_t face = add_face(scene, unit_square, true);
+    const std::uint32_t tiles = static_cast<std::uint32_t>(scene.patches.size());
+    for (int i = 0; i < 70; ++i)
+        for (int j = 0; j < 30; ++j) {
+            const auto at = [](int k, int n) { return static_cast<float>(k) / static_cast<float>(n); };
+            const V3f low(at(i, 70), at(j, 30), 0), high(at(i + 1, 70), at(j + 1, 30), 0);
+            add_rectangle(scene, low, {high.x - low.x, 0, 0}, {0, high.y - low.y, 0}, 0, 1, 1, true);
+        }
+    const CoincidentFaces faces(scene, 1e-6f);
+    EXPECT_EQ(faces.uncovered_share(face), 0);
+    EXPECT_EQ(faces.uncovered_share(face + 1), 0);
+    for (std::uint32_t i = tiles; i < scene.patches.size(); ++i) ASSERT_EQ(faces.uncovered_share(i), 1);
+}
+
+/// Adds a material that emits.
+std::uint32_t add_lamp(Scene& scene) { return add_material(scene, Rgb(0), Rgb(100)); }
+
+// With equal surfaces ranked by their order in the scene alone the ceiling answers, and the lamp is gone.
+TEST(Lamp, InThePlaceOfAnEqualFaceAnswersWhereItEmits) {
+    for (const bool lamp_first : {false, true})
+        for (const bool lamp_is_two_sided : {false, true}) {
+            Scene scene = empty_scene();
+            scene.materials[0].exitance = Rgb(0);
+            Patch lamp = rotated(unit_square, 2);
+            lamp.material = add_lamp(scene);
+            std::uint32_t lamp_face = none, ceiling = none;
+            if (lamp_first) lamp_face = add_face(scene, lamp, lamp_is_two_sided);
+            ceiling = add_face(scene, unit_square, true);
+            if (!lamp_first) lamp_face = add_face(scene, lamp, lamp_is_two_sided);
+            EXPECT_EQ(wrong_answers(scene, square, above, lamp_face), 0);
+            EXPECT_EQ(wrong_answers(scene, square, below, lamp_is_two_sided ? lamp_face + 1 : ceiling + 1), 0);
+            EXPECT_EQ(share_left(scene, lamp_face), 1);
+            EXPECT_EQ(share_left(scene, ceiling), 0);
+            EXPECT_EQ(share_left(scene, ceiling + 1), lamp_is_two_sided ? 0 : 1);
+        }
+}
+
+TEST(Lamp, UnderASmallerFaceEmitsBesideIt) {
+    Scene scene = empty_scene();
+    scene.materials[0].exitance = Rgb(0);
+    Patch lamp = unit_square;
+    lamp.material = add_lamp(scene);
+    const std::uint32_t face = add_face(scene, lamp, false);
+    add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
+    EXPECT_NEAR(share_left(scene, face), 0.75, 1e-5);
+}
+
 TEST(Neighbours, ThatShareEdgesOnlyAreNotContested) {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(1));
     add_rectangle(scene, {3, -2, 1}, {6, 0, 8}, {-0.8f, 10, 0.6f}, 0, 300, 300);  // rounding moves every corner
-    const CoincidentFaces faces(scene, 0.25f * RayCaster(scene).lift());
+    std::vector<float> tolerance;
+    const RayCaster ray_caster(scene);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) tolerance.push_back(0.25f * ray_caster.lift(i));
+    const CoincidentFaces faces(scene, tolerance);
     EXPECT_EQ(faces.pair_count(), 0u);
     EXPECT_EQ(faces.hidden_count(), 0u);
     EXPECT_LE(faces.memory(), scene.patches.size() / 4 + 64);

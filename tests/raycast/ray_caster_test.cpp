@@ -143,16 +143,18 @@ TEST_P(ClosedBox, LetsNoRayOutThatStartsOnAWall) {
     const RayCaster ray_caster(scene);
     Random random(3);
     std::vector<Ray> rays;
-    for (const Patch& patch : scene.patches) {
-        const PatchGeometry geometry(scene, patch);
+    float lift = 0;
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const PatchGeometry geometry(scene, scene.patches[p]);
+        lift = std::max(lift, ray_caster.lift(p));
         for (int i = 0; i < 1000; ++i) {
             const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
-            rays.push_back({x + geometry.normal() * ray_caster.lift(), direction_above(geometry.normal(), random)});
+            rays.push_back({x + geometry.normal() * ray_caster.lift(p), direction_above(geometry.normal(), random)});
         }
     }
     const std::vector<Hit> hits = traced(ray_caster, rays);
     // Of rays that start within `lift` of an edge some begin beyond the next wall: lift / 0.3 m of them at the worst.
-    const double behind_a_wall = ray_caster.lift() / 0.3 * static_cast<double>(rays.size());
+    const double behind_a_wall = lift / 0.3 * static_cast<double>(rays.size());
     EXPECT_LE(static_cast<double>(count_escaped(hits)), behind_a_wall / 2);
 }
 
@@ -265,15 +267,84 @@ TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
         scene = placed(scene, uniform(random, 0, 6), far * direction_on_sphere(random));
         const RayCaster ray_caster(scene);
         std::vector<Ray> rays;
-        for (const Patch& patch : scene.patches) {
-            const PatchGeometry geometry(scene, patch);
+        for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+            const PatchGeometry geometry(scene, scene.patches[p]);
             for (int i = 0; i < 500; ++i) {
                 const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
-                const V3f origin = x + geometry.normal() * ray_caster.lift();
+                const V3f origin = x + geometry.normal() * ray_caster.lift(p);
                 rays.push_back({origin, direction_above(geometry.normal(), random)});
             }
         }
         ASSERT_EQ(count_escaped(traced(ray_caster, rays)), static_cast<std::ptrdiff_t>(rays.size())) << trial;
+    }
+}
+
+/// How many of the rays that start on the walls of a closed box get out.
+std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
+    const RayCaster ray_caster(scene);
+    Random random(11);
+    std::vector<Ray> rays;
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const PatchGeometry geometry(scene, scene.patches[p]);
+        for (int i = 0; i < rays_per_patch; ++i) {
+            const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
+            rays.push_back({x + geometry.normal() * ray_caster.lift(p), direction_above(geometry.normal(), random)});
+        }
+    }
+    return count_escaped(traced(ray_caster, rays));
+}
+
+// A start point that rounding puts on the next wall, or behind it, is lost: 2^-24 of the coordinates, over the width of
+// a patch, of those near each edge; with coordinates of 8 widths (as origin_for leaves them) 2e-6 of all rays.
+TEST(RayOffset, LetsNoRayOutOfBoxesOfAnySizeAndPlace) {
+    for (const float size : {1e-4f, 1e-2f, 1.0f, 1e3f, 1e5f})
+        for (const float away : {0.0f, -0.5f, 8.0f}) {
+            Scene scene = closed_box(size * V3f(1, 1.3f, 0.7f), 2, {{"wall", Rgb(0.5f), Rgb(1)}});
+            for (V3f& v : scene.vertices) v += V3f(away * size);
+            EXPECT_LE(escaped_from(scene, 5000), 3) << size << " m, at " << away << " sizes";
+        }
+}
+
+// With one offset for the whole scene, of its largest coordinate, the rays start outside the small box.
+TEST(RayOffset, DependsOnNothingFarAway) {
+    const Scene box = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.5f), Rgb(1)}});
+    Scene with_stray = box;
+    add_rectangle(with_stray, {1e6f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    with_stray.vertices.emplace_back(-1e8f, 0.0f, 0.0f);  // of no face
+    EXPECT_EQ(escaped_from(box, 1000), 0);
+    const RayCaster alone(box), together(with_stray);
+    for (std::uint32_t p = 0; p < box.patches.size(); ++p) EXPECT_EQ(alone.lift(p), together.lift(p));
+}
+
+// The shadow at the foot of a screen: rays from the floor, a tenth of a millimetre beside it, meet it.
+TEST(RayOffset, KeepsContactShadows) {
+    Scene scene = empty_scene();
+    const std::uint32_t floor = add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
+    const std::uint32_t screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 0.01f}, 0, 1, 1, true);
+    add_rectangle(scene, {-1e5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    const RayCaster ray_caster(scene);
+    const V3f start(1.9999f, 2, ray_caster.lift(floor));
+    const Hit hit = traced(ray_caster, {{start, V3f(1, 0, 2).normalized()}})[0];
+    EXPECT_TRUE(hit.patch == screen || hit.patch == screen + 1) << hit.patch;
+}
+
+// A decal at the origin has small coordinates, and the wall that it is on does not: Embree's rounding is the wall's.
+TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
+    for (const V3f& tilt : {V3f(0, 0, 0), V3f(0, 0, 0.3f)}) {
+        Scene scene = empty_scene();
+        const V3f u = V3f(1, 0, 0) + tilt, v = V3f(0, 1, 0) - tilt;
+        add_rectangle(scene, -100.0f * u - 100.0f * v, 200.0f * u, 200.0f * v, 0);
+        const std::uint32_t decal = add_rectangle(scene, {0, 0, 0}, 0.01f * u, 0.01f * v, 0);
+        const RayCaster ray_caster(scene);
+        const PatchGeometry geometry(scene, scene.patches[decal]);
+        Random random(12);
+        std::vector<Ray> rays;
+        for (int i = 0; i < 10'000; ++i) {
+            const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
+            rays.push_back(
+                {x + geometry.normal() * ray_caster.lift(decal), direction_above(geometry.normal(), random)});
+        }
+        EXPECT_EQ(count_escaped(traced(ray_caster, rays)), static_cast<std::ptrdiff_t>(rays.size())) << tilt;
     }
 }
 

@@ -213,12 +213,13 @@ TEST_P(MadeScenes, NoRayEscapes) {
     std::vector<Ray> rays;
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto words = random_words(1, i);
-        const Patch& patch = scene.patches[words[0] % scene.patches.size()];
+        const auto index = static_cast<std::uint32_t>(words[0] % scene.patches.size());
+        const Patch& patch = scene.patches[index];
         const PatchGeometry geometry(scene, patch);
         V3f direction = uniform_direction(2, i);
         if (direction.dot(geometry.normal()) < 0) direction = -direction;
         const V3f origin = geometry.point(geometry.uniform_parameters(unit_float(words[1]), unit_float(words[2])));
-        rays.push_back({origin + ray_caster.lift() * geometry.normal(), direction});
+        rays.push_back({origin + ray_caster.lift(index) * geometry.normal(), direction});
     }
     std::vector<Hit> hits(rays.size());
     ray_caster.trace(rays, hits);

@@ -54,8 +54,9 @@ TEST(Maze, RefusesOptionsOutOfRange) {
 
 TEST(Maze, ThingsAreFartherApartThanRaysAreLifted) {
     // Else a ray from the underside of a thing would start below what it stands on.
-    const RayCaster ray_caster(make_maze({.rooms = MazeOptions::most_rooms}));
-    EXPECT_LT(ray_caster.lift(), building::gap);
+    const Scene scene = make_maze({.rooms = MazeOptions::most_rooms});
+    const RayCaster ray_caster(scene);
+    for (std::uint32_t i = 0; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.lift(i), building::gap);
 }
 
 TEST(Maze, FirstRoomsHaveViews) {
@@ -186,7 +187,7 @@ struct Seen {
 
 Seen seen_in(const Scene& scene, const RayCaster& ray_caster, const View& view) {
     constexpr int width = 160, height = 90;
-    const Camera camera(view, width, height);
+    const Camera camera(view, width, height, scene.origin);
     std::vector<Ray> rays;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)

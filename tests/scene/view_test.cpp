@@ -45,9 +45,9 @@ TEST(Overview, LooksFromInsideTheScenesBoxTowardsItsMiddle) {
     for (V3f& v : scene.vertices) v += V3f(10, -20, 5);
     const View view = overview(scene);
     const Imath::Box3f box(V3f(10, -20, 5), V3f(14, -14, 8));
-    EXPECT_TRUE(box.intersects(view.eye));
+    EXPECT_TRUE(box.intersects(V3f(view.eye)));
     EXPECT_GT(view.eye.z, 6.5f) << "from high up";
-    EXPECT_LT((view.look_at - box.center()).length(), 1e-5f);
+    EXPECT_LT((V3f(view.look_at) - box.center()).length(), 1e-5f);
     EXPECT_EQ(view.up, V3f(0, 0, 1));
     scene.views = {view};
     EXPECT_TRUE(scene_faults(scene).empty());

@@ -20,7 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format_version = 2;
+/// Version 3 has the origin; before, it was 0.
+constexpr int format_version = 3, oldest_format_version = 2;
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
@@ -144,6 +145,7 @@ Json describe(const Scene& scene, const Solution& solution) {
             {"emitted_power", json_of(solution.emitted_power)},
             {"interrupted", solution.interrupted},
             {"has_importance", !solution.view_importance.empty()},
+            {"origin", json_of(scene.origin)},
             {"views", views},
             {"materials", materials},
             {"objects", scene.objects}};
@@ -157,9 +159,11 @@ void read_description(const Json& j, SolvedScene& solved) {
     solved.solution.options.rays = j.at("rays").get<std::int64_t>();
     solved.solution.emitted_power = vector_of<RgbD>(j.at("emitted_power"));
     solved.solution.interrupted = j.at("interrupted").get<bool>();
+    if (j.contains("origin")) scene.origin = vector_of<Imath::V3d>(j.at("origin"));
     for (const Json& v : j.at("views"))
-        scene.views.push_back({v.at("name").get<std::string>(), vector_of<V3f>(v.at("eye")),
-                               vector_of<V3f>(v.at("look_at")), vector_of<V3f>(v.at("up")), v.at("fov").get<float>()});
+        scene.views.push_back({v.at("name").get<std::string>(), vector_of<Imath::V3d>(v.at("eye")),
+                               vector_of<Imath::V3d>(v.at("look_at")), vector_of<V3f>(v.at("up")),
+                               v.at("fov").get<float>()});
     for (const Json& m : j.at("materials"))
         scene.materials.push_back(
             {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
@@ -238,7 +242,8 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     SolvedScene solved;
     const std::vector<char> text = read_array<char>(file, "/description", 1);
     const Json description = Json::parse(text.begin(), text.end());
-    if (description.at("format_version").get<int>() != format_version)
+    const int version = description.at("format_version").get<int>();
+    if (version < oldest_format_version || version > format_version)
         throw std::runtime_error("it was written by another version of Interflect");
     read_description(description, solved);
     solved.scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));

@@ -89,8 +89,11 @@ struct OpenObject {
 
 class Reader {
   public:
-    Reader(const fs::path& path, const ReadOptions& options);
-    Scene read(const fs::path& path, std::string text);
+    /// @param origin  What the scene is made relative to.
+    Reader(const fs::path& path, const ReadOptions& options, const V3d& origin);
+    void read(const fs::path& path, std::string text);
+    V3d suitable_origin() const { return scene_.suitable_origin(); }
+    Scene finish() { return scene_.finish(); }
 
   private:
     using Handler = void (Reader::*)(Words);
@@ -170,6 +173,7 @@ class Reader {
     std::vector<OpenTransform> transforms_;
     std::vector<OpenObject> objects_;
     std::vector<std::vector<std::uint32_t>> loops_;  // of the face being read
+    std::vector<V3d> outline_;                       // its first loop, in the world
     std::string unknown_entity_;                     // message for all of them, with the first one's name
     MgfSceneBuilder scene_;
 };
@@ -209,17 +213,14 @@ const std::unordered_map<std::string_view, Reader::Entity>& Reader::entities() {
     return table;
 }
 
-Reader::Reader(const fs::path& path, const ReadOptions& options)
+Reader::Reader(const fs::path& path, const ReadOptions& options, const V3d& origin)
     : options_(options),
       colours_("colour", options.max_name_length),
       materials_("material", options.max_name_length),
       vertices_("vertex", options.max_name_length),
-      scene_(path, options) {}
+      scene_(path, options, origin) {}
 
-Scene Reader::read(const fs::path& path, std::string text) {
-    read_file(add_source(path, std::move(text)), {});
-    return scene_.finish();
-}
+void Reader::read(const fs::path& path, std::string text) { read_file(add_source(path, std::move(text)), {}); }
 
 // ---- Files and lines
 
@@ -424,7 +425,12 @@ void Reader::add_loop(Words names) {
     if (!has_three_distinct(names)) throw Fault("a face, and each of its holes, needs three different vertices");
     const M44d to_world = total_transform();
     std::vector<std::uint32_t>& loop = loops_.emplace_back();
-    for (const std::string_view name : names) loop.push_back(scene_.vertex(vertices_.find(name).point * to_world));
+    outline_.clear();
+    for (const std::string_view name : names) {
+        outline_.push_back(vertices_.find(name).point * to_world);
+        loop.push_back(scene_.vertex(outline_.back()));
+    }
+    if (loops_.size() == 1) scene_.place_face(outline_);
     // A mirror image turns the other way round.
     if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
@@ -461,12 +467,21 @@ void Reader::add_mesh(const Mesh& mesh) {
     const M44d to_world = total_transform();
     const bool mirrored = to_world.determinant() < 0;
     count_repeated(mesh.faces.size());
+    std::vector<V3d> points;
     std::vector<std::uint32_t> vertex;
-    for (const V3d& p : mesh.points) vertex.push_back(scene_.vertex(p * to_world));
+    for (const V3d& p : mesh.points) {
+        points.push_back(p * to_world);
+        vertex.push_back(scene_.vertex(points.back()));
+    }
     loops_.resize(1);
     for (const auto& face : mesh.faces) {
         loops_[0].clear();
-        for (const std::uint32_t i : face) loops_[0].push_back(vertex[i]);
+        outline_.clear();
+        for (const std::uint32_t i : face) {
+            loops_[0].push_back(vertex[i]);
+            outline_.push_back(points[i]);
+        }
+        scene_.place_face(outline_);
         if (mirrored) std::reverse(loops_[0].begin(), loops_[0].end());
         scene_.add_face(loops_, material_index, current_object(), material.two_sided, here());
     }
@@ -631,15 +646,29 @@ ReadOptions checked(const ReadOptions& options) {
     return options;
 }
 
+/// Reads a scene about the world's origin, and where that is far from it, once more about an origin of its own.
+Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {
+    V3d origin(0);
+    {
+        Reader reader(path, options, origin);
+        reader.read(path, text);
+        origin = reader.suitable_origin();
+        if (origin == V3d(0)) return reader.finish();
+    }
+    Reader reader(path, options, origin);
+    reader.read(path, text);
+    return reader.finish();
+}
+
 }  // namespace
 
 Scene read_mgf(const fs::path& path, const ReadOptions& options) {
-    return Reader(path, checked(options)).read(path, read_text_file(path));
+    return read_about_middle(path, checked(options), read_text_file(path));
 }
 
 Scene read_mgf_text(std::string_view text, const fs::path& path, const ReadOptions& options) {
     require_text(text, path);
-    return Reader(path, checked(options)).read(path, std::string(text));
+    return read_about_middle(path, checked(options), std::string(text));
 }
 
 }  // namespace interflect

@@ -24,15 +24,20 @@ namespace interflect {
 ///   What a file leaves open is closed at its end, with a warning; of an array left open only the first copy is read.
 /// * `ies` and unknown entities are skipped with a warning.
 ///
+/// A scene that lies far from the world's origin is read twice, the second time relative to its Scene::origin
+/// (origin_for), so that it keeps its precision.
+///
 /// Scene::files lists the files read. Warnings are counted under these kinds: "unsupported-entity", "ies",
-/// "reflectance-clamped", "out-of-gamut", "degenerate-face", "unbalanced-object", "unclosed-object",
-/// "unclosed-transform" and those above. Time and memory are linear in the text, with arrays written out.
+/// "reflectance-clamped", "out-of-gamut", "degenerate-face" (no wider than the rounding of its vertices),
+/// "unbalanced-object", "unclosed-object", "unclosed-transform" and those above. Time and memory are linear in the
+/// text, with arrays written out.
 ///
 /// @throws InputError  with file, line and what was expected, where a file cannot be read, an entity lacks arguments,
 /// has a
 ///         number that is not finite in single precision or out of its range, names what is not defined, or goes beyond
-///         a limit of `options`; where a face names fewer than three different vertices; where a file includes itself;
-///         where no face with an area is left.
+///         a limit of `options`; where a face lies beyond farthest_coordinate, or so far from the others that rounding
+///         would leave nothing of it though it is as large as they are; where a face names fewer than three different
+///         vertices; where a file includes itself; where no face with an area is left.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from memory. @param path  Name for messages; its folder is where includes are looked for.

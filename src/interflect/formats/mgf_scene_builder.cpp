@@ -1,5 +1,9 @@
 #include "interflect/formats/mgf_scene_builder.h"
 
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "interflect/base/error.h"
@@ -8,6 +12,14 @@
 namespace interflect {
 
 namespace {
+
+/// Twice the area over the squared size, from which a face counts for where the scene lies, and from which it is no
+/// sliver of which rounding may leave nothing.
+constexpr double least_shape = 1e-6, least_shape_of_lost = 1e-3;
+
+/// Size of a face that may be lost to rounding, over the reach of the scene: 60 steps of a float there. Smaller ones
+/// are litter that real files have anywhere.
+constexpr double largest_lost_size = 0x1p-16;
 
 /// Equal for materials that look the same and are called the same, however often a file defines them.
 std::string identity(const Material& m) {
@@ -18,8 +30,10 @@ std::string identity(const Material& m) {
 
 }  // namespace
 
-MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options)
+MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options,
+                                 const Imath::V3d& origin)
     : options_(options), weld_(scene_) {
+    scene_.origin = origin;
     scene_.name = file.string();
     scene_.objects.emplace_back();
     object_index_.emplace("", 0);
@@ -36,11 +50,11 @@ void MgfSceneBuilder::require_room(double patches) const {
 }
 
 std::uint32_t MgfSceneBuilder::vertex(const Imath::V3d& position) {
-    const V3f single(position);
-    if (!is_finite(single))
-        throw std::invalid_argument(fmt::format("the transformed point ({}, {}, {}) is not finite in single precision",
-                                                position.x, position.y, position.z));
-    return weld_.vertex(single);
+    if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= farthest_coordinate))
+        throw std::invalid_argument(
+            fmt::format("the transformed point ({}, {}, {}) is farther than {:g} m from the origin, which is too far",
+                        position.x, position.y, position.z, farthest_coordinate));
+    return weld_.vertex(V3f(position - scene_.origin));
 }
 
 Rgb MgfSceneBuilder::reflectance(const MgfMaterial& material) {
@@ -81,11 +95,26 @@ std::uint32_t MgfSceneBuilder::object(const std::string& name) {
     return entry->second;
 }
 
+void MgfSceneBuilder::place_face(std::span<const Imath::V3d> outline) {
+    Imath::Box3d box;
+    Imath::V3d doubled_area(0);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        box.extendBy(outline[i]);
+        if (i > 1) doubled_area += (outline[i - 1] - outline[0]).cross(outline[i] - outline[0]);
+    }
+    const double size = box.size().length();
+    const double shape = size > 0 ? doubled_area.length() / (size * size) : 0;
+    placed_ = {shape > least_shape_of_lost ? size : 0, box.center(), {}};
+    if (shape > least_shape && sample_.wants_next()) sample_.add({box.center(), size});
+}
+
 void MgfSceneBuilder::add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                                std::uint32_t object, bool two_sided, const Location& where) {
     require_room(two_sided ? 2 : 1);
-    if (add_polygon(scene_, loops, material, object, two_sided) == PolygonResult::degenerate)
+    if (add_polygon(scene_, loops, material, object, two_sided) == PolygonResult::degenerate) {
         warn("degenerate-face", "face without area is left out", where);
+        if (placed_.size > lost_.size) lost_ = {placed_.size, placed_.centre, where};
+    }
     require_room(0);  // one face may have become many patches
 }
 
@@ -104,7 +133,19 @@ void MgfSceneBuilder::warn_of_lost(const std::string& kind, const std::string& w
         if (m.*share > 0) warn(kind, message, m.defined);
 }
 
+void MgfSceneBuilder::require_precision() const {
+    const Core core = core_of(sample_.faces());
+    if (lost_.size <= largest_lost_size * core.reach) return;
+    const Imath::V3d &x = lost_.centre, &middle = core.middle;
+    throw InputError(
+        *lost_.where.file, lost_.where.line,
+        fmt::format("this face, {:.3g} m wide at ({:.10g}, {:.10g}, {:.10g}), is lost to rounding: it is {:.3g} m from "
+                    "the middle of the scene, ({:.10g}, {:.10g}, {:.10g}), and coordinates have seven digits",
+                    lost_.size, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
+}
+
 Scene MgfSceneBuilder::finish() {
+    require_precision();
     if (scene_.patches.empty())
         throw InputError(scene_.name, 0,
                          "no usable face is left: the scene is empty, or none of its faces has an area");

@@ -10,16 +10,17 @@
 #include "interflect/formats/mgf_contexts.h"
 #include "interflect/formats/read_options.h"
 #include "interflect/formats/vertex_weld.h"
+#include "interflect/scene/core.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
-/// Turns what an MGF file says, already in world coordinates, into a Scene: welds vertices, converts materials when a
-/// face first uses them, names objects, and counts what diffuse light transport leaves out. Functions throw
-/// std::invalid_argument, with a sentence, where the file asks for what cannot be.
+/// Turns what an MGF file says, already in world coordinates, into a Scene relative to an origin: welds vertices,
+/// converts materials when a face first uses them, names objects, and counts what diffuse light transport leaves out.
+/// Functions throw std::invalid_argument, with a sentence, where the file asks for what cannot be.
 class MgfSceneBuilder {
   public:
-    MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options);
+    MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);
 
     void warn(const std::string& kind, const std::string& message, const Location& where);
     void add_file(const std::filesystem::path& file) { scene_.files.push_back(file.string()); }
@@ -28,17 +29,23 @@ class MgfSceneBuilder {
     /// @throws std::invalid_argument  where `patches` more would pass the limit.
     void require_room(double patches) const;
 
-    /// Index of the vertex at `position` [m].
+    /// Index of the vertex at `position` in the world [m].
     std::uint32_t vertex(const Imath::V3d& position);
     /// Index of the material; remembers it in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     /// Index of the object with this dotted name.
     std::uint32_t object(const std::string& name);
+    /// Tells where the outline of the face that is added next lies in the world, before rounding.
+    void place_face(std::span<const Imath::V3d> outline);
     /// Adds a face; one without area is a counted warning.
     void add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
                   bool two_sided, const Location& where);
 
-    /// Adds the warnings that need the whole, and hands over the scene. @throws InputError where it has no patch.
+    /// The origin that suits the faces added so far: where it is not the present one, the file should be read again.
+    Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
+
+    /// Adds the warnings that need the whole, and hands over the scene. @throws InputError where it has no patch, or
+    /// lost a face that is as large as others to rounding, since it is too far from them.
     Scene finish();
 
   private:
@@ -46,7 +53,18 @@ class MgfSceneBuilder {
     Rgb exitance(const MgfMaterial& material);
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
+    /// A face of which rounding leaves nothing.
+    struct LostFace {
+        double size = 0;  // [m]
+        Imath::V3d centre{0, 0, 0};
+        Location where;
+    };
+    void require_precision() const;
+
     Scene scene_;
+    FaceSample sample_;
+    LostFace placed_;  // the face that is added next; size 0 where its shape leaves nothing even before rounding
+    LostFace lost_;    // the largest of them
     ReadOptions options_;
     VertexWeld weld_;
     std::unordered_map<std::string, std::uint32_t> material_index_, object_index_;

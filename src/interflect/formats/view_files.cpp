@@ -23,7 +23,7 @@ using nlohmann::json;
 
 /// What is wrong with a view, or nullptr: it needs a direction, an up that is not along it, and an opening.
 const char* fault_of(const View& view) {
-    const Imath::V3d direction = Imath::V3d(view.look_at) - Imath::V3d(view.eye), up(view.up);
+    const Imath::V3d direction = view.look_at - view.eye, up(view.up);
     constexpr double parallel = 1e-6;  // sine of the angle
     if (!(direction.length() > 0)) return "the eye is where it looks at";
     if (!(up.length() > 0)) return "up has no length";
@@ -56,12 +56,12 @@ class Members {
         if (!member) fail(fmt::format("'{}' is missing", key));
         return *member;
     }
-    float number(const json& value, const std::string& key) const {
+    double number(const json& value, const std::string& key) const {
         const double number = value.is_number() ? value.get<double>() : NAN;
         if (!std::isfinite(static_cast<float>(number))) fail(fmt::format("'{}' must be made of finite numbers", key));
-        return static_cast<float>(number);
+        return number;
     }
-    V3f vector(const json& value, const std::string& key) const {
+    Imath::V3d vector(const json& value, const std::string& key) const {
         if (!value.is_array() || value.size() != 3) fail(fmt::format("'{}' must be [x, y, z]", key));
         return {number(value[0], key), number(value[1], key), number(value[2], key)};
     }
@@ -96,8 +96,8 @@ View parse_view(const json& value, std::size_t index, const fs::path& path) {
     view.name = name.get<std::string>();
     view.eye = members.vector(members.require("eye"), "eye");
     view.look_at = members.vector(members.require("look_at"), "look_at");
-    if (const json* up = members.find("up")) view.up = members.vector(*up, "up");
-    if (const json* fov = members.find("fov")) view.fov = members.number(*fov, "fov");
+    if (const json* up = members.find("up")) view.up = V3f(members.vector(*up, "up"));
+    if (const json* fov = members.find("fov")) view.fov = static_cast<float>(members.number(*fov, "fov"));
     members.reject_others();
     if (const char* fault = fault_of(view)) members.fail(fault);
     return view;
@@ -112,8 +112,8 @@ class RadianceView {
     std::span<const std::string_view> take(std::span<const std::string_view> words);
     View view() const {
         View view;
-        view.eye = V3f(eye_);
-        view.look_at = V3f(eye_ + direction_);
+        view.eye = eye_;
+        view.look_at = eye_ + direction_;
         view.up = V3f(up_);
         view.fov = static_cast<float>(vertical_);
         return view;
@@ -178,8 +178,8 @@ std::vector<View> read_view_list(const fs::path& path) {
 }
 
 void write_view_list(std::span<const View> views, const fs::path& path) {
-    // Numbers are written by fmt: the shortest decimals that round to the same single-precision value.
-    const auto vector = [](const V3f& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
+    // Numbers are written by fmt: the shortest decimals that round to the same value, in its own precision.
+    const auto vector = [](const auto& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
     std::vector<std::string> lines;
     for (const View& v : views)
         lines.push_back(fmt::format(R"(    {{"name": {}, "eye": {}, "look_at": {}, "up": {}, "fov": {}}})",

@@ -140,7 +140,12 @@ class MgfWriter {
             const std::uint32_t v = patch.vertices[k];
             if (vertex_written_[v]) continue;
             const V3f& x = scene_.vertices[v];
-            put("v v{} =\n\tp {} {} {}\n", v, x.x, x.y, x.z);
+            if (scene_.origin == Imath::V3d(0)) {
+                put("v v{} =\n\tp {} {} {}\n", v, x.x, x.y, x.z);
+            } else {
+                const Imath::V3d world = scene_.origin + Imath::V3d(x);
+                put("v v{} =\n\tp {} {} {}\n", v, world.x, world.y, world.z);
+            }
             vertex_written_[v] = true;
         }
         put("f");

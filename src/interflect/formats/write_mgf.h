@@ -8,9 +8,10 @@
 namespace interflect {
 
 /// Writes a scene in the Materials and Geometry Format, so that read_mgf() gives it back: the same patches in the same
-/// order, with materials and objects of the same names and vertices at exactly the same positions (the shortest
-/// decimals that round to them). Reflectance and exitance become a chromaticity (`cxy`) and a luminous quantity (`rd`,
-/// `ed`); their channels come back to within 1e-6 of the largest, reflectances above 0.99 as 0.99.
+/// order, with materials and objects of the same names and vertices at exactly the same positions in the
+/// world (the shortest decimals that round to them). Reflectance and exitance become a chromaticity (`cxy`) and a
+/// luminous quantity (`rd`, `ed`); their channels come back to within 1e-6 of the largest, reflectances above 0.99 as
+/// 0.99.
 ///
 /// What does not come back: vertices and materials that no patch uses, and vertices that lie at one position apart
 /// from each other; patches that add_polygon() takes for degenerate; views, for which there is write_view_list();

@@ -27,9 +27,12 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     };
     const auto number = [&](const char* name, float value) { header.insert(name, Imf::FloatAttribute(value)); };
     const auto vector = [&](const char* name, const V3f& value) { header.insert(name, Imf::V3fAttribute(value)); };
+    const auto point = [&](const char* name, const Imath::V3d& value) {
+        header.insert(name, Imf::V3dAttribute(value));
+    };
     text("interflect.view", metadata.view.name);
-    vector("interflect.eye", metadata.view.eye);
-    vector("interflect.look_at", metadata.view.look_at);
+    point("interflect.eye", metadata.view.eye);
+    point("interflect.look_at", metadata.view.look_at);
     vector("interflect.up", metadata.view.up);
     number(fov_attribute, metadata.view.fov);
     text("interflect.quantity", metadata.quantity);

@@ -36,7 +36,7 @@ Image draw_outlines(const Image& picture, const Scene& scene, const ElementFores
                     const View& view, int samples, std::uint64_t seed, const OutlineOptions& options) {
     require_of_scene(scene, forest);
     require_valid(options);
-    const Camera camera(view, picture.width, picture.height);
+    const Camera camera(view, picture.width, picture.height, scene.origin);
     const float half = 0.5f * options.width;  // on either side of a border
     const std::array<PixelOffset, rays_per_sample> offsets{{{-half, -half}, {half, -half}, {-half, half}}};
     Image outlined = picture;

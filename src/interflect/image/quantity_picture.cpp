@@ -41,7 +41,7 @@ ColourScale scale_of(const std::vector<Seen>& pixels, Spacing spacing) {
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                                 const View& view, const Quantity& quantity, const EyeSampling& sampling) {
     require_values_of_elements(scene, forest, quantity.values.size(), quantity.name.c_str());
-    const Camera camera(view, sampling.width, sampling.height);
+    const Camera camera(view, sampling.width, sampling.height, scene.origin);
     QuantityPicture result;
     result.values = result.shown = Image(sampling.width, sampling.height);
     std::vector<Seen> pixels(result.values.pixels.size());

@@ -51,7 +51,7 @@ class Shader {
 Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
                  std::span<const Rgb> irradiance, const RenderOptions& options) {
     require_values_of_elements(scene, forest, irradiance.size(), "irradiance");
-    const Camera camera(view, options.width, options.height);
+    const Camera camera(view, options.width, options.height, scene.origin);
     const Shader shader(scene, forest, irradiance, options);
 
     Rendering result;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "interflect/base/random.h"
+#include "interflect/scene/core.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
@@ -39,19 +40,21 @@ class DisjointSets {
     std::vector<std::uint32_t> parent_;
 };
 
-/// Vertices closer than this share of the scene's largest coordinate are one: eight steps of a float there, more than
-/// what rounding moves a point by when it is computed from either end of an edge.
+/// Vertices closer than this share of the largest coordinate of the scene's core_bounds() are one: eight steps of a
+/// float there, more than what rounding moves a point by when it is computed from either end of an edge.
 constexpr float weld_share = 0x1p-20f;
 
 /// Finds vertices by where they are: a hash grid of cells four times as wide as the distance within which vertices are
 /// the same, so that most searches look into one cell.
 class VertexGrid {
   public:
-    explicit VertexGrid(const std::vector<V3f>& positions) : positions_(positions), next_(positions.size(), none) {
+    explicit VertexGrid(const Scene& scene) : positions_(scene.vertices), next_(positions_.size(), none) {
+        const Imath::Box3f bounds = core_bounds(scene);
         float largest = 0;
-        for (const V3f& p : positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        for (const V3f& p : {bounds.min, bounds.max})
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
         tolerance_ = weld_share * largest;
-        first_.reserve(positions.size());
+        first_.reserve(positions_.size());
     }
 
     /// An earlier vertex at the place of vertex `i`; where there is none, `i`, which later ones then find.
@@ -74,7 +77,10 @@ class VertexGrid {
 
     Cell cell_of(const V3f& p) const {
         const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
-        const auto index = [&](float v) { return static_cast<std::int64_t>(std::floor(v / size)); };
+        constexpr double last = 0x1p62;  // what lies beyond is far from the scene
+        const auto index = [&](float v) {
+            return static_cast<std::int64_t>(std::clamp(std::floor(v / size), -last, last));
+        };
         return {index(p.x), index(p.y), index(p.z)};
     }
     std::uint32_t find_in(const Cell& cell, const V3f& p) const {
@@ -92,10 +98,10 @@ class VertexGrid {
 };
 
 /// For each vertex the first one at the same place.
-std::vector<std::uint32_t> weld(const std::vector<V3f>& positions) {
-    VertexGrid grid(positions);
-    std::vector<std::uint32_t> welded(positions.size());
-    for (std::uint32_t i = 0; i < positions.size(); ++i) welded[i] = grid.weld(i);
+std::vector<std::uint32_t> weld(const Scene& scene) {
+    VertexGrid grid(scene);
+    std::vector<std::uint32_t> welded(scene.vertices.size());
+    for (std::uint32_t i = 0; i < welded.size(); ++i) welded[i] = grid.weld(i);
     return welded;
 }
 
@@ -113,7 +119,7 @@ struct PatchEdge {
 };
 
 std::vector<PatchEdge> sorted_edges(const Scene& scene) {
-    const std::vector<std::uint32_t> welded = weld(scene.vertices);
+    const std::vector<std::uint32_t> welded = weld(scene);
     std::vector<PatchEdge> edges;
     edges.reserve(4 * scene.patches.size());
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {

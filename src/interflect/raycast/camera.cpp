@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +18,10 @@ constexpr double smallest_up_sine = 1e-5;
 
 using V3d = Imath::V3d;
 
-std::string text(const V3f& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+template <class T>
+std::string text(const Imath::Vec3<T>& v) {
+    return fmt::format("({}, {}, {})", v.x, v.y, v.z);
+}
 
 [[noreturn]] void refuse(const View& view, const std::string& fault) {
     throw InputError(fmt::format("view '{}': {}", view.name, fault));
@@ -27,6 +31,10 @@ void require_usable(const View& view) {
     if (!is_finite(view.eye) || !is_finite(view.look_at) || !is_finite(view.up))
         refuse(view, fmt::format("eye {}, look-at {} and up {} must be finite", text(view.eye), text(view.look_at),
                                  text(view.up)));
+    for (const V3d& x : {view.eye, view.look_at})
+        if (std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) > farthest_coordinate)
+            refuse(view, fmt::format("{} is farther than {:g} m from the origin, beyond which nothing is computed",
+                                     text(x), farthest_coordinate));
     if (!(view.fov > 0 && view.fov < 180))
         refuse(view, fmt::format("the vertical field of view is {} degrees, expected more than 0 and less than 180",
                                  view.fov));
@@ -37,14 +45,14 @@ void require_usable(const View& view) {
 
 }  // namespace
 
-Camera::Camera(const View& view, int width, int height) : eye_(view.eye) {
+Camera::Camera(const View& view, int width, int height, const V3d& origin) : eye_(view.eye - origin) {
     require_usable(view);
     if (width < 1 || height < 1 || width > most_image_pixels / height)
         throw InputError(
             fmt::format("a picture of {} x {} pixels: expected 1 x 1 or more, and at most {} pixels in all", width,
                         height, most_image_pixels));
 
-    const V3d forward = (V3d(view.look_at) - V3d(view.eye)).normalized();
+    const V3d forward = (view.look_at - view.eye).normalized();
     const V3d right = forward.cross(V3d(view.up).normalized());
     if (!(right.length() > smallest_up_sine))
         refuse(view, fmt::format("up {} is zero or parallel to the direction from eye to look-at", text(view.up)));

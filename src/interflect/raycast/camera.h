@@ -10,17 +10,19 @@ namespace interflect {
 class Camera {
   public:
     /// Made before a solve, it finds all that render() could object to in a view and a size.
-    /// @throws InputError, naming the view, where it defines no picture: a number that is not finite, eye == look_at,
-    ///         `up` zero or along the direction of view, fov outside (0, 180). InputError where width or height is < 1
-    ///         or there are more than most_image_pixels (base/image_size.h).
-    Camera(const View& view, int width, int height);
+    /// @param origin  Scene::origin: its rays are relative to it, which is where views stop being in world coordinates.
+    /// @throws InputError, naming the view, where it defines no picture: a number that is not finite, eye or look-at
+    ///         farther than farthest_coordinate (scene.h) from 0, eye == look_at, `up` zero or along the direction of
+    ///         view, fov outside (0, 180). InputError where width or height is < 1 or there are more than
+    ///         most_image_pixels (base/image_size.h).
+    Camera(const View& view, int width, int height, const Imath::V3d& origin);
 
     /// The ray through a point of the image plane.
     /// @param x, y  In pixels from the image's top left corner; the centre of the first pixel is (0.5, 0.5).
     Ray ray(float x, float y) const { return {eye_, (corner_ + x * pixel_right_ + y * pixel_down_).normalized()}; }
 
   private:
-    V3f eye_;                       // [m]
+    V3f eye_;                       // relative to the scene's origin [m]
     V3f corner_;                    // from the eye to the top left corner of the image plane at distance 1
     V3f pixel_right_, pixel_down_;  // one pixel's steps on that plane
 };

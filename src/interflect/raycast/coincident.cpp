@@ -6,6 +6,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/raycast/covered_area.h"
 #include "interflect/raycast/face_overlap.h"
 #include "interflect/raycast/flat_surfaces.h"
 #include "interflect/scene/patch_geometry.h"
@@ -79,10 +80,11 @@ bool CoincidentFaces::Winner::answers(const V3f& x, const V3f& direction) const 
     return inside == inward.x.size() && side_towards(direction) != none;
 }
 
-CoincidentFaces::CoincidentFaces(const Scene& scene, float tolerance) : hidden_(scene.patches.size()) {
+CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tolerance) : hidden_(scene.patches.size()) {
     const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene);
     hide_duplicates(scene, rank);
     find_stand_ins(scene, rank, tolerance);
+    measure_uncovered(scene, tolerance);
 }
 
 /// Goes through the faces of one key by rank; a face that one before it answers for is hidden. Of those that are not,
@@ -117,7 +119,8 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
     }
 }
 
-void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank, float tolerance) {
+void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank,
+                                     std::span<const float> tolerance) {
     struct Decided {
         std::uint32_t loser, winner;
     };
@@ -128,12 +131,20 @@ void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::ui
             std::minmax(p.larger, p.smaller, [&](auto a, auto b) { return rank[a] < rank[b]; });
         pairs.push_back({loser, winner});
         winners.push_back(winner);
+        const float within = pair_tolerance(tolerance, p);
+        reaches_.push_back({p.larger, within});
+        reaches_.push_back({p.smaller, within});
     }
     if (pairs.empty()) return;
+    std::sort(reaches_.begin(), reaches_.end(), [](const Reach& a, const Reach& b) {
+        return std::tie(a.face, b.tolerance) < std::tie(b.face, a.tolerance);  // the widest of a face first
+    });
+    const auto same_face = [](const Reach& a, const Reach& b) { return a.face == b.face; };
+    reaches_.erase(std::unique(reaches_.begin(), reaches_.end(), same_face), reaches_.end());
     const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
     std::sort(winners.begin(), winners.end(), by_rank);
     winners.erase(std::unique(winners.begin(), winners.end()), winners.end());
-    for (const std::uint32_t face : winners) winners_.emplace_back(scene, face, tolerance);
+    for (const std::uint32_t face : winners) winners_.emplace_back(scene, face, tolerance[face]);
 
     std::sort(pairs.begin(), pairs.end(), [&](const Decided& a, const Decided& b) {
         return std::tie(a.loser, rank[a.winner]) < std::tie(b.loser, rank[b.winner]);
@@ -146,8 +157,9 @@ void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::ui
         }
         Imath::Box3f box;
         for (const V3f& corner : corners(scene, scene.patches[winner])) box.extendBy(corner);
-        box.min -= V3f(2 * tolerance);
-        box.max += V3f(2 * tolerance);
+        const float margin = 2 * std::max(tolerance[winner], tolerance[loser]);
+        box.min -= V3f(margin);
+        box.max += V3f(margin);
         const auto index = std::lower_bound(winners.begin(), winners.end(), winner, by_rank) - winners.begin();
         stand_ins_.push_back({box, static_cast<std::uint32_t>(index)});
     }
@@ -157,23 +169,63 @@ void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::ui
         arrange_box_tree(std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]));
 }
 
-const CoincidentFaces::Winner* CoincidentFaces::stand_in(std::uint32_t face, const V3f& x, const V3f& direction) const {
+/// Whatever is in the way of the rays towards one side of a face covers it there.
+void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const float> tolerance) {
+    struct Side {
+        std::uint32_t patch;
+        float share;
+    };
+    std::vector<Side> sides;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (hidden_[i] || contested_[i]) {
+            sides.push_back({i, 0});
+            if (scene.patches[i].other_side != none) sides.push_back({scene.patches[i].other_side, 0});
+        }
+    constexpr std::size_t sides_at_once = 16;
+    parallel_for_ranges(sides.size(), sides_at_once, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> others;
+        for (auto& [patch, share] : std::span(sides).subspan(begin, end - begin)) {
+            const std::uint32_t face = std::min(patch, scene.patches[patch].other_side);
+            if (hidden_[face]) continue;
+            const V3f towards = -PatchGeometry(scene, scene.patches[patch]).normal();
+            const std::size_t loser = contested_.rank(face);
+            others.clear();
+            for (std::size_t i = first_[loser]; i < first_[loser + 1]; ++i)
+                if (const Winner& winner = winners_[stand_ins_[i].index]; winner.side_towards(towards) != none)
+                    others.push_back(winner.front);
+            share = uncovered_area_share(scene, patch, others, tolerance[face]);
+        }
+    });
+    std::erase_if(sides, [](const Side& side) { return !(side.share < 1); });
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.patch < b.patch; });
+    std::vector<std::uint32_t> patches;
+    for (const auto& [patch, share] : sides) {
+        patches.push_back(patch);
+        uncovered_share_.push_back(share);
+    }
+    if (!patches.empty()) covered_ = RankedBits(scene.patches.size(), patches);
+}
+
+const CoincidentFaces::Winner* CoincidentFaces::stand_in(std::uint32_t face, const V3f& x, const V3f& direction,
+                                                         float x_error) const {
     const std::size_t i = contested_.rank(face);
+    const Imath::Box3f around_x(x - V3f(x_error), x + V3f(x_error));
     std::uint32_t best = none;
     visit_box_tree(
         std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]),
-        [&](const Imath::Box3f& box) { return box.intersects(x); },
+        [&](const Imath::Box3f& box) { return box.intersects(around_x); },
         [&](std::uint32_t winner) {
             if (winner < best && winners_[winner].answers(x, direction)) best = winner;
         });
     return best == none ? nullptr : &winners_[best];
 }
 
-std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction) const {
+std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction,
+                                               float x_error) const {
     std::uint32_t answer = none;
     // That which coincides with what coincides with `face` may lie a little too far off to coincide with it: go on.
     while (contested_[face]) {
-        const Winner* winner = stand_in(face, x, direction);
+        const Winner* winner = stand_in(face, x, direction, x_error);
         if (!winner) break;
         answer = winner->side_towards(direction);
         face = winner->front;
@@ -183,7 +235,8 @@ std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x,
 
 std::size_t CoincidentFaces::memory() const {
     return hidden_.capacity() / 8 + contested_.memory() + winners_.capacity() * sizeof(Winner) +
-           first_.capacity() * sizeof(std::size_t) + stand_ins_.capacity() * sizeof(Boxed);
+           first_.capacity() * sizeof(std::size_t) + stand_ins_.capacity() * sizeof(Boxed) + covered_.memory() +
+           uncovered_share_.capacity() * sizeof(float) + reaches_.capacity() * sizeof(Reach);
 }
 
 }  // namespace interflect

@@ -16,21 +16,27 @@ namespace interflect {
 /// Faces that lie in one place, as a sheet of paper in the plane of its desk or two boxes with a common side, and which
 /// of them answers a ray there. A ray tracer takes the one that it happens to test first: light would land on one while
 /// the eye sees the other. Here the same one always answers, seen from wherever: that of the smaller surface (paper on
-/// a desk; see flat_surfaces.h for what is one surface), of equal surfaces the one that comes first in the scene. A
-/// one-sided face answers, and takes part at all, only where it is seen from its front.
+/// a desk; see flat_surfaces.h for what is one surface), of (nearly) equal surfaces the one that emits, since a lamp in
+/// the place of a ceiling tile is meant to be seen, then the one that comes first in the scene. A one-sided face
+/// answers, and takes part at all, only where it is seen from its front.
 ///
-/// Two faces coincide where they overlap in (nearly) one plane: where one's polygon reaches more than `tolerance` into
-/// the other's, and all of what they share lies within `tolerance` of the larger one's plane; or where they have the
-/// same corners. Faces that share an edge only do not.
+/// Two faces coincide where they overlap in (nearly) one plane: where one's polygon reaches more than pair_tolerance()
+/// (face_overlap.h) into the other's, and all of what they share lies within it of the larger one's plane; or where
+/// they have the same corners. Faces that share an edge only do not.
+///
+/// What never answers a ray must send none: uncovered_share() tells how much of a patch does.
 ///
 /// A face is named by its patch, of a two-sided one by the first. Memory: a bit a patch where nothing coincides, else
-/// 3, and 96 bytes more for each face that others give way to, 28 for each pair.
+/// 5, and 96 bytes more for each face that others give way to, 28 for each pair.
 class CoincidentFaces {
   public:
     /// Finds all that coincide: O(n log n) for n patches of which each overlaps a bounded number of others.
     /// @param scene      Valid (scene_faults); convex quadrilaterals.
-    /// @param tolerance  [m], > 0.
-    CoincidentFaces(const Scene& scene, float tolerance);
+    /// @param tolerance  Of each face [m], > 0: what its coordinates may be off by. Size scene.patches.size().
+    CoincidentFaces(const Scene& scene, std::span<const float> tolerance);
+    /// The same for all.
+    CoincidentFaces(const Scene& scene, float tolerance)
+        : CoincidentFaces(scene, std::vector<float>(scene.patches.size(), tolerance)) {}
 
     /// Whether the face has the corners of another that answers wherever it could: it may be left out.
     bool is_hidden(std::uint32_t face) const { return hidden_[face]; }
@@ -40,7 +46,24 @@ class CoincidentFaces {
 
     /// Which patch answers a ray whose first hit is the contested `face` at x: the side that the ray sees of the face
     /// that is there in its stead; none where `face` itself answers. O(log k) time for k faces that overlap it.
-    std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction) const;
+    /// @param x_error  How far x may lie off the face [m].
+    std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
+
+    /// The share of a patch's area, in [0, 1], where it answers the rays that come from its side: 0 for a patch that is
+    /// hidden or covered wholly, by whatever number of others, 1 where nothing coincides. Slivers as wide as the
+    /// tolerance count as covered.
+    float uncovered_share(std::uint32_t patch) const {
+        return covered_[patch] ? uncovered_share_[covered_.rank(patch)] : 1.0f;
+    }
+
+    bool has_covered_patches() const { return !uncovered_share_.empty(); }
+
+    /// Within what distance of a face others coincide with it, of which at least one does [m]; by face, ascending.
+    struct Reach {
+        std::uint32_t face;
+        float tolerance;
+    };
+    const std::vector<Reach>& reaches() const { return reaches_; }
 
     std::size_t hidden_count() const { return hidden_count_; }
     std::size_t contested_count() const { return first_.size() - 1; }
@@ -65,15 +88,19 @@ class CoincidentFaces {
     };
 
     void hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank);
-    void find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank, float tolerance);
-    const Winner* stand_in(std::uint32_t face, const V3f& x, const V3f& direction) const;
+    void find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank, std::span<const float> tolerance);
+    void measure_uncovered(const Scene& scene, std::span<const float> tolerance);
+    const Winner* stand_in(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
     std::vector<bool> hidden_;  // by patch
     RankedBits contested_;      // likewise: the losers
     std::size_t hidden_count_ = 0;
-    std::vector<Winner> winners_;        // by rank: of two, the first answers
-    std::vector<std::size_t> first_{0};  // of each loser in stand_ins_, and the end
-    std::vector<Boxed> stand_ins_;       // of each loser a tree of those that it gives way to: indices of winners_
+    std::vector<Winner> winners_;         // by rank: of two, the first answers
+    std::vector<std::size_t> first_{0};   // of each loser in stand_ins_, and the end
+    std::vector<Boxed> stand_ins_;        // of each loser a tree of those that it gives way to: indices of winners_
+    RankedBits covered_;                  // patches that are covered, wholly or in part
+    std::vector<float> uncovered_share_;  // of each of them
+    std::vector<Reach> reaches_;
 };
 
 }  // namespace interflect

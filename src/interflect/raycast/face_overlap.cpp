@@ -76,10 +76,10 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& half_space) {
 }
 
 /// A face as the larger one of possible pairs: its plane, and the half spaces through its edges whose intersection is
-/// the prism over its polygon, narrower by the tolerance on each side.
+/// the prism over its polygon.
 class LargerFace {
   public:
-    LargerFace(const Scene& scene, std::uint32_t face, double tolerance)
+    LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
         : scene_(scene), face_(face), tolerance_(tolerance), polygon_(polygon_of(scene, scene.patches[face])) {
         const V3d area = area_vector(polygon_);
         area_ = area.length();
@@ -89,7 +89,7 @@ class LargerFace {
         for (std::size_t i = 0; i < polygon_.count; ++i) {
             const V3d &a = polygon_.corners[i], &b = polygon_.corners[(i + 1) % polygon_.count];
             const V3d inward = plane_.normal.cross(b - a).normalized();
-            inside_[i] = {inward, inward.dot(a) + tolerance};
+            inside_[i] = {inward, inward.dot(a)};
         }
     }
 
@@ -97,22 +97,28 @@ class LargerFace {
         const V3d centre = (V3d(box.min) + V3d(box.max)) * 0.5, half = V3d(box.max) - centre;
         const V3d& n = plane_.normal;
         const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
-        return std::abs(plane_.height(centre)) <= reach + tolerance_;
+        return std::abs(plane_.height(centre)) <= reach + static_cast<double>(tolerance_[face_]);
     }
 
     bool is_overlapped_by(std::uint32_t face) const {
         if (face == face_) return false;
         Polygon shared = polygon_of(scene_, scene_.patches[face]);
+        const double tolerance = pair_tolerance(tolerance_, {face_, face});
+        const auto narrowed = [&](HalfSpace half_space) {
+            half_space.offset += tolerance;
+            return half_space;
+        };
         for (std::size_t i = 0; i < polygon_.count; ++i)
-            if (lies_outside(shared, inside_[i])) return false;  // as most neighbours do
+            if (lies_outside(shared, narrowed(inside_[i]))) return false;  // as most neighbours do
         const V3d area = area_vector(shared);
         const double facing = area.dot(plane_.normal);
         if (!is_smaller(face, area.length()) || std::abs(facing) < least_facing * area.length()) return false;
         if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
-        for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i) shared = clipped(shared, inside_[i]);
+        for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i)
+            shared = clipped(shared, narrowed(inside_[i]));
         const auto end = shared.corners.begin() + static_cast<std::ptrdiff_t>(shared.count);
         return shared.count > 0 && std::all_of(shared.corners.begin(), end,
-                                               [&](const V3d& x) { return std::abs(plane_.height(x)) <= tolerance_; });
+                                               [&](const V3d& x) { return std::abs(plane_.height(x)) <= tolerance; });
     }
 
   private:
@@ -121,20 +127,22 @@ class LargerFace {
 
     const Scene& scene_;
     std::uint32_t face_;
-    double tolerance_;
+    std::span<const float> tolerance_;
     Polygon polygon_;
     double area_;  // twice
     HalfSpace plane_;
     std::array<HalfSpace, 4> inside_;
 };
 
-std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& left_out) {
+/// Of boxes that reach out by the tolerance of their faces.
+std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& left_out,
+                                 std::span<const float> tolerance) {
     std::vector<Boxed> tree;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (scene.patches[i].other_side >= i && !left_out[i]) tree.push_back({Imath::Box3f(), i});
     parallel_for_ranges(tree.size(), search_grain, [&](std::size_t begin, std::size_t end) {
         for (Boxed& face : std::span(tree).subspan(begin, end - begin))
-            face.box = box_of(scene, scene.patches[face.index], 0);
+            face.box = box_of(scene, scene.patches[face.index], tolerance[face.index]);
     });
     arrange_box_tree(tree);
     return tree;
@@ -142,14 +150,15 @@ std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& le
 
 }  // namespace
 
-std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& left_out, float tolerance) {
-    const std::vector<Boxed> tree = tree_of_faces(scene, left_out);
+std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& left_out,
+                                        std::span<const float> tolerance) {
+    const std::vector<Boxed> tree = tree_of_faces(scene, left_out, tolerance);
     std::vector<std::vector<FacePair>> found((scene.patches.size() + search_grain - 1) / search_grain);
     parallel_for_ranges(scene.patches.size(), search_grain, [&](std::size_t begin, std::size_t end) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
             if (scene.patches[i].other_side < i || left_out[i]) continue;
             const LargerFace larger(scene, i, tolerance);
-            const Imath::Box3f box = box_of(scene, scene.patches[i], tolerance);
+            const Imath::Box3f box = box_of(scene, scene.patches[i], tolerance[i]);
             visit_box_tree(
                 std::span<const Boxed>(tree),
                 [&](const Imath::Box3f& b) { return b.intersects(box) && larger.plane_meets(b); },

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interflect/scene/scene.h"
@@ -12,12 +14,19 @@ struct FacePair {
     std::uint32_t larger, smaller;  ///< By their own areas; of equal ones the later face counts as larger.
 };
 
-/// All pairs of faces that overlap in (nearly) one plane: the smaller's polygon reaches more than `tolerance` into the
-/// larger's, measured in the larger's plane, and what they share lies within `tolerance` of that plane. Not those of
+/// Within what distance two faces lie in one place [m]: the tolerance of the smaller one, where the two are compared;
+/// of the larger one only what moves its plane, the rounding of its corners, an eighth of its tolerance.
+inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pair) {
+    return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
+}
+
+/// All pairs of faces that overlap in (nearly) one plane: the smaller's polygon reaches more than pair_tolerance()
+/// into the larger's, measured in the larger's plane, and what they share lies within it of that plane. Not those of
 /// two one-sided faces that face opposite ways: each answers rays that the other lets through.
 /// @param left_out   Faces that are not looked at; size scene.patches.size().
-/// @param tolerance  [m], > 0.
+/// @param tolerance  Of each face [m], > 0; size scene.patches.size().
 /// @return           In order of the larger face. O(n log n + pairs) time for n faces of bounded local density.
-std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& left_out, float tolerance);
+std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& left_out,
+                                        std::span<const float> tolerance);
 
 }  // namespace interflect

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "interflect/base/parallel.h"
 #include "interflect/scene/patch_geometry.h"
@@ -20,6 +21,9 @@ constexpr std::size_t patches_at_once = 4096;
 
 /// Faces beyond this that meet in one edge are compared with the last ones only, so that no file makes this quadratic.
 constexpr std::size_t most_faces_at_edge = 8;
+
+/// Surfaces whose areas differ by less than this share are equal: the same thing, divided or rounded differently.
+constexpr double equal_areas = 1e-4;
 
 struct Edge {
     std::uint64_t vertices;  // the lower index in the upper half
@@ -66,6 +70,29 @@ class PatchSets {
     std::vector<std::uint32_t> parent_;
 };
 
+/// The place of each surface, by its representative, in the order of their areas. @param area  Of each surface.
+std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
+                                             const std::vector<double>& area) {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 0; i < surface.size(); ++i)
+        if (surface[i] == i) order.push_back(i);
+    parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) { return std::tie(area[a], a) < std::tie(area[b], b); });
+    const auto is_dark = [&](std::uint32_t i) {
+        return !(channel_sum(scene.materials[scene.patches[i].material].exitance) > 0);
+    };
+    for (auto first = order.begin(); first != order.end();) {
+        const auto end = std::find_if(first, order.end(),
+                                      [&](std::uint32_t i) { return area[i] > (1 + equal_areas) * area[*first]; });
+        std::sort(first, end, [&](std::uint32_t a, std::uint32_t b) {
+            return std::pair(is_dark(a), a) < std::pair(is_dark(b), b);
+        });
+        first = end;
+    }
+    std::vector<std::uint32_t> place(surface.size());
+    for (std::uint32_t k = 0; k < order.size(); ++k) place[order[k]] = k;
+    return place;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
@@ -98,10 +125,11 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
         if (surface[i] != i) area[surface[i]] += area[i];
     }
 
+    const std::vector<std::uint32_t> place = order_of_surfaces(scene, surface, area);
     std::vector<std::uint32_t> order(count), rank(count);
     std::iota(order.begin(), order.end(), 0u);
     parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
-        return std::tie(area[surface[a]], surface[a], a) < std::tie(area[surface[b]], surface[b], b);
+        return std::tie(place[surface[a]], a) < std::tie(place[surface[b]], b);
     });
     for (std::uint32_t i = 0; i < count; ++i) rank[order[i]] = i;
     return rank;

@@ -3,26 +3,45 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "interflect/base/parallel.h"
 #include "interflect/raycast/embree.h"
 
 namespace interflect {
 
 namespace {
 
-constexpr float relative_lift = 0x1p-17f;
+/// Of a face's largest coordinate: faces closer than this coincide. It is 16 steps of a float; what transforms have
+/// moved off its plane is well below it, and from there on Embree tells the distances apart.
+constexpr float relative_tolerance = 0x1p-19f;
 
-/// Faces closer than this part of the lift coincide: 16 roundings of the largest coordinate. What transforms have moved
-/// off its plane is well below it, and from there on Embree tells the distances apart.
-constexpr float relative_tolerance = 0.25f;
+/// The offset of a ray from its patch, over the tolerance within which others coincide with it.
+constexpr float lift_over_tolerance = 4;
 
-float largest_coordinate(const Scene& scene) {
-    float largest = 0;
-    for (const V3f& v : scene.vertices) largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    return largest;
+/// How far a hit is off its face, of the sum of its largest coordinate and its distance (16 roundings).
+constexpr float relative_hit_error = 0x1p-20f;
+
+float largest_coordinate(const V3f& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Of each patch, from its own corners [m]; > 0 also where all of them are subnormal or 0.
+std::vector<float> tolerances(const Scene& scene) {
+    constexpr std::size_t at_once = 4096;
+    std::vector<float> tolerance(scene.patches.size());
+    parallel_for_ranges(tolerance.size(), at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            float largest = std::numeric_limits<float>::min();
+            for (int k = 0; k < scene.patches[i].vertex_count(); ++k)
+                largest = std::max(
+                    largest,
+                    largest_coordinate(scene.vertices[scene.patches[i].vertices[static_cast<std::size_t>(k)]]));
+            tolerance[i] = relative_tolerance * largest;
+        }
+    });
+    return tolerance;
 }
 
 void throw_embree_error(void*, RTCError, const char* message) {
@@ -95,7 +114,8 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     const float distance = query.ray.tfar;
     if (coincident.is_contested(front)) {
         const V3f x = ray.origin + distance * ray.direction;
-        const std::uint32_t patch = coincident.answering_patch(front, x, ray.direction);
+        const float x_error = relative_hit_error * (largest_coordinate(x) + distance);
+        const std::uint32_t patch = coincident.answering_patch(front, x, ray.direction, x_error);
         if (patch != none) return {patch, distance};
     }
     const float facing =
@@ -103,8 +123,13 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     return {faces.two_sided && facing > 0 ? front + 1 : front, distance};
 }
 
-RayCaster::RayCaster(const Scene& scene) : lift_(relative_lift * largest_coordinate(scene)) {
-    embree_ = std::make_unique<Embree>(CoincidentFaces(scene, relative_tolerance * lift_));
+RayCaster::RayCaster(const Scene& scene) : origin_(scene.origin), lift_(tolerances(scene)) {
+    embree_ = std::make_unique<Embree>(CoincidentFaces(scene, lift_));
+    for (const auto& [face, tolerance] : embree_->coincident.reaches()) {
+        lift_[face] = std::max(lift_[face], tolerance);
+        if (const std::uint32_t back = scene.patches[face].other_side; back != none) lift_[back] = lift_[face];
+    }
+    for (float& lift : lift_) lift *= lift_over_tolerance;
     Faces faces[2][2];  // [triangle][two-sided]
     for (const bool triangles : {false, true})
         for (const bool two_sided : {false, true}) faces[triangles][two_sided] = {{}, triangles, two_sided};
@@ -132,8 +157,13 @@ void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
     }
 }
 
+float RayCaster::uncovered_share(std::uint32_t patch) const { return embree_->coincident.uncovered_share(patch); }
+
+bool RayCaster::has_covered_patches() const { return embree_->coincident.has_covered_patches(); }
+
 std::size_t RayCaster::memory() const {
-    return static_cast<std::size_t>(embree_->bytes.load()) + embree_->coincident.memory();
+    return static_cast<std::size_t>(embree_->bytes.load()) + embree_->coincident.memory() +
+           lift_.capacity() * sizeof(float);
 }
 
 }  // namespace interflect

@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
-/// A ray of unit direction. One that leaves a surface starts RayCaster::lift() above it, so that it cannot hit what
-/// lies in the plane that it comes from.
+/// A ray of unit direction. One that leaves a patch starts RayCaster::lift() above it, so that it cannot hit what lies
+/// in the plane that it comes from.
 struct Ray {
     V3f origin;
     V3f direction;
@@ -35,8 +36,23 @@ class RayCaster {
     /// coincident.h).
     void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
 
-    /// How far above its surface a ray starts [m]: 2^-17 of the largest coordinate, a few roundings of a float.
-    float lift() const { return lift_; }
+    /// The ray offset: how far above its patch a ray starts [m]. With c the largest coordinate of the patch's own
+    /// corners, relative to the scene's origin, and u = 2^-24 the rounding of a float, the start point is off its plane
+    /// by at most 8 u c (corners, normal, interpolation, the offset itself), and Embree's robust test, which subtracts
+    /// the start point from the corners, by at most 8 u times their distance, 2 c at the farthest: 24 u c in all. The
+    /// offset is 128 u c = 2^-17 c. Where faces coincide, it is at least 4 times the distance within which they do,
+    /// pair_tolerance(), which is 4 u of the larger one's c: 16 u where 8 are needed. What other faces there are, and
+    /// where, does not matter.
+    float lift(std::uint32_t patch) const { return lift_[patch]; }
+
+    /// The share of a patch's area, in [0, 1], that any ray can hit: below 1 where other faces that coincide with it
+    /// answer in its place. Only that much of it may emit.
+    float uncovered_share(std::uint32_t patch) const;
+    /// Whether uncovered_share() is below 1 anywhere.
+    bool has_covered_patches() const;
+
+    /// Scene::origin: world coordinates of what rays have as (0, 0, 0) [m].
+    const Imath::V3d& origin() const { return origin_; }
 
     /// Bytes that the ray tracer holds for this scene.
     std::size_t memory() const;
@@ -45,7 +61,8 @@ class RayCaster {
     friend class PreparedRays;
     struct Embree;
     std::unique_ptr<Embree> embree_;
-    float lift_ = 0;
+    Imath::V3d origin_;
+    std::vector<float> lift_;
 };
 
 /// The ways in which Embree takes rays.

@@ -21,6 +21,7 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     const auto check = [&](bool holds, const auto& describe) {
         if (!holds && faults.size() < listed_faults) faults.push_back(describe());
     };
+    check(is_finite(scene.origin), [] { return std::string("the origin is not finite"); });
     for (std::size_t i = 0; i < scene.vertices.size(); ++i)
         check(is_finite(scene.vertices[i]), [&] { return fmt::format("vertex {} is not finite", i); });
     for (const Material& m : scene.materials) {

@@ -14,6 +14,9 @@ namespace interflect {
 /// Index that points nowhere.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
+/// Farthest coordinate of a face or a view, in the world [m]: there, double precision still tells an eighth of a metre.
+inline constexpr double farthest_coordinate = 1e15;
+
 /// What a surface does with light; the same on both sides of a two-sided face.
 struct Material {
     std::string name;
@@ -33,20 +36,23 @@ struct Patch {
     int vertex_count() const { return is_triangle() ? 3 : 4; }
 };
 
-/// A pinhole camera.
+/// A pinhole camera, in world coordinates whatever the scene's origin: Camera makes it relative.
 struct View {
     std::string name;
-    V3f eye{0, 0, 0};      ///< [m]
-    V3f look_at{0, 1, 0};  ///< [m]
-    V3f up{0, 0, 1};       ///< Need be neither normalised nor perpendicular to the direction of view.
-    float fov = 45;        ///< Vertical, full [degrees], in (0, 180).
+    Imath::V3d eye{0, 0, 0};      ///< [m]
+    Imath::V3d look_at{0, 1, 0};  ///< [m]
+    V3f up{0, 0, 1};              ///< Need be neither normalised nor perpendicular to the direction of view.
+    float fov = 45;               ///< Vertical, full [degrees], in (0, 180).
 };
 
 /// Everything that was read, in metres and linear Rec. 709; immutable once loaded. Patches of a two-sided face are
 /// neighbours: the side as written first, its other_side right after it.
 struct Scene {
     std::string name;  ///< The file it came from.
-    std::vector<V3f> vertices;
+    /// World coordinates of the vertices' origin [m]: a vertex v lies at origin + v. A reader chooses it (origin_for in
+    /// core.h), so that a scene keeps its precision wherever in the world it lies.
+    Imath::V3d origin{0, 0, 0};
+    std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Those that no patch uses count for nothing.
     std::vector<Patch> patches;
     std::vector<Material> materials;
     std::vector<std::string> objects;  ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "interflect/base/error.h"
+#include "interflect/scene/core.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
@@ -129,8 +130,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
 float default_mesh_size(const Scene& scene) {
     constexpr float pieces_of_diagonal = 48;
     constexpr double moderate_patches = 200'000;
-    Imath::Box3f box;
-    for (const V3f& v : scene.vertices) box.extendBy(v);
+    const Imath::Box3f box = core_bounds(scene);
     double area = 0;
     for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
     return std::max(box.size().length() / pieces_of_diagonal, static_cast<float>(std::sqrt(area / moderate_patches)));

@@ -11,8 +11,8 @@ namespace interflect {
 /// @throws InputError where more than `most_patches` would result.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches);
 
-/// An edge length that shows light and shadow over the scene at a moderate cost: the diagonal of its bounding box over
-/// 48, larger where the scene's area would ask for more than about 200,000 patches [m].
+/// An edge length that shows light and shadow over the scene at a moderate cost: the diagonal of its bounding box
+/// (core_bounds) over 48, larger where the scene's area would ask for more than about 200,000 patches [m].
 float default_mesh_size(const Scene& scene);
 
 }  // namespace interflect

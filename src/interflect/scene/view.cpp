@@ -1,10 +1,9 @@
 #include "interflect/scene/view.h"
 
-#include <ImathBox.h>
-
 #include <algorithm>
 
 #include "interflect/base/error.h"
+#include "interflect/scene/core.h"
 
 namespace interflect {
 
@@ -22,13 +21,11 @@ const View& find_view(const Scene& scene, const std::string& name) {
 View overview(const Scene& scene) {
     constexpr float margin = 0.06f;  // of the box, so that the eye is not inside a wall
     constexpr float wide = 60;       // [degrees]
-    Imath::Box3f box;
-    for (const Patch& patch : scene.patches)
-        for (int k = 0; k < patch.vertex_count(); ++k) box.extendBy(scene.vertices[patch.vertices[k]]);
+    const Imath::Box3f box = core_bounds(scene);
     View view;
     view.name = "overview";
-    view.eye = box.min + box.size() * V3f(margin, margin, 0.7f);
-    view.look_at = box.center();
+    view.eye = scene.origin + Imath::V3d(box.min + box.size() * V3f(margin, margin, 0.7f));
+    view.look_at = scene.origin + Imath::V3d(box.center());
     view.fov = wide;
     return view;
 }

@@ -40,7 +40,7 @@ ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options) : is
     unseen_ = static_cast<float>(is_given_ ? options.smallest_area : side * side);
     for (const WeightedView& w : options.views) {
         const double height = 2 * std::tan(0.5 * static_cast<double>(w.view.fov) * std::numbers::pi / 180);
-        eyes_.push_back({w.view.eye, static_cast<float>(height / w.pixel_rows)});
+        eyes_.push_back({V3f(w.view.eye - scene.origin), static_cast<float>(height / w.pixel_rows)});
     }
 }
 

@@ -142,14 +142,14 @@ struct LinesOfSight {
             const double along_line = points.weight[k] * static_cast<double>(kernel);
             all += along_line;
             // Both ways: the back of a one-sided face stops no ray, and of coincident faces only one answers.
-            if (sees(x, normal_x, y, large) && sees(y, normal_y, x, small)) free += along_line;
+            if (sees(small, x, normal_x, large, y) && sees(large, y, normal_y, small, x)) free += along_line;
         }
         return all > 0 ? free / all : 1;  // 1: too little of the two faces each other for a line
     }
 
-    /// Whether a point of an element is the first that a ray to it meets.
-    bool sees(const V3f& from, const V3f& normal, const V3f& to, std::uint32_t element) {
-        const V3f origin = from + normal * ray_caster.lift();
+    /// Whether a point of an element is the first that a ray to it, from a point of another, meets.
+    bool sees(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
+        const V3f origin = from + normal * ray_caster.lift(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};
         Hit hit;
         ray_caster.trace(std::span(&ray, 1), std::span(&hit, 1));
@@ -177,8 +177,8 @@ double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V
 bool ExchangeEstimator::face_each_other(const ElementPair& pair) const {
     const auto reaches_above = [&](std::uint32_t e, std::uint32_t ground) {
         const V3d normal(forest_.geometry(forest_.patch(ground)).normal());
-        const double height =
-            normal.dot(polygon_of(forest_, ground).corner[0]) + static_cast<double>(ray_caster_.lift());
+        const double height = normal.dot(polygon_of(forest_, ground).corner[0]) +
+                              static_cast<double>(ray_caster_.lift(forest_.patch(ground)));
         const Polygon polygon = polygon_of(forest_, e);
         return std::any_of(polygon.corners().begin(), polygon.corners().end(),
                            [&](const V3d& corner) { return normal.dot(corner) > height; });

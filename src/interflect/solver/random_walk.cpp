@@ -146,7 +146,7 @@ class PathBatch {
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
             const double share = quantum_ / cargo_.density[s] / static_cast<double>(channel_sum(cargo_.emitted[s]));
             std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(cargo_.emitted[s]) * share)});
-            shoot_rays(forest_.geometry(s), Cell(), ray_caster_.lift(), first_points_,
+            shoot_rays(forest_.geometry(s), Cell(), ray_caster_.lift(s), first_points_,
                        sub_key(key_, WalkPurpose::emission, s), static_cast<std::uint64_t>(from - first), w.points,
                        std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
         };
@@ -195,8 +195,9 @@ class PathBatch {
     void reflect(std::uint64_t key, Wavefront& w) const {
         w.make_room_for_rays();
         for (std::size_t i = 0; i < w.particles.size(); ++i)
-            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.lift(), PointSet::random, key, i,
-                       w.points, std::span(w.rays).subspan(i, 1), std::span(w.origins).subspan(i, 1));
+            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.lift(w.particles[i].patch),
+                       PointSet::random, key, i, w.points, std::span(w.rays).subspan(i, 1),
+                       std::span(w.origins).subspan(i, 1));
     }
 
     const ElementForest& forest_;

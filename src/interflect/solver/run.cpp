@@ -25,7 +25,7 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
 }  // namespace
 
 Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m)
-    : surfaces(scene),
+    : surfaces(scene, caster),
       ray_caster(caster),
       options(o),
       monitor(m),

@@ -53,7 +53,7 @@ class RayMaker {
              const SampleStreams& streams)
         : forest_(forest),
           streams_(streams),
-          lift_(ray_caster.lift()),
+          ray_caster_(ray_caster),
           allocation_(step.q, step.rays,
                       random_double(stream_key(streams, Purpose::allocation, 0), streams.allocations)) {}
 
@@ -70,7 +70,7 @@ class RayMaker {
             const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
             const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
             const auto offset = static_cast<std::size_t>(from - begin), length = static_cast<std::size_t>(to - from);
-            shoot_rays(forest_.geometry(patch), forest_.cell(leaf), lift_, streams_.points,
+            shoot_rays(forest_.geometry(patch), forest_.cell(leaf), ray_caster_.lift(patch), streams_.points,
                        stream_key(streams_, Purpose::sampling, place), used + static_cast<std::uint64_t>(from - first),
                        batch.points, std::span(batch.rays).subspan(offset, length),
                        std::span(batch.origins).subspan(offset, length));
@@ -83,7 +83,7 @@ class RayMaker {
   private:
     const ElementForest& forest_;
     const SampleStreams& streams_;
-    float lift_;
+    const RayCaster& ray_caster_;
     RayAllocation allocation_;
 };
 

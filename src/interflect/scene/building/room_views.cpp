@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace interflect::building {
 
@@ -24,6 +25,12 @@ struct Corner {
     float x, y;
 };
 constexpr std::array<Corner, 4> room_corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+
+/// The nearest decimals, so that a file of views is short.
+Imath::V3d to_micrometres(const V3f& x) {
+    const auto rounded = [](float coordinate) { return std::round(static_cast<double>(coordinate) * 1e6) / 1e6; };
+    return {rounded(x.x), rounded(x.y), rounded(x.z)};
+}
 
 V2f eye_in(const Room& room, const Corner& corner) {
     return {corner.x < 0 ? room.x.low + eye_to_wall : room.x.high - eye_to_wall,
@@ -59,8 +66,8 @@ LookOut look_out(const FloorPlan& plan, std::uint32_t index) {
         });
     const V2f eye = eye_in(room, corner), aim = opposite_corner(room, corner);
     LookOut result;
-    result.view = {
-        fmt::format("room-{}", index), {eye.x, eye.y, eye_height}, {aim.x, aim.y, aim_height}, {0, 0, 1}, wide};
+    result.view = {fmt::format("room-{}", index), to_micrometres({eye.x, eye.y, eye_height}),
+                   to_micrometres({aim.x, aim.y, aim_height}), V3f(0, 0, 1), wide};
     result.standing_room = Box2f(eye - V2f(eye_to_wall), eye + V2f(eye_to_wall));
     return result;
 }
@@ -74,7 +81,7 @@ View bird_view(const FloorPlan& plan) {
     const V2f middle = extent.center();
     const V3f look_at(middle.x, middle.y, 0);
     const V3f from = V3f(0, -0.45f, 1).normalized() * extent.size().length() * bird_distance;
-    return {"overview", look_at + from, look_at, {0, 0, 1}, bird_fov};
+    return {"overview", to_micrometres(look_at + from), to_micrometres(look_at), V3f(0, 0, 1), bird_fov};
 }
 
 }  // namespace interflect::building

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+#include "interflect/solver/solve.h"
+
+namespace interflect::command {
+
+/// How the rays of light leave a scene.
+struct Escapes {
+    std::int64_t rays = 0;     ///< That were traced.
+    std::int64_t escaped = 0;  ///< Of these.
+    std::int64_t through_gaps =
+        0;  ///< Of these: most rays beside them, 2% of the scene's diagonal away, hit something.
+
+    double share() const { return rays > 0 ? static_cast<double>(escaped) / static_cast<double>(rays) : 0; }
+};
+
+/// Traces 2^16 rays that start in proportion to the radiosity of a solution.
+Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
+
+/// Whether a scene that looks closed leaks: more than 0.1% of the rays escape, less than 5% (a room with a door or a
+/// window open loses more), and most of those that do pass through gaps.
+bool leaks(const Escapes& escapes);
+
+}  // namespace interflect::command
