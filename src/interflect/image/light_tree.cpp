@@ -1,0 +1,206 @@
+#include "interflect/image/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace interflect {
+
+namespace {
+
+constexpr std::size_t bin_count = 16;  // places where a node may be split; more gain nothing measurable
+
+V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+/// An angle in [0, pi] by cosine and sine.
+struct Angle {
+    float cosine, sine;
+    static Angle of_cosine(float c) { return {c, std::sqrt(std::max(0.0f, 1 - c * c))}; }
+};
+
+/// max(0, a - b).
+Angle less(const Angle& a, const Angle& b) {
+    if (a.cosine >= b.cosine) return {1, 0};
+    return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
+}
+
+}  // namespace
+
+struct LightTree::Emitter {
+    std::uint32_t patch;
+    float power;
+    Box box;
+    V3f normal;
+    V3f centre() const { return 0.5f * (box.low + box.high); }
+};
+
+void LightTree::Box::extend(const Box& other) {
+    low = smaller(low, other.low);
+    high = larger(high, other.high);
+}
+
+LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
+    constexpr float pi = std::numbers::pi_v<float>;
+    constexpr float parallel = 1e-4f;  // [rad]; the axes of a smaller angle have no plane between them
+    const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); };
+    const float of_a = angle(a.cosine), of_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
+    if (std::min(between + of_b, pi) <= of_a + parallel) return {a.axis, std::cos(std::min(pi, of_a + parallel))};
+    if (std::min(between + of_a, pi) <= of_b + parallel) return {b.axis, std::cos(std::min(pi, of_b + parallel))};
+    const float joint = 0.5f * (of_a + between + of_b);
+    if (joint >= pi || between > pi - parallel) return {a.axis, -1};
+    const float turn = joint - of_a;  // of the axis from a towards b
+    const V3f axis = (std::sin(between - turn) * a.axis + std::sin(turn) * b.axis).normalized();
+    return {axis, std::cos(joint)};
+}
+
+LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry) : leaf_(scene.patches.size(), none) {
+    std::vector<Emitter> emitters;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const Patch& patch = scene.patches[i];
+        const float power = channel_sum(scene.materials[patch.material].exitance) * geometry[i].area();
+        if (!(power > 0)) continue;
+        Emitter emitter{
+            i, power, {scene.vertices[patch.vertices[0]], scene.vertices[patch.vertices[0]]}, geometry[i].normal()};
+        for (std::size_t v = 1; v < static_cast<std::size_t>(patch.vertex_count()); ++v) {
+            const V3f& vertex = scene.vertices[patch.vertices[v]];
+            emitter.box.extend({vertex, vertex});
+        }
+        emitters.push_back(emitter);
+    }
+    if (emitters.empty()) return;
+    nodes_.reserve(2 * emitters.size() - 1);
+    nodes_.emplace_back();
+    build(0, emitters);
+}
+
+/// Splits where the sum of power x squared diagonal over both halves is least.
+void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
+    Box box = emitters.front().box;
+    Box centres{emitters.front().centre(), emitters.front().centre()};
+    for (const Emitter& e : emitters) {
+        box.extend(e.box);
+        centres.extend({e.centre(), e.centre()});
+    }
+    const auto finish = [&](Cone cone, float power) {
+        Node& node = nodes_[index];
+        node.centre = 0.5f * (box.low + box.high);
+        node.half = 0.5f * (box.high - box.low);
+        node.radius2 = node.half.length2();
+        node.cone = cone;
+        node.power = power;
+    };
+    if (emitters.size() == 1) {
+        finish({emitters.front().normal, 1}, emitters.front().power);
+        nodes_[index].patch = emitters.front().patch;
+        leaf_[emitters.front().patch] = index;
+        return;
+    }
+
+    const V3f extent = centres.high - centres.low;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const auto bin_of = [&](const Emitter& e) {
+        const float place = (e.centre()[axis] - centres.low[axis]) / extent[axis];
+        return std::min(bin_count - 1, static_cast<std::size_t>(place * static_cast<float>(bin_count)));
+    };
+    std::size_t first_half = emitters.size() / 2;  // where all centres coincide
+    if (extent[axis] > 0) {
+        struct Bin {
+            float power = 0;
+            Box box;
+            void add(float p, const Box& b) {
+                if (power > 0)
+                    box.extend(b);
+                else
+                    box = b;
+                power += p;
+            }
+            float cost() const { return power > 0 ? power * (box.high - box.low).length2() : 0; }
+        };
+        std::array<Bin, bin_count> bins;
+        for (const Emitter& e : emitters) bins[bin_of(e)].add(e.power, e.box);
+        std::array<float, bin_count> cost{};  // of a split before this bin
+        Bin below, above;
+        for (std::size_t b = 1; b < bin_count; ++b) {
+            if (bins[b - 1].power > 0) below.add(bins[b - 1].power, bins[b - 1].box);
+            cost[b] += below.cost();
+        }
+        for (std::size_t b = bin_count - 1; b > 0; --b) {
+            if (bins[b].power > 0) above.add(bins[b].power, bins[b].box);
+            cost[b] += above.cost();
+        }
+        const auto best = static_cast<std::size_t>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
+        const auto middle =
+            std::stable_partition(emitters.begin(), emitters.end(), [&](const Emitter& e) { return bin_of(e) < best; });
+        // The outermost bins both have a member, so neither half is empty.
+        first_half = static_cast<std::size_t>(middle - emitters.begin());
+    }
+
+    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.resize(nodes_.size() + 2);
+    nodes_[index].first_child = child;
+    nodes_[child].parent = nodes_[child + 1].parent = index;
+    build(child, emitters.first(first_half));
+    build(child + 1, emitters.subspan(first_half));
+    finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
+}
+
+float LightTree::importance(const Node& node, const V3f& x, const V3f& n) {
+    const V3f to_centre = node.centre - x;
+    const float reach = std::abs(n.x) * node.half.x + std::abs(n.y) * node.half.y + std::abs(n.z) * node.half.z;
+    if (n.dot(to_centre) + reach <= 0) return 0;  // the box is behind the surface
+    const float distance2 = to_centre.length2();
+    if (distance2 <= node.radius2) return node.power / node.radius2;
+
+    const V3f direction = to_centre / std::sqrt(distance2);
+    const Angle box = Angle::of_cosine(std::sqrt(1 - node.radius2 / distance2));  // seen from x, half
+    const Angle receiving = less(Angle::of_cosine(n.dot(direction)), box);
+    const Angle emitting =
+        less(less(Angle::of_cosine(-node.cone.axis.dot(direction)), Angle::of_cosine(node.cone.cosine)), box);
+    if (receiving.cosine <= 0 || emitting.cosine <= 0) return 0;
+    return node.power * receiving.cosine * emitting.cosine / distance2;
+}
+
+LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {
+    if (nodes_.empty()) return {};
+    constexpr double below_one = 0x1.fffffffffffffp-1;  // what rounding must not reach
+    std::uint32_t node = 0;
+    float probability = 1;
+    if (nodes_[0].is_leaf() && importance(nodes_[0], x, n) <= 0) return {};
+    while (!nodes_[node].is_leaf()) {
+        const std::uint32_t child = nodes_[node].first_child;
+        const float first = importance(nodes_[child], x, n), second = importance(nodes_[child + 1], x, n);
+        if (!(first + second > 0)) return {};
+        const float of_first = first / (first + second);
+        if (uniform < static_cast<double>(of_first)) {
+            uniform = std::min(uniform / static_cast<double>(of_first), below_one);
+            probability *= of_first;
+            node = child;
+        } else {
+            uniform =
+                std::min((uniform - static_cast<double>(of_first)) / (1 - static_cast<double>(of_first)), below_one);
+            probability *= 1 - of_first;
+            node = child + 1;
+        }
+    }
+    return {nodes_[node].patch, probability};
+}
+
+float LightTree::probability(std::uint32_t patch, const V3f& x, const V3f& n) const {
+    std::uint32_t node = leaf_[patch];
+    if (node == none) return 0;
+    if (nodes_[node].parent == none) return importance(nodes_[node], x, n) > 0 ? 1.0f : 0.0f;
+    float probability = 1;
+    for (; nodes_[node].parent != none; node = nodes_[node].parent) {
+        const std::uint32_t child = nodes_[nodes_[node].parent].first_child;
+        const float first = importance(nodes_[child], x, n), second = importance(nodes_[child + 1], x, n);
+        if (!(first + second > 0)) return 0;
+        const float of_first = first / (first + second);
+        probability *= node == child ? of_first : 1 - of_first;
+    }
+    return probability;
+}
+
+}  // namespace interflect
