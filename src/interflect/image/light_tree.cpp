@@ -76,7 +76,67 @@ LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry
     build(0, emitters);
 }
 
-/// Splits where the sum of power x squared diagonal over both halves is least.
+/// Bins along one axis, and which of them are in the upper half.
+struct LightTree::Split {
+    int axis = 0;
+    float low = 0, scale = 0;
+    std::size_t first_above = 0;  // 0: none, since the centres coincide
+    float cost = std::numeric_limits<float>::infinity();
+
+    std::size_t bin_of(const V3f& centre) const {
+        return std::min(bin_count - 1, static_cast<std::size_t>((centre[axis] - low) * scale));
+    }
+};
+
+/// Emitters of a half, or of a bin.
+struct LightTree::Bin {
+    float power = 0;
+    Box box;
+    V3f normals{0, 0, 0};  // weighted by power
+
+    void add(const Bin& other) {
+        if (other.power <= 0) return;
+        if (power > 0)
+            box.extend(other.box);
+        else
+            box = other.box;
+        power += other.power;
+        normals += other.normals;
+    }
+    /// Large where importance() is vague: power x area x solid angle, about; one direction lights a hemisphere well
+    /// enough, normals of all directions the whole sphere.
+    float cost() const {
+        if (power <= 0) return 0;
+        return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
+    }
+};
+
+LightTree::Split LightTree::best_split(std::span<const Emitter> emitters, const Box& centres) {
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float extent = centres.high[axis] - centres.low[axis];
+        if (!(extent > 0)) continue;
+        Split split{axis, centres.low[axis], static_cast<float>(bin_count) / extent};
+        std::array<Bin, bin_count> bins;
+        for (const Emitter& e : emitters) bins[split.bin_of(e.centre())].add({e.power, e.box, e.normal * e.power});
+        std::array<float, bin_count> cost{};  // of a split before this bin
+        Bin below, above;
+        for (std::size_t b = 1; b < bin_count; ++b) {
+            below.add(bins[b - 1]);
+            cost[b] += below.cost();
+        }
+        for (std::size_t b = bin_count - 1; b > 0; --b) {
+            above.add(bins[b]);
+            cost[b] += above.cost();
+        }
+        split.first_above = static_cast<std::size_t>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
+        split.cost = cost[split.first_above];
+        if (split.cost < best.cost) best = split;
+    }
+    return best;
+}
+
+/// Splits where the costs of both halves are least in sum.
 void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
     Box box = emitters.front().box;
     Box centres{emitters.front().centre(), emitters.front().centre()};
@@ -90,6 +150,7 @@ void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
         node.half = 0.5f * (box.high - box.low);
         node.radius2 = node.half.length2();
         node.cone = cone;
+        node.cone_sine = Angle::of_cosine(cone.cosine).sine;
         node.power = power;
     };
     if (emitters.size() == 1) {
@@ -99,44 +160,13 @@ void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
         return;
     }
 
-    const V3f extent = centres.high - centres.low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const auto bin_of = [&](const Emitter& e) {
-        const float place = (e.centre()[axis] - centres.low[axis]) / extent[axis];
-        return std::min(bin_count - 1, static_cast<std::size_t>(place * static_cast<float>(bin_count)));
-    };
-    std::size_t first_half = emitters.size() / 2;  // where all centres coincide
-    if (extent[axis] > 0) {
-        struct Bin {
-            float power = 0;
-            Box box;
-            void add(float p, const Box& b) {
-                if (power > 0)
-                    box.extend(b);
-                else
-                    box = b;
-                power += p;
-            }
-            float cost() const { return power > 0 ? power * (box.high - box.low).length2() : 0; }
-        };
-        std::array<Bin, bin_count> bins;
-        for (const Emitter& e : emitters) bins[bin_of(e)].add(e.power, e.box);
-        std::array<float, bin_count> cost{};  // of a split before this bin
-        Bin below, above;
-        for (std::size_t b = 1; b < bin_count; ++b) {
-            if (bins[b - 1].power > 0) below.add(bins[b - 1].power, bins[b - 1].box);
-            cost[b] += below.cost();
-        }
-        for (std::size_t b = bin_count - 1; b > 0; --b) {
-            if (bins[b].power > 0) above.add(bins[b].power, bins[b].box);
-            cost[b] += above.cost();
-        }
-        const auto best = static_cast<std::size_t>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
-        const auto middle =
-            std::stable_partition(emitters.begin(), emitters.end(), [&](const Emitter& e) { return bin_of(e) < best; });
-        // The outermost bins both have a member, so neither half is empty.
-        first_half = static_cast<std::size_t>(middle - emitters.begin());
-    }
+    const Split split = best_split(emitters, centres);
+    const auto middle = std::stable_partition(emitters.begin(), emitters.end(), [&](const Emitter& e) {
+        return split.bin_of(e.centre()) < split.first_above;
+    });
+    // The outermost bins both have a member, so neither half is empty; but all are in one where the centres coincide.
+    std::size_t first_half = static_cast<std::size_t>(middle - emitters.begin());
+    if (first_half == 0 || first_half == emitters.size()) first_half = emitters.size() / 2;
 
     const auto child = static_cast<std::uint32_t>(nodes_.size());
     nodes_.resize(nodes_.size() + 2);
@@ -154,13 +184,12 @@ float LightTree::importance(const Node& node, const V3f& x, const V3f& n) {
     const float distance2 = to_centre.length2();
     if (distance2 <= node.radius2) return node.power / node.radius2;
 
-    const V3f direction = to_centre / std::sqrt(distance2);
-    const Angle box = Angle::of_cosine(std::sqrt(1 - node.radius2 / distance2));  // seen from x, half
-    const Angle receiving = less(Angle::of_cosine(n.dot(direction)), box);
-    const Angle emitting =
-        less(less(Angle::of_cosine(-node.cone.axis.dot(direction)), Angle::of_cosine(node.cone.cosine)), box);
-    if (receiving.cosine <= 0 || emitting.cosine <= 0) return 0;
-    return node.power * receiving.cosine * emitting.cosine / distance2;
+    const float inverse2 = 1 / distance2, inverse = std::sqrt(inverse2), sine2 = node.radius2 * inverse2;
+    const Angle box{std::sqrt(1 - sine2), std::sqrt(sine2)};  // seen from x, half
+    const Angle receiving = less(Angle::of_cosine(n.dot(to_centre) * inverse), box);
+    const Angle facing = Angle::of_cosine(-node.cone.axis.dot(to_centre) * inverse);
+    const Angle emitting = less(less(facing, {node.cone.cosine, node.cone_sine}), box);
+    return node.power * inverse2 * std::max(0.0f, receiving.cosine) * std::max(0.0f, emitting.cosine);
 }
 
 LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {

@@ -47,6 +47,7 @@ class LightTree {
     struct alignas(64) Node {
         V3f centre, half;  // of the bounding box; from its centre to a corner [m]
         Cone cone;
+        float cone_sine = 0;
         float power = 0;                            // sum over channels [W or lm]
         std::uint32_t first_child = 0;              // the other one follows it; of an inner node
         std::uint32_t patch = none, parent = none;  // patch: of a leaf
@@ -54,9 +55,12 @@ class LightTree {
         bool is_leaf() const { return patch != none; }
     };
     struct Emitter;
+    struct Split;
+    struct Bin;
 
     static Cone bounding_cone(const Cone& a, const Cone& b);
     static float importance(const Node& node, const V3f& x, const V3f& n);
+    static Split best_split(std::span<const Emitter> emitters, const Box& centres);
     void build(std::uint32_t node, std::span<Emitter> emitters);
 
     std::vector<Node> nodes_;          // [0] is the root; empty without emitting patches

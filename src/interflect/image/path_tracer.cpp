@@ -29,9 +29,10 @@ constexpr int largest_batch = 64;
 /// Paths that advance together, about: many enough to hide the cost of a call, few enough to stay in the cache.
 constexpr std::size_t paths_per_tile = 2048;
 /// Paths between two reports of progress, about.
-constexpr std::size_t paths_per_chunk = std::size_t{1} << 20;
-/// Throughput below which Russian roulette ends paths. Lower: less variance, longer paths.
-constexpr float roulette_threshold = 0.25f;
+constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
+/// Throughput below which Russian roulette ends paths. Lower: less variance, longer paths; from 0.25 to 1 it is all
+/// one.
+constexpr float roulette_threshold = 0.5f;
 /// Vertices of a path with Sobol' points; later ones gain nothing by them and get pseudo-random numbers.
 constexpr std::uint32_t stratified_vertices = 4;
 /// Variance is averaged over the pixels at most this far away, in columns and in rows.

@@ -38,7 +38,7 @@ struct PathProgress {
 
 /// What the caller is told, and how it ends a run.
 struct PathMonitor {
-    std::function<void(const PathProgress&)> on_progress;  ///< From the calling thread, about every million paths.
+    std::function<void(const PathProgress&)> on_progress;  ///< From the calling thread, about every quarter million paths.
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
 };
 
