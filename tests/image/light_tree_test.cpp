@@ -106,6 +106,25 @@ TEST(LightTree, PrefersTheNearAndTheBright) {
     EXPECT_LT(tree.probability(2, x, up), 0.01f);
 }
 
+/// 400 lamps that face down, one a room of 5 x 5 m: the one above is most of the light on a floor and on a wall.
+TEST(LightTree, PrefersTheLampOfTheRoomAmongHundreds) {
+    Scene scene;
+    const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
+    for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 20; ++column)
+            add_rectangle(scene, V3f(5.0f * static_cast<float>(column), 5.0f * static_cast<float>(row), 2.7f),
+                          V3f(0, 1, 0), V3f(1, 0, 0), light);
+    const LightTree tree(scene, geometry_of(scene));
+    float on_floors = 0, on_walls = 0;
+    for (std::uint32_t room = 0; room < 400; ++room) {
+        const V3f below = scene.vertices[scene.patches[room].vertices[0]] - V3f(0, 0, 2.7f);
+        on_floors += tree.probability(room, below, V3f(0, 0, 1)) / 400;
+        on_walls += tree.probability(room, below + V3f(-1.5f, 0, 1), V3f(1, 0, 0)) / 400;
+    }
+    EXPECT_GT(on_floors, 0.5f) << "with the cosines towards the nodes' centres it is 0.1";
+    EXPECT_GT(on_walls, 0.4f);
+}
+
 TEST(LightTree, WithoutLightChoosesNothing) {
     Scene scene;
     add_rectangle(scene, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0),

@@ -13,7 +13,11 @@ namespace {
 constexpr std::size_t bin_count = 16;  // places where a node may be split; more gain nothing measurable
 
 V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+/// How far a box with this half diagonal reaches from its centre in a direction.
+float support(const V3f& half, const V3f& direction) { return half.dot(absolute(direction)); }
 
 /// An angle in [0, pi] by cosine and sine.
 struct Angle {
@@ -177,19 +181,26 @@ void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
     finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
 }
 
+// The cosines at the box's nearest point are what lets a wide node that holds x, such as half the lamps of a storey,
+// outweigh one beside it: with d the distance to its nearest part and h their height over x, lamps that face down
+// light a floor by h^2 / d^4, of which the node's own distance only knows the mean.
 float LightTree::importance(const Node& node, const V3f& x, const V3f& n) {
     const V3f to_centre = node.centre - x;
-    const float reach = std::abs(n.x) * node.half.x + std::abs(n.y) * node.half.y + std::abs(n.z) * node.half.z;
-    if (n.dot(to_centre) + reach <= 0) return 0;  // the box is behind the surface
-    const float distance2 = to_centre.length2();
-    if (distance2 <= node.radius2) return node.power / node.radius2;
-
-    const float inverse2 = 1 / distance2, inverse = std::sqrt(inverse2), sine2 = node.radius2 * inverse2;
-    const Angle box{std::sqrt(1 - sine2), std::sqrt(sine2)};  // seen from x, half
-    const Angle receiving = less(Angle::of_cosine(n.dot(to_centre) * inverse), box);
-    const Angle facing = Angle::of_cosine(-node.cone.axis.dot(to_centre) * inverse);
-    const Angle emitting = less(less(facing, {node.cone.cosine, node.cone_sine}), box);
-    return node.power * inverse2 * std::max(0.0f, receiving.cosine) * std::max(0.0f, emitting.cosine);
+    const V3f& axis = node.cone.axis;
+    const float height = n.dot(to_centre) + support(node.half, n);       // of the box's highest point over the surface
+    const float ahead = support(node.half, axis) - axis.dot(to_centre);  // of x before the box's rearmost point
+    if (height <= 0) return 0;
+    const V3f gap = larger(absolute(to_centre) - node.half, V3f(0, 0, 0));
+    const float nearest2 = gap.length2(), centre2 = to_centre.length2();
+    const float inverse = 1 / std::sqrt(std::max(nearest2, std::numeric_limits<float>::min()));
+    const float receiving = std::min(1.0f, height * inverse);
+    float emitting = std::min(1.0f, ahead * inverse);
+    if (node.cone.cosine < 1) {
+        // Behind every patch of the box, the farthest has the smallest angle.
+        if (ahead < 0) emitting = ahead / (std::sqrt(centre2) + std::sqrt(node.radius2));
+        emitting = less(Angle::of_cosine(emitting), {node.cone.cosine, node.cone_sine}).cosine;
+    }
+    return node.power * receiving * std::max(0.0f, emitting) / std::max(centre2, node.radius2);
 }
 
 LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {

@@ -12,10 +12,11 @@ namespace interflect {
 
 /// Chooses emitting patches in proportion to an estimate of the irradiance that they cause at a point: a binary tree
 /// over them, each node with the power, the bounding box and a cone around the normals of its patches. A walk from the
-/// root takes a child with a probability proportional to power x cosines / squared distance, where the cosines are the
-/// largest that box and cone allow and the distance is at least half the box's diagonal. A node that lies behind the
-/// surface, or faces away from the point as a whole, is never taken. After Conty and Kulla 2018. Occlusion is not
-/// known. Immutable, shared by all threads; 64 bytes a node, two nodes an emitting patch, and 4 bytes a patch.
+/// root takes a child with a probability proportional to power x cosines / squared distance. The cosines, of the
+/// receiving surface and of the emitting ones, are the largest that the box and the cone allow. The distance is that to
+/// the box's centre, at least half its diagonal. A node that lies behind the surface, or faces away from the point as a
+/// whole, is never taken. After Conty and Kulla 2018. Occlusion is not known. Immutable, shared by all threads; 64
+/// bytes a node, two nodes an emitting patch, and 4 bytes a patch.
 class LightTree {
   public:
     struct Choice {
