@@ -378,6 +378,7 @@ class PathPicture {
         trace_round(wanted);
         if (options_.until <= 0) return;
         while (!stopped() && want_more(wanted, most)) trace_round(wanted);
+        if (!stopped()) report(1);
     }
 
     PathTracing result() const {
@@ -409,7 +410,7 @@ class PathPicture {
         foreseen_ = 0;
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
             const std::uint32_t present = pixels_[i].batches;
-            const double in_all = std::clamp<double>(std::ceil(needed[i]), present, std::max(most, present));
+            const double in_all = std::max<double>(present, std::min<double>(most, std::ceil(needed[i])));
             wanted[i] = static_cast<std::uint32_t>(std::min(in_all, 2.0 * present));
             more = more || wanted[i] > present;
             foreseen_ += in_all;
@@ -452,9 +453,11 @@ class PathPicture {
             ++batches_done_;
         }
         chunk.clear();
-        if (monitor_.on_progress)
-            monitor_.on_progress(
-                {counts_.rays, std::min(1.0, static_cast<double>(batches_done_) / foreseen_), relative_error(pixels_)});
+        report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
+    }
+
+    void report(double fraction) const {
+        if (monitor_.on_progress) monitor_.on_progress({counts_.rays, fraction, relative_error(pixels_)});
     }
 
     const PathScene& s_;

@@ -38,7 +38,8 @@ struct PathProgress {
 
 /// What the caller is told, and how it ends a run.
 struct PathMonitor {
-    std::function<void(const PathProgress&)> on_progress;  ///< From the calling thread, about every quarter million paths.
+    /// Called from the calling thread, about every quarter million paths.
+    std::function<void(const PathProgress&)> on_progress;
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
 };
 
@@ -80,7 +81,8 @@ struct PathTracing {
 /// @param ray_caster  Of the same scene.
 /// @return            The same bits for the same seed and any number of threads, unless interrupted.
 /// @throws InputError for a view that defines no picture or an option out of range.
-/// Cost: about 2 to 3 (1 / (1 - rho)) rays a path; 100 bytes a patch and 90 a pixel.
+/// Cost: two rays a vertex and, for reflectances about rho, 1 / (1 - rho) vertices a path or a few more; 110 bytes a
+/// patch and as many a pixel.
 PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const View& view,
                         const PathOptions& options = {}, const PathMonitor& monitor = {});
 
