@@ -1,5 +1,11 @@
 // The path tracer against exact answers: closed boxes of one exitance and reflectance, and form factors between
-// parallel rectangles. MUTATIONS
+// parallel rectangles. Seen to fail with each of these mutations: rho wrong or dropped; pi dropped from the emission
+// that a ray hits, from that of a chosen lamp, from the density of directions, or from the weight of chance hits alone;
+// a patch's probability, a lamp's area or its cosine dropped; distances dropped from the light tree's estimate, its
+// probabilities exchanged, its number not rescaled, its boxes culled by their centres; chance hits counted in full;
+// survivors of roulette not raised; 30 bounces at most; directions uniform over the hemisphere; points near the middle
+// of a lamp; shadow rays that count whatever they hit; the same random numbers for all batches, or for all vertices; no
+// ray offset; standard errors 15% too large.
 #include "interflect/image/path_tracer.h"
 
 #include <gtest/gtest.h>
@@ -100,6 +106,30 @@ TEST_P(PathFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     for (const PathTracing& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
 }
 
+/// The box two-sided, askew and 50 m away from the origin: a ray that started on its surface or below would leave it.
+TEST(PathTracer, NoRayLeavesAClosedBox) {
+    const Scene box = closed_box(V3f(1, 2, 3), 2, {{"wall", Rgb(0.7f, 0.7f, 0.7f), Rgb(1, 1, 1)}});
+    const V3f x = V3f(2, 1, 2) / 3.0f, y = V3f(-2, 2, 1) / 3.0f, z = V3f(-1, -2, 2) / 3.0f;  // orthonormal
+    const auto move = [&](const V3f& v) { return V3f(50, -30, 20) + x * v.x + y * v.y + z * v.z; };
+    Scene moved = box;
+    moved.patches.clear();
+    for (V3f& v : moved.vertices) v = move(v);
+    for (Patch front : box.patches) {
+        const auto index = static_cast<std::uint32_t>(moved.patches.size());
+        Patch back = front;
+        std::swap(back.vertices[1], back.vertices[3]);
+        front.other_side = index + 1;
+        back.other_side = index;
+        moved.patches.push_back(front);
+        moved.patches.push_back(back);
+    }
+    const View view{"corner", move(V3f(0.1f, 0.2f, 0.3f)), move(V3f(0.9f, 1.8f, 2.8f)), z, 80};
+    const Pictures seen(moved, view, {.width = 6, .height = 4, .samples = 64}, 24);
+    for (const PathTracing& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
+    const std::vector<RgbD> expected(6 * 4, RgbD(1, 1, 1) / (1 - static_cast<double>(0.7f)) / pi);
+    EXPECT_GT(seen.p_value(expected), false_alarm);
+}
+
 /// Paths of a hundred bounces: a limit of their number, or roulette that forgets to raise the others, shows here.
 TEST(PathTracer, IsUnbiasedInAnAlmostWhiteBox) {
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.99f, 0.99f, 0.99f), Rgb(1, 1, 1)}});
@@ -169,7 +199,7 @@ TEST_P(LampAboveFloor, LightsItByFormFactors) {
     const auto expected = setup.expected([&](const Rectangle& r) { return form_factor(r, lamp.rectangle()); });
     const Pictures seen = setup.pictures(GetParam(), 512);
     EXPECT_GT(seen.p_value(expected), false_alarm);
-    EXPECT_LT(seen.p_value(expected, 1.02), false_alarm);
+    EXPECT_LT(seen.p_value(expected, 1.04), false_alarm);
 }
 
 /// A millimetre across: no ray hits it by chance.
