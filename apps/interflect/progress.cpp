@@ -72,22 +72,21 @@ double fraction_done(const SolveOptions& options, const IterationReport& report)
     return std::clamp(fraction, 0.0, 1.0);
 }
 
-ProgressBar::ProgressBar(const SolveOptions& options) : options_(options), terminal_(stderr_is_terminal()) {}
+ProgressBar::ProgressBar() : terminal_(stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() {
     if (terminal_) fmt::print(stderr, "\n");
 }
 
-void ProgressBar::show(const IterationReport& r) {
-    const double fraction = fraction_done(options_, r);
-    if (!terminal_ && fraction < 1 && r.seconds < last_shown_ + seconds_between_lines) return;
-    last_shown_ = r.seconds;
-    const std::string error =
-        std::isfinite(r.error_estimate) ? fmt::format("{:.2g}%", 100 * r.error_estimate) : std::string("-");
-    const std::string left = fraction > 0 ? duration(r.seconds / fraction * (1 - fraction)) : std::string("-");
+void ProgressBar::show(const WorkDone& work) {
+    const double fraction = work.fraction;
+    if (!terminal_ && fraction < 1 && work.seconds < last_shown_ + seconds_between_lines) return;
+    last_shown_ = work.seconds;
+    const std::string error = std::isfinite(work.error) ? fmt::format("{:.2g}%", 100 * work.error) : std::string("-");
+    const std::string left = fraction > 0 ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
     const std::string text = fmt::format(
-        "{:3.0f}%  {} rays, {}/s, error {}, {} left", 100 * fraction, magnitude(static_cast<double>(r.rays)),
-        magnitude(static_cast<double>(r.rays) / std::max(r.seconds, 1e-9)), error, left);
+        "{:3.0f}%  {} rays, {}/s, error {}, {} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
+        magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
     if (!terminal_) {
         fmt::print(stderr, "{}\n", text);
         return;

@@ -18,17 +18,24 @@ class StopOnInterrupt {
     static const std::atomic<bool>& flag();
 };
 
-/// Shows how far a solve is, on stderr: one line that is written over on a terminal, else a line now and then.
+/// How far long work is.
+struct WorkDone {
+    double fraction = 0;  ///< In [0, 1].
+    double seconds = 0;
+    std::int64_t rays = 0;
+    double error = 0;  ///< Estimated relative error; infinite or not a number where unknown.
+};
+
+/// Shows it on stderr: one line that is written over on a terminal, else a line now and then.
 class ProgressBar {
   public:
-    explicit ProgressBar(const SolveOptions& options);
+    ProgressBar();
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
-    void show(const IterationReport& report);
+    void show(const WorkDone& work);
 
   private:
-    SolveOptions options_;
     bool terminal_;
     double last_shown_ = -1e9;  // [s]
 };

@@ -5,6 +5,7 @@
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
+#include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/show.h"
 #include "apps/interflect/threads.h"
@@ -22,13 +23,23 @@ namespace interflect::command {
 
 namespace {
 
+/// Where the light in the picture comes from.
+enum class PictureShading {
+    smooth,  ///< A solution, see Shading.
+    flat,
+    path,  ///< Path tracing, with no solution.
+};
+
 struct RenderArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
     SolverOptions solver;
+    PathTracerArguments path;
     std::filesystem::path output;
     Size size;
+    PictureShading shading = PictureShading::smooth;
+    std::optional<int> samples;
     RenderOptions render;
     std::optional<float> exposure;
     Tonemap tonemap = Tonemap::filmic;
@@ -54,15 +65,21 @@ struct Picture {
     std::int64_t non_finite_pixels = 0;
 };
 
+/// Tone-mapped in formats for people.
+Picture picture_of_light(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
+    Picture picture;
+    picture.exposure = options.exposure.value_or(automatic_exposure(light));
+    picture.non_finite_pixels = non_finite_pixels;
+    const bool tone_mapped = needs_tone_mapping(require_image_format(options.output));
+    picture.image = tone_mapped ? tone_map(light, picture.exposure, options.tonemap) : light;
+    return picture;
+}
+
 Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
-    Rendering rendering =
+    const Rendering rendering =
         render(solved.scene, *solved.solution.forest, ray_caster, view, solved.solution.irradiance, options.render);
-    Picture picture;
-    picture.exposure = options.exposure.value_or(automatic_exposure(rendering.image));
-    picture.non_finite_pixels = rendering.non_finite_pixels;
-    const bool tone_mapped = needs_tone_mapping(require_image_format(options.output));
-    picture.image = tone_mapped ? tone_map(rendering.image, picture.exposure, options.tonemap) : rendering.image;
+    Picture picture = picture_of_light(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
                                       options.render.samples, options.render.seed);
@@ -79,22 +96,18 @@ Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, co
             drawn.non_finite_pixels};
 }
 
-void write_picture(PendingFile& output, const Picture& picture, const View& view, const SolvedScene& solved,
-                   const RenderArguments& options) {
+void write_picture(PendingFile& output, const Picture& picture, const View& view, const Scene& scene,
+                   std::uint64_t seed, const RenderArguments& options) {
     write_image(output.temporary_path(), picture.image,
-                {view, picture.quantity, solved.scene.name, INTERFLECT_VERSION, solved.solution.options.seed,
-                 picture.exposure});
+                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure});
     output.commit();
     if (picture.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", picture.non_finite_pixels);
     spdlog::info("{}: {} x {}, view '{}', {}, exposure {:+.2f}", options.output.string(), picture.image.width,
                  picture.image.height, view.name, picture.quantity, picture.exposure);
 }
 
-/// Everything that can be refused is refused before the first ray.
-void run(RenderArguments& options, int& exit_code) {
-    const ThreadLimit threads(options.solver.threads);
-    require_image_format(options.output);
-    PendingFile output(options.output);
+/// Draws the light of a solution; solves a scene first.
+void run_solution(RenderArguments& options, PendingFile& output, int& exit_code) {
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved;
     if (solved_before)
@@ -114,17 +127,52 @@ void run(RenderArguments& options, int& exit_code) {
 
     options.render.width = options.size.width;
     options.render.height = options.size.height;
+    options.render.samples = options.samples.value_or(options.render.samples);
+    options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
     const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
                                                        : draw_light(solved, ray_caster, view, options);
-    write_picture(output, picture, view, solved, options);
+    write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before && solved.solution.interrupted) exit_code = interrupted;
+}
+
+/// Draws the light that path tracing finds; of a solution file the scene alone counts.
+void run_paths(const RenderArguments& options, PendingFile& output, int& exit_code) {
+    const Scene scene =
+        is_solution_file(options.scene.path) ? read_solution(options.scene.path).scene : options.scene.load();
+    const View view = view_to_draw(scene, options.view);
+    PathOptions path_options;
+    path_options.width = options.size.width;
+    path_options.height = options.size.height;
+    path_options.samples = options.samples.value_or(path_options.samples);
+    path_options.until = options.solver.until();
+    path_options.seed = options.solver.seed();
+    const PathTracing traced = run_path_tracer(scene, RayCaster(scene), view, path_options, options.path);
+    const Picture picture = picture_of_light(traced.image, traced.non_finite_pixels, options);
+    write_picture(output, picture, view, scene, path_options.seed, options);
+    if (traced.interrupted) exit_code = interrupted;
+}
+
+/// Everything that can be refused is refused before the first ray.
+void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
+    const ThreadLimit threads(options.solver.threads);
+    require_image_format(options.output);
+    if (options.shading == PictureShading::path)
+        refuse_solver_options(command);
+    else
+        refuse_path_options(command);
+    PendingFile output(options.output);
+    if (options.shading == PictureShading::path)
+        run_paths(options, output, exit_code);
+    else
+        run_solution(options, output, exit_code);
 }
 
 }  // namespace
 
 void add_render(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<RenderArguments>();
-    CLI::App& command = *app.add_subcommand("render", "Draw a view of a solution, or of a scene after solving it");
+    CLI::App& command =
+        *app.add_subcommand("render", "Draw a view of a solution, or of a scene after solving it or by path tracing");
     options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
     command.add_option("-o,--output", options->output, "Picture to write: .png .jpg .exr .hdr")
         ->required()
@@ -133,13 +181,14 @@ void add_render(CLI::App& app, int& exit_code) {
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command.add_option("--samples", options->render.samples, "Eye rays a pixel")
-        ->capture_default_str()
+    command.add_option("--samples", options->samples, "Eye rays a pixel (default: 16; with --shading path 64)")
         ->check(CLI::Range(1, 65536));
-    add_choice<Shading>(command, "--shading", options->render.shading,
-                        {{"smooth", Shading::smooth}, {"flat", Shading::flat}},
-                        "smooth: interpolated over each surface; flat: one value an element")
+    add_choice<PictureShading>(
+        command, "--shading", options->shading,
+        {{"smooth", PictureShading::smooth}, {"flat", PictureShading::flat}, {"path", PictureShading::path}},
+        "smooth: interpolated over each surface; flat: one value an element; path: path tracing, without solving")
         ->default_str("smooth");
+    options->path.add_to(command);
     command
         .add_option("--exposure", options->exposure,
                     "Brightness of .png and .jpg: 1 more is twice as bright (default: automatic)")
@@ -152,7 +201,7 @@ void add_render(CLI::App& app, int& exit_code) {
     add_show(command, options->shown);
     options->solver.add_to(command);
     options->mesh.add_to(command);
-    command.callback([options, &exit_code] { run(*options, exit_code); });
+    command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
 }
 
 }  // namespace interflect::command

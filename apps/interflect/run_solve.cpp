@@ -153,8 +153,11 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
     Solution solution;
     {
         const StopOnInterrupt stop_on_interrupt;
-        ProgressBar bar(options);
-        const Monitor monitor{[&](const IterationReport& report) { bar.show(report); }, &StopOnInterrupt::flag()};
+        ProgressBar bar;
+        const auto show = [&](const IterationReport& report) {
+            bar.show({fraction_done(options, report), report.seconds, report.rays, report.error_estimate});
+        };
+        const Monitor monitor{show, &StopOnInterrupt::flag()};
         solution = solve(scene, ray_caster, options, monitor);
     }
     log_outcome(solution);

@@ -57,6 +57,8 @@ struct SolverOptions {
     /// default of rays goes where only another limit was given.
     /// @param aspect  Width over height of the pictures.
     SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
+    std::uint64_t seed() const { return solve_.seed; }
+    double until() const { return solve_.until; }  ///< Target of the relative error; 0 where none was given.
 
   private:
     void add_limits(CLI::App& app);

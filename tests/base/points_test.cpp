@@ -154,5 +154,41 @@ TEST(SobolPoints, GoOnWithAnotherSequenceAfterTheLast) {
     EXPECT_TRUE(is_stratified(points(PointSet::sobol, 31, last + 1, 256), {4, 4, 0, 0}));
 }
 
+std::vector<Point> shuffled_points(std::uint64_t key, std::uint32_t first, std::uint32_t count) {
+    std::vector<Point> result;
+    for (std::uint32_t i = 0; i < count; ++i) result.push_back(shuffled_point(key, first + i));
+    return result;
+}
+
+TEST(ShuffledPoints, AlignedBlocksAreStratifiedInFourDimensions) {
+    constexpr int k = 9, divided = k - 3;
+    for (const std::uint32_t block : {0, 1, 5, 1'000'000}) {
+        const std::vector<Point> all = shuffled_points(17 + block, block << k, 1u << k);
+        for (int a = 0; a <= divided; ++a)
+            for (int b = 0; a + b <= divided; ++b) ASSERT_TRUE(is_stratified(all, {a, b, divided - a - b, 0}));
+        for (int a = 0; a <= k; ++a) ASSERT_TRUE(is_stratified(all, {a, k - a, 0, 0})) << block << ": " << a;
+    }
+}
+
+/// In how many of 256 points of two sequences the first digits of one dimension agree.
+int agreements(const std::vector<Point>& one, const std::vector<Point>& other, std::size_t dimension) {
+    int count = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) count += (one[i][dimension] < 0.5f) == (other[i][dimension] < 0.5f);
+    return count;
+}
+
+// Of points that are scrambled alone, the same half of a sequence has the first digit 0 whatever the key: two
+// dimensions of different sequences would cover half of their square only. Shuffled, 128 +- 8 agree.
+TEST(ShuffledPoints, OfDifferentKeysAreIndependent) {
+    for (std::uint64_t key = 0; key < 64; ++key)
+        for (std::size_t d = 0; d < 4; ++d) {
+            const int count = agreements(shuffled_points(2 * key, 0, 256), shuffled_points(2 * key + 1, 0, 256), d);
+            EXPECT_NEAR(count, 128, 6 * 8) << key;
+            const int unshuffled =
+                agreements(points(PointSet::sobol, 2 * key, 0, 256), points(PointSet::sobol, 2 * key + 1, 0, 256), d);
+            EXPECT_TRUE(unshuffled == 0 || unshuffled == 256) << "the test can fail";
+        }
+}
+
 }  // namespace
 }  // namespace interflect

@@ -66,6 +66,14 @@ class Interrupt(CommandTest):
         self.assertEqual(self.files(), ["out.exr", "room.mgf"])
         self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
 
+    def test_path_tracing_keeps_a_picture_and_its_error(self):
+        self.interrupt_after_first_progress(
+            *("render", "room.mgf", "--shading", "path", "-o", "out.exr", "--error-image", "error.exr", *VIEW),
+            *("--size", "32x18", "--samples", "65536"),
+        )
+        self.assertEqual(self.files(), ["error.exr", "out.exr", "room.mgf"])
+        self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
+
     def test_a_request_to_terminate_is_heeded_alike(self):
         self.interrupt_after_first_progress(
             "solve", "room.mgf", "-o", "out.h5", *ENDLESS, *SHORT_ITERATIONS, by=signal.SIGTERM

@@ -1,6 +1,7 @@
 """Pictures: reproducible, of the view that was asked for, and labelled with how they came to be."""
 
 import json
+import re
 import struct
 import unittest
 
@@ -180,6 +181,86 @@ class Pictures(RenderTest):
             difference = self.json("compare", f"dark.{kind}", f"lit.{kind}")
             self.assertEqual(difference["ratio_of_means"], 0)
             self.assertEqual(difference["non_finite_pixels"], 0)
+
+
+class PathTracing(CommandTest):
+    """The other estimate of the same picture, and what it refuses."""
+
+    SIZE = ("--size", "32x18")
+    PATH = ("--shading", "path", *SIZE)
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def trace(self, name, *options, source="room.mgf"):
+        return self.interflect("render", source, "-o", name, *self.PATH, *VIEW, *options).stderr
+
+    def test_agrees_with_the_solver(self):
+        """Two independent estimates of one scene; a factor of rho, of pi or of the area would show."""
+        self.trace("path.exr", "--samples", "256")
+        self.interflect("render", "room.mgf", "-o", "solved.exr", *self.SIZE, *VIEW, "--samples", "16", "--rays", "2M")
+        difference = self.json("compare", "path.exr", "solved.exr")
+        self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.02)
+        self.assertLess(difference["blocks"][1]["relative_rmse"], 0.08)
+
+    def test_does_not_solve_and_tells_its_error(self):
+        log = self.trace("out.exr", "--samples", "64")
+        self.assertRegex(log, r"info: path tracing: 36\.9 k paths, .* rays in .*, estimated relative error [\d.]+% a pixel")
+        self.assertRegex(log, r"100%  .* rays, .*/s, error [\d.]+%")
+        self.assertNotIn("elements", log)
+
+    def test_same_bytes_on_any_number_of_threads(self):
+        def run(name, *options):
+            self.trace(f"{name}.exr", "--until", "20%", "--error-image", f"{name}-error.exr", *options)
+            return self.bytes(f"{name}.exr"), self.bytes(f"{name}-error.exr")
+
+        one = run("one", "--threads", "1")
+        self.assertEqual(run("two", "--threads", "2"), one)
+        self.assertNotEqual(run("seed", "--seed", "2"), one)
+        self.assertNotEqual(one[0], one[1])
+        attributes = exr_attributes(one[1])
+        self.assertEqual(attributes["interflect.quantity"][1], b"standard error of luminance [cd/m^2]")
+
+    def test_a_target_takes_more_samples_where_they_are_needed(self):
+        def paths_and_error(*options):
+            found = re.search(r"tracing: ([\d.]+) k paths.* error ([\d.]+)%", self.trace("out.hdr", *options))
+            return float(found[1]), float(found[2])
+
+        few, large = paths_and_error("--samples", "16")
+        many, small = paths_and_error("--samples", "16", "--until", "6%")
+        limited, _ = paths_and_error("--samples", "16", "--until", "6%", "--max-samples", "20")
+        self.assertGreater(large, 8)
+        self.assertLess(small, 7)
+        self.assertLess(few, limited)
+        self.assertLess(limited, many)
+
+    def test_of_a_solution_its_scene_counts(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "10k")
+        self.trace("scene.hdr")
+        self.trace("solution.hdr", source="room.h5")
+        self.assertEqual(self.bytes("solution.hdr"), self.bytes("scene.hdr"))
+
+    def test_combinations_without_meaning_are_refused(self):
+        render = ("render", "room.mgf", "-o", "out.exr", *self.SIZE, *VIEW)
+        for options, word in (
+            (("--shading", "path", "--show", "mesh"), "--show"),
+            (("--shading", "path", "--show", "importance"), "--show"),
+            (("--shading", "path", "--rays", "1M"), "--rays"),
+            (("--shading", "path", "--method", "hsrr"), "--method"),
+            (("--shading", "path", "--mesh-size", "0.1"), "--mesh-size"),
+            (("--shading", "path", "--epsilon", "1e-6"), "--epsilon"),
+            (("--shading", "path", "--importance", "full"), "--importance"),
+            (("--shading", "path", "--max-samples", "99"), "--until"),
+            (("--shading", "path", "--samples", "1"), "samples"),
+            (("--shading", "path", "--until", "5%", "--max-samples", "3"), "at most 3"),
+            (("--shading", "path", "--error-image", "e.png"), "e.png"),
+            (("--error-image", "e.exr"), "--error-image"),
+            (("--shading", "flat", "--max-samples", "99"), "--max-samples"),
+        ):
+            stderr = self.interflect(*render, *options, exit_code=BAD_INPUT).stderr
+            self.assertIn(word, stderr, options)
+        self.assertEqual(self.files(), ["room.mgf"])
 
 
 if __name__ == "__main__":

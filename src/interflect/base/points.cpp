@@ -95,4 +95,21 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
     }
 }
 
+std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
+    constexpr std::uint32_t shuffled_bits = 0xffffu;  // fewer bits to add up below
+    constexpr std::uint64_t order = 4;                // the number after those of the dimensions' keys
+    const auto order_seed = static_cast<std::uint32_t>(mix(key, order) >> 32);
+    const std::uint32_t place =
+        (reverse_bits(nested_permutation(reverse_bits(index), order_seed)) & shuffled_bits) | (index & ~shuffled_bits);
+    std::array<float, 4> point;
+    for (std::size_t d = 0; d < 4; ++d) {
+        std::uint32_t word = 0;
+        for (std::uint32_t bits = place; bits != 0; bits &= bits - 1)
+            word ^= directions[d][static_cast<std::size_t>(std::countr_zero(bits))];
+        const auto seed = static_cast<std::uint32_t>(mix(key, d) >> 32);
+        point[d] = unit_float(reverse_bits(nested_permutation(word, seed)));
+    }
+    return point;
+}
+
 }  // namespace interflect

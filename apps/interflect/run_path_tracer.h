@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "interflect/image/path_tracer.h"
+
+namespace interflect::command {
+
+/// What `render --shading path` alone takes.
+struct PathTracerArguments {
+    int max_samples = PathOptions().max_samples;
+    std::filesystem::path error_image;  ///< Empty: none.
+
+    void add_to(CLI::App& app);
+};
+
+/// @throws InputError for an option that asks for a solution, or for what only a solution has.
+void refuse_solver_options(const CLI::App& command);
+/// @throws InputError for an option that only path tracing takes.
+void refuse_path_options(const CLI::App& command);
+
+/// Traces paths with a progress bar, says what came of it, and writes the image of the standard error if asked for.
+/// Ctrl-C ends it early with what there is.
+PathTracing run_path_tracer(const Scene& scene, const RayCaster& ray_caster, const View& view, PathOptions options,
+                            const PathTracerArguments& arguments);
+
+}  // namespace interflect::command
