@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "interflect/base/parallel.h"
-#include "interflect/raycast/box_tree.h"
+#include "interflect/base/box_tree.h"
 
 namespace interflect {
 

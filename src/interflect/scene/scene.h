@@ -28,9 +28,15 @@ struct Patch {
     std::uint32_t material = 0;
     std::uint32_t other_side = none;  ///< The patch on the back of the same face; none for a one-sided face.
     std::uint32_t object = 0;         ///< Index into Scene::objects.
+    std::uint32_t face = none;        ///< Equal for the pieces of one face that was cut; none: a whole face.
 
     bool is_triangle() const { return vertices[3] == none; }
     int vertex_count() const { return is_triangle() ? 3 : 4; }
+};
+
+/// A segment along which a face was cut because another face meets it there: light differs on its two sides.
+struct Contact {
+    V3f a, b;  ///< Ends [m]; on edges of the pieces.
 };
 
 /// A pinhole camera.
@@ -48,6 +54,7 @@ struct Scene {
     std::string name;  ///< The file it came from.
     std::vector<V3f> vertices;
     std::vector<Patch> patches;
+    std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().
     std::vector<Material> materials;
     std::vector<std::string> objects;  ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
     std::vector<View> views;

@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <unordered_map>
 
 #include "interflect/base/error.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/scene/vertex_pool.h"
 
 namespace interflect {
 
@@ -35,28 +34,6 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     }
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
-
-/// Vertices of the new scene, found again by where they lie, so that neighbours share them.
-class VertexPool {
-  public:
-    explicit VertexPool(std::vector<V3f>& vertices) : vertices_(vertices) {}
-
-    std::uint32_t add(const V3f& v) {
-        const auto [entry, is_new] = index_.try_emplace(v, static_cast<std::uint32_t>(vertices_.size()));
-        if (is_new) vertices_.push_back(v);
-        return entry->second;
-    }
-
-  private:
-    struct Hash {
-        std::size_t operator()(const V3f& v) const {
-            const std::hash<float> h;
-            return (h(v.x) * 31 + h(v.y)) * 31 + h(v.z);
-        }
-    };
-    std::vector<V3f>& vertices_;
-    std::unordered_map<V3f, std::uint32_t, Hash> index_;
-};
 
 /// Adds one piece of `patch`, and that of its other side where it has one.
 void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> vertices) {

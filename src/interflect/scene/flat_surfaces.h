@@ -8,8 +8,8 @@
 namespace interflect {
 
 /// Ranks patches by the flat surface that they are part of: patches of one material and object that are joined by whole
-/// edges in (nearly) one plane, so that what a reader has triangulated or a mesh divided counts as the one thing it
-/// was.
+/// edges in (nearly) one plane, or are pieces of one face that was cut, so that what a reader has triangulated or a mesh
+/// divided counts as the one thing it was.
 /// @return  The rank of each patch, all different: first those of the surface of least area; surfaces of equal area by
 ///          their first patch, patches of one surface by index. A two-sided face counts once, and its sides are
 ///          neighbours in rank, the front first. O(n log n).

@@ -1,9 +1,10 @@
-#include "interflect/raycast/flat_surfaces.h"
+#include "interflect/scene/flat_surfaces.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 
 #include "interflect/base/parallel.h"
 #include "interflect/scene/patch_geometry.h"
@@ -91,6 +92,11 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     for (std::size_t i = 1; i < edges.size(); ++i)
         for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.join(edges[i].patch, edges[j].patch);
+
+    std::unordered_map<std::uint32_t, std::uint32_t> first_piece;  // of each face that was cut
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (!is_back(scene, i) && scene.patches[i].face != none)
+            surfaces.join(first_piece.try_emplace(scene.patches[i].face, i).first->second, i);
 
     std::vector<std::uint32_t> surface(count);  // its lowest patch; of both sides
     for (std::uint32_t i = 0; i < count; ++i) {
