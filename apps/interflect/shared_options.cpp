@@ -53,7 +53,8 @@ Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) co
     if (contact_cuts) {
         const Warnings earlier = std::exchange(scene.warnings, {});
         const std::size_t faces = scene.patches.size();
-        scene = cut_at_contacts(scene, {.most_patches = read.max_patches});
+        scene = cut_at_contacts(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene)),
+                                        .most_patches = read.max_patches});
         log_warnings(scene.warnings);
         if (scene.patches.size() > faces)
             spdlog::info("faces are cut where others meet them: {} patches, before {}", scene.patches.size(), faces);

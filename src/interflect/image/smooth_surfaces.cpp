@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
 
+#include "interflect/base/disjoint_sets.h"
 #include "interflect/base/random.h"
 #include "interflect/scene/patch_geometry.h"
 
@@ -19,25 +19,6 @@ namespace {
 
 /// An edge that more patches share is taken as a crease: no smooth surface looks so, and all pairs are compared.
 constexpr std::size_t most_patches_at_an_edge = 64;
-
-/// Sets of numbers that grow together (union by smaller index, path halving).
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// Vertices closer than this share of the scene's largest coordinate are one: eight steps of a float there, more than
 /// what rounding moves a point by when it is computed from either end of an edge.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "interflect/base/box_tree.h"
+#include "interflect/base/disjoint_sets.h"
 #include "interflect/base/parallel.h"
 #include "interflect/scene/face_cutter.h"
 #include "interflect/scene/flat_surfaces.h"
@@ -55,10 +56,13 @@ struct Facet {
             for (std::size_t j = 0; j < i; ++j) diameter = std::max(diameter, (corners[i] - corners[j]).length());
         }
         rounding = interflect::rounding * largest;
-        normal = (count == 3 ? (corners[1] - corners[0]).cross(corners[2] - corners[0])
-                             : (corners[2] - corners[0]).cross(corners[3] - corners[1]))
-                     .normalized();
+        const V3d doubled = (count == 3 ? (corners[1] - corners[0]).cross(corners[2] - corners[0])
+                             : (corners[2] - corners[0]).cross(corners[3] - corners[1]));
+        area_ = doubled.length() / 2;
+        normal = doubled.normalized();
     }
+
+    double area() const { return area_; }  ///< [m^2]
 
     double height(const V3d& x) const { return normal.dot(x - corners[0]); }
     double detail() const { return std::max(least_detail * diameter, rounding); }
@@ -70,6 +74,9 @@ struct Facet {
         result.max += V3f(margin);
         return result;
     }
+
+  private:
+    double area_ = 0;
 };
 
 /// The facets of all faces, in their order.
@@ -161,8 +168,25 @@ class ContactFinder {
             add_section(other, height, touching);
     }
 
+    /// The segments to cut along: those that are connected to others over at least `least_extent`.
+    std::vector<PlanarSegment> segments(double least_extent) {
+        std::vector<PlanarSegment> all = distinct_segments();
+        if (least_extent <= 0) return all;
+        std::vector<std::uint32_t> chain = connected(all);
+        std::vector<Imath::Box2d> extent(all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            extent[chain[i]].extendBy(all[i].a);
+            extent[chain[i]].extendBy(all[i].b);
+        }
+        std::vector<PlanarSegment> large;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (extent[chain[i]].size().length() >= least_extent) large.push_back(all[i]);
+        return large;
+    }
+
+  private:
     /// The segments, each once, without the borders between coplanar faces that hide the facet on both sides.
-    std::vector<PlanarSegment> segments() {
+    std::vector<PlanarSegment> distinct_segments() {
         std::sort(found_.begin(), found_.end(), [](const FoundSegment& s, const FoundSegment& t) {
             return std::tie(s.segment.a.x, s.segment.a.y, s.segment.b.x, s.segment.b.y, s.outline) <
                    std::tie(t.segment.a.x, t.segment.a.y, t.segment.b.x, t.segment.b.y, t.outline);
@@ -184,7 +208,29 @@ class ContactFinder {
         return result;
     }
 
-  private:
+    /// For each segment the lowest one of those that hang together with it by their ends.
+    std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const {
+        struct End {
+            V2d x;
+            std::uint32_t segment;
+        };
+        std::vector<End> ends;
+        for (std::uint32_t i = 0; i < segments.size(); ++i) {
+            ends.push_back({segments[i].a, i});
+            ends.push_back({segments[i].b, i});
+        }
+        std::sort(ends.begin(), ends.end(), [](const End& p, const End& q) {
+            return std::tie(p.x.x, p.x.y, p.segment) < std::tie(q.x.x, q.x.y, q.segment);
+        });
+        DisjointSets sets(segments.size());
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            for (std::size_t j = i + 1; j < ends.size() && ends[j].x.x - ends[i].x.x <= facet_.detail(); ++j)
+                if (std::abs(ends[j].x.y - ends[i].x.y) <= facet_.detail()) sets.unite(ends[i].segment, ends[j].segment);
+        std::vector<std::uint32_t> chain(segments.size());
+        for (std::uint32_t i = 0; i < segments.size(); ++i) chain[i] = sets.find(i);
+        return chain;
+    }
+
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
 
     bool starts_alike(std::size_t i, std::size_t j) const {
@@ -252,11 +298,11 @@ struct CutFacet {
     bool reached_limit = false;
 };
 
-CutFacet cut_facet(ContactFinder& finder, const Facet& facet, std::size_t most_pieces) {
+CutFacet cut_facet(ContactFinder& finder, const Facet& facet, const ContactOptions& options) {
     CutFacet result;
-    std::vector<PlanarSegment> segments = finder.segments();
+    std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.least_extent));
     if (segments.empty()) return result;
-    CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), most_pieces);
+    CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.most_pieces_per_face);
     result.reached_limit = cut.reached_limit;
     result.contacts = std::move(cut.contacts);
     if (cut.pieces.size() > 1)
@@ -273,13 +319,15 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     std::vector<CutFacet> cut(facets.size());
     parallel_for_ranges(facets.size(), facets_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            if (facets[i].area() < static_cast<double>(options.least_extent) * static_cast<double>(options.least_extent))
+                continue;
             ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance));
             const Imath::Box3f box = facets[i].box(finder.reach());
             visit_box_tree(
                 std::span<const Boxed>(tree),
                 [&](const Imath::Box3f& b) { return b.intersects(box) && finder.plane_meets(b); },
                 [&](std::uint32_t j) { finder.add_contacts_with(facets[j]); });
-            cut[i] = cut_facet(finder, facets[i], options.most_pieces_per_face);
+            cut[i] = cut_facet(finder, facets[i], options);
         }
     });
     return cut;

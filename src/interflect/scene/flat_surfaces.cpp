@@ -6,6 +6,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "interflect/base/disjoint_sets.h"
 #include "interflect/base/parallel.h"
 #include "interflect/scene/patch_geometry.h"
 
@@ -49,24 +50,6 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Disjoint sets of patches; the representative of a set is its lowest patch.
-class PatchSets {
-  public:
-    explicit PatchSets(std::size_t patches) : parent_(patches) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-    std::uint32_t representative(std::uint32_t patch) {
-        while (parent_[patch] != patch) patch = parent_[patch] = parent_[parent_[patch]];
-        return patch;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = representative(a), b = representative(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
 }  // namespace
 
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
@@ -87,20 +70,20 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
                std::abs(normal[a].dot(normal[b])) > same_plane_cosine;
     };
 
-    PatchSets surfaces(count);
+    DisjointSets surfaces(count);
     const std::vector<Edge> edges = sorted_edges(scene);
     for (std::size_t i = 1; i < edges.size(); ++i)
         for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
-            if (continues(edges[i].patch, edges[j].patch)) surfaces.join(edges[i].patch, edges[j].patch);
+            if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
     std::unordered_map<std::uint32_t, std::uint32_t> first_piece;  // of each face that was cut
     for (std::uint32_t i = 0; i < count; ++i)
         if (!is_back(scene, i) && scene.patches[i].face != none)
-            surfaces.join(first_piece.try_emplace(scene.patches[i].face, i).first->second, i);
+            surfaces.unite(first_piece.try_emplace(scene.patches[i].face, i).first->second, i);
 
     std::vector<std::uint32_t> surface(count);  // its lowest patch; of both sides
     for (std::uint32_t i = 0; i < count; ++i) {
-        surface[i] = surfaces.representative(is_back(scene, i) ? scene.patches[i].other_side : i);
+        surface[i] = surfaces.find(is_back(scene, i) ? scene.patches[i].other_side : i);
         if (surface[i] != i) area[surface[i]] += area[i];
     }
 

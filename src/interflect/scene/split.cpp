@@ -103,6 +103,13 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
     return split;
 }
 
+double default_element_size(const Scene& scene) {
+    constexpr double pieces_of_diagonal = 1500;
+    Imath::Box3f box;
+    for (const V3f& v : scene.vertices) box.extendBy(v);
+    return box.size().length() / pieces_of_diagonal;
+}
+
 float default_mesh_size(const Scene& scene) {
     constexpr float pieces_of_diagonal = 48;
     constexpr double moderate_patches = 200'000;

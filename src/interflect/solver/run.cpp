@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/scene/split.h"
 #include "interflect/solver/light.h"
 #include "interflect/solver/steps.h"
 
@@ -16,14 +17,9 @@ namespace {
 
 /// The incremental start ends when this share of the emitted power, or importance, has not been shot.
 constexpr double negligible_unshot_power = 1e-3, negligible_unshot_importance = 0.005;
-/// The smallest element is the square of the scene's diagonal over this, where the user sets no limit.
-constexpr double diagonal_over_smallest = 1500;
 
 double smallest_area(const Scene& scene, const SolveOptions& options) {
-    if (options.smallest_area > 0) return options.smallest_area;
-    Imath::Box3f box;
-    for (const V3f& v : scene.vertices) box.extendBy(v);
-    return std::pow(box.size().length() / diagonal_over_smallest, 2);
+    return options.smallest_area > 0 ? options.smallest_area : std::pow(default_element_size(scene), 2);
 }
 
 /// A step of rays may make more elements than are kept at its end (Oracle::most_elements): addresses are set aside for
