@@ -305,8 +305,9 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, const ContactOptio
     CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.most_pieces_per_face);
     result.reached_limit = cut.reached_limit;
     result.contacts = std::move(cut.contacts);
+    const PieceShape shape{static_cast<double>(options.largest_aspect), 2 * static_cast<double>(options.least_extent)};
     if (cut.pieces.size() > 1)
-        for (const PlanarPolygon& piece : cut.pieces) divide_into_patches(piece, result.patches);
+        for (const PlanarPolygon& piece : cut.pieces) divide_into_patches(piece, shape, result.patches);
     return result;
 }
 

@@ -12,6 +12,9 @@ struct ContactOptions {
     /// Connected segments that extend over less than this are ignored, and faces of a smaller area than its square stay
     /// whole [m], >= 0. Twice default_element_size() is a good value: elements resolve no less.
     float least_extent = 0;
+    /// Quadrilateral pieces that are longer than this times their width, which is at least twice `least_extent`, are
+    /// divided across, >= 1.
+    float largest_aspect = 4;
     /// Most pieces of one face, in (0, 2^31); a face that needs more is cut into fewer.
     std::uint32_t most_pieces_per_face = 1u << 16;
     /// Most patches of the resulting scene; once there, further faces stay whole.

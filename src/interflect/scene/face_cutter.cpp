@@ -175,6 +175,26 @@ PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size
     }
 }
 
+/// Divides a quadrilateral across where it is too long for its width.
+void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
+    constexpr double most_parts = 16;
+    const auto edge = [&](std::size_t i) {
+        return (quadrilateral[(i + 1) % 4].position - quadrilateral[i].position).length();
+    };
+    if (edge(0) + edge(2) < edge(1) + edge(3))
+        std::rotate(quadrilateral.begin(), quadrilateral.begin() + 1, quadrilateral.end());
+    const double length = (edge(0) + edge(2)) / 2, width = doubled_area(quadrilateral) / 2 / length;
+    const bool is_long = length > shape.largest_aspect * width && width >= shape.least_width;
+    const double parts = is_long ? std::min(most_parts, std::ceil(length / (shape.largest_aspect * width))) : 1;
+    const auto between = [&](std::size_t from, std::size_t to, double share) -> PlanarCorner {
+        const PlanarCorner &a = quadrilateral[from], &b = quadrilateral[to];
+        return share == 0 ? a : share == 1 ? b : PlanarCorner{a.position + (b.position - a.position) * share, none};
+    };
+    for (double i = 0; i < parts; ++i)
+        patches.push_back({between(0, 1, i / parts), between(0, 1, (i + 1) / parts), between(3, 2, (i + 1) / parts),
+                           between(3, 2, i / parts)});
+}
+
 }  // namespace
 
 double doubled_area(const PlanarPolygon& polygon) {
@@ -240,12 +260,11 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
     return result;
 }
 
-void divide_into_patches(const PlanarPolygon& polygon, std::vector<PlanarPolygon>& patches) {
+void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
     const std::size_t n = polygon.size();
-    if (n <= 4) {
-        patches.push_back(polygon);
-        return;
-    }
+    if (n == 3) patches.push_back(polygon);
+    if (n == 4) divide_across(polygon, shape, patches);
+    if (n <= 4) return;
     std::array<PlanarPolygon, 2> best;
     double most = -1;
     for (std::size_t first = 0; first < n; ++first)
@@ -257,7 +276,7 @@ void divide_into_patches(const PlanarPolygon& polygon, std::vector<PlanarPolygon
             most = worse;
             best = std::move(parts);
         }
-    for (const PlanarPolygon& part : best) divide_into_patches(part, patches);
+    for (const PlanarPolygon& part : best) divide_into_patches(part, shape, patches);
 }
 
 }  // namespace interflect

@@ -47,7 +47,14 @@ struct CutPolygon {
 CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segments, double tolerance,
                        std::size_t most_pieces);
 
-/// Divides a convex polygon into triangles and quadrilaterals by diagonals that leave compact parts.
-void divide_into_patches(const PlanarPolygon& polygon, std::vector<PlanarPolygon>& patches);
+/// How long pieces may be.
+struct PieceShape {
+    double largest_aspect = 4;  ///< Length over width of a quadrilateral.
+    double least_width = 0;     ///< Narrower ones may be as long as they are [m].
+};
+
+/// Divides a convex polygon into triangles and quadrilaterals by diagonals that leave compact parts, and long
+/// quadrilaterals across, into 16 at most: the quadtree's elements have the shape of their patch.
+void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
 }  // namespace interflect
