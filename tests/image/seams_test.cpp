@@ -20,15 +20,15 @@ const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f);
 constexpr std::size_t plenty = 1 << 18;  // elements that a forest has room for
 
 /// A floor of 2 x 2 m about the origin, material 0, with walls of material 1 on it: along x = 0 over y in
-/// [-1, `wall_end`] and, if asked for, along y = 0 over x in [0.5, 1]. Cut: the first divides the floor, the second
-/// then its right half, so that the corner of two pieces is in the middle of the left one's edge.
-Scene cut_floor(float wall_end, bool second_wall) {
+/// [-1, `wall_end`] and, if asked for, along y = `second_wall` over x in [0.5, 1]. Cut: the first divides the floor,
+/// the second then its right half, so that the corner of two pieces is in the middle of the left one's edge.
+Scene cut_floor(float wall_end, std::optional<float> second_wall = std::nullopt) {
     Scene scene;
     add_material(scene, grey, black);
     add_material(scene, grey, black);
     add_rectangle(scene, V3f(-1, -1, 0), V3f(2, 0, 0), V3f(0, 2, 0), 0);
     add_rectangle(scene, V3f(0, -1, 0), V3f(0, wall_end + 1, 0), V3f(0, 0, 1), 1, 1, 1, true);
-    if (second_wall) add_rectangle(scene, V3f(0.5f, 0, 0), V3f(0.5f, 0, 0), V3f(0, 0, 1), 1, 1, 1, true);
+    if (second_wall) add_rectangle(scene, V3f(0.5f, *second_wall, 0), V3f(0.5f, 0, 0), V3f(0, 0, 1), 1, 1, 1, true);
     return cut_at_contacts(scene);
 }
 
@@ -72,10 +72,11 @@ float largest_jump(const Scene& scene, const ElementForest& forest, const Smooth
 /// the cut. Both times the field is linear beside the walls and the border.
 TEST(Seams, ALinearFieldGoesOn) {
     const auto linear = [](const V3f& x) { return 3 + 2 * x.x - x.y; };
-    for (const bool second_wall : {false, true}) {
+    for (const std::optional<float> second_wall : {std::optional<float>(), std::optional(0.0f)}) {
         const Scene scene = cut_floor(-0.5f, second_wall);
-        ASSERT_EQ(std::count_if(scene.patches.begin(), scene.patches.end(), [](const Patch& p) { return p.material == 0; }),
-                  second_wall ? 3 : 2);
+        ASSERT_EQ(
+            std::count_if(scene.patches.begin(), scene.patches.end(), [](const Patch& p) { return p.material == 0; }),
+            second_wall ? 3 : 2);
         ElementForest forest(scene, plenty);
         for (std::uint32_t e = 0; e < forest.size(); ++e)
             if (forest.level(e) < 4) forest.subdivide(e);
@@ -95,12 +96,13 @@ TEST(Seams, ALinearFieldGoesOn) {
 
 /// Where the wall stands each side keeps its own value; beyond it the sides agree, but for leaves at its end.
 TEST(Seams, LightEndsAtAContact) {
-    const Scene scene = cut_floor(0.25f, true);
+    const Scene scene = cut_floor(0.25f, 0.0f);
     ElementForest forest(scene, plenty);
     for (std::uint32_t e = 0; e < forest.size(); ++e)
         if (forest.level(e) < 5) forest.subdivide(e);
     const ElementVertices vertices(scene, forest);
-    const SmoothField field(forest, vertices, values_at_centres(forest, [](const V3f& x) { return x.x < 0 ? 0.f : 8.f; }));
+    const SmoothField field(forest, vertices,
+                            values_at_centres(forest, [](const V3f& x) { return x.x < 0 ? 0.f : 8.f; }));
     for (float y = -0.99f; y < 0.15f; y += 0.01f) {
         EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(-1, 0.3f, 0)), 0);
         EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(1, 0.3f, 0)), 8);
@@ -112,25 +114,24 @@ TEST(Seams, LightEndsAtAContact) {
 }
 
 TEST(Seams, NothingGoesThroughAWallFromEndToEnd) {
-    const Scene scene = cut_floor(1, true);
+    const Scene scene = cut_floor(1, 0.0f);
     ElementForest forest(scene, plenty);
     for (std::uint32_t e = 0; e < forest.size(); ++e)
         if (forest.level(e) < 3) forest.subdivide(e);
     const ElementVertices vertices(scene, forest);
-    const SmoothField field(forest, vertices, values_at_centres(forest, [](const V3f& x) { return x.x < 0 ? 0.f : 8.f; }));
+    const SmoothField field(forest, vertices,
+                            values_at_centres(forest, [](const V3f& x) { return x.x < 0 ? 0.f : 8.f; }));
     for (float y = -1; y <= 0.999f; y += 0.01f) {
         EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(-1, 0.0003f, 0)), 0);
         EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(1, 0.0003f, 0)), 8);
     }
 }
 
-/// On leaves of random levels, of which one side's edges are not in a whole ratio to the other's, sides agree to the
-/// second order: a step of the field is about its slope times the leaves' size, 0.25; joined by nothing they differ by
-/// that much.
+/// On leaves of random levels whose vertices on the two sides lie apart, sides agree but for the curvature of the
+/// field. Where nothing is joined they differ by the slope across times the leaves' size: 0.4.
 TEST(Seams, SidesAgreeWhateverTheLevels) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-        Scene scene = cut_floor(-0.5f, false);
-        // Shorten the right half: its leaves are then 2/3 as long as the left one's.
+        const Scene scene = cut_floor(-0.5f, 0.13f);
         ElementForest forest(scene, plenty);
         for (std::uint32_t e = 0; e < forest.size(); ++e)
             if (forest.level(e) < 3 || (forest.level(e) < 5 && random_double(seed, e) < 0.5)) forest.subdivide(e);
@@ -138,7 +139,7 @@ TEST(Seams, SidesAgreeWhateverTheLevels) {
         const SmoothField field(forest, vertices, values_at_centres(forest, [](const V3f& x) {
                                     return 2 + std::sin(2 * x.x + x.y) + x.x;
                                 }));
-        EXPECT_LT(largest_jump(scene, forest, field, -0.2f, 0.95f), 0.02f);
+        EXPECT_LT(largest_jump(scene, forest, field, -0.2f, 0.95f), 0.04f);
     }
 }
 

@@ -190,10 +190,10 @@ TEST(Contacts, OnlyTheLitSidesCount) {
         for (std::uint32_t i = 0; i < cut.patches.size(); ++i)
             if (const std::uint32_t other = cut.patches[i].other_side; other != none) {
                 EXPECT_EQ(cut.patches[other].other_side, i);
-                EXPECT_EQ(cut.patches[other].face, cut.patches[i].face);
-                EXPECT_LT(PatchGeometry(cut, cut.patches[i]).normal().dot(
-                              PatchGeometry(cut, cut.patches[other]).normal()),
-                          -0.999f);
+                EXPECT_EQ(cut.patches[other].surface, cut.patches[i].surface);
+                EXPECT_LT(
+                    PatchGeometry(cut, cut.patches[i]).normal().dot(PatchGeometry(cut, cut.patches[other]).normal()),
+                    -0.999f);
             }
     }
 }
@@ -204,9 +204,10 @@ TEST(Contacts, AHundredLegs) {
     for (const bool in_rows : {false, true}) {
         Scene scene = floor_scene();
         for (int i = 0; i < 100; ++i) {
-            const V3f low = in_rows ? V3f(0.2f + 0.38f * static_cast<float>(i % 10), 0.1f + 0.29f * static_cast<float>(i / 10), 0)
-                                    : V3f(0.1f + 3.7f * static_cast<float>(random_double(1, 2 * i)),
-                                          0.1f + 2.7f * static_cast<float>(random_double(1, 2 * i + 1)), 0);
+            const V3f low =
+                in_rows ? V3f(0.2f + 0.38f * static_cast<float>(i % 10), 0.1f + 0.29f * static_cast<float>(i / 10), 0)
+                        : V3f(0.1f + 3.7f * static_cast<float>(random_double(1, 2 * i)),
+                              0.1f + 2.7f * static_cast<float>(random_double(1, 2 * i + 1)), 0);
             add_box(scene, low, low + V3f(0.04f, 0.04f, 0.7f), 1);
         }
         const Scene cut = cut_at_contacts(scene, any_aspect);
@@ -221,7 +222,8 @@ TEST(Contacts, TrianglesAndIrregularQuadrilaterals) {
     add_material(scene, {0.5f, 0.5f, 0.5f}, {0, 0, 0});
     add_material(scene, {0.2f, 0.2f, 0.2f}, {0, 0, 0});
     scene.objects.emplace_back();
-    scene.vertices = {V3f(0, 0, 0), V3f(3, 0, 0), V3f(1, 2, 0), V3f(4, 0, 0), V3f(8, 1, 0), V3f(7, 3, 0), V3f(5, 2.5f, 0)};
+    scene.vertices = {V3f(0, 0, 0), V3f(3, 0, 0), V3f(1, 2, 0),   V3f(4, 0, 0),
+                      V3f(8, 1, 0), V3f(7, 3, 0), V3f(5, 2.5f, 0)};
     scene.patches = {{.vertices = {0, 1, 2, none}}, {.vertices = {3, 4, 5, 6}}};
     add_box(scene, V3f(1, 0.5f, 0), V3f(1.2f, 0.7f, 1), 1);
     add_box(scene, V3f(6, 1, 0), V3f(6.2f, 1.7f, 1), 1);
@@ -237,7 +239,7 @@ TEST(Contacts, TheOrderOfFacesDoesNotMatter) {
     for (int i = 0; i < 12; ++i) {
         const V3f low(3.3f * static_cast<float>(random_double(2, 2 * i)),
                       2.3f * static_cast<float>(random_double(2, 2 * i + 1)), -0.1f * static_cast<float>(i % 2));
-        add_box(scene, low, low + V3f(0.5f, 0.3f, 0.7f), 1);
+        add_box(scene, low, low + V3f(0.5f + 0.01f * static_cast<float>(i), 0.3f, 0.7f), 1);
     }
     Scene reversed = scene;
     std::reverse(reversed.patches.begin(), reversed.patches.end());
@@ -314,7 +316,8 @@ TEST(Contacts, RandomBoxes) {
             const std::size_t first = scene.vertices.size();
             add_box(scene, -half, half, 1);
             const bool stands = b % 3 == 0;
-            const V3f axis = stands ? V3f(0, 0, 1) : V3f(uniform() - 0.5f, uniform() - 0.5f, uniform() - 0.5f).normalized();
+            const V3f axis =
+                stands ? V3f(0, 0, 1) : V3f(uniform() - 0.5f, uniform() - 0.5f, uniform() - 0.5f).normalized();
             const float angle = 6.28f * uniform();
             const V3f place(4 * uniform(), 3 * uniform(), stands ? half.z : uniform());
             for (std::size_t i = first; i < scene.vertices.size(); ++i) {

@@ -166,7 +166,7 @@ void read_description(const Json& j, SolvedScene& solved) {
     scene.objects = j.at("objects").get<std::vector<std::string>>();
 }
 
-/// A patch is eight numbers: four vertices, material, object, other side, face.
+/// A patch is eight numbers: four vertices, material, object, other side, surface.
 constexpr std::size_t numbers_per_patch = 8;
 
 std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
@@ -174,7 +174,7 @@ std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     numbers.reserve(numbers_per_patch * scene.patches.size());
     for (const Patch& p : scene.patches) {
         numbers.insert(numbers.end(), p.vertices.begin(), p.vertices.end());
-        numbers.insert(numbers.end(), {p.material, p.object, p.other_side, p.face});
+        numbers.insert(numbers.end(), {p.material, p.object, p.other_side, p.surface});
     }
     return numbers;
 }
@@ -187,7 +187,7 @@ std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers) {
         patches[i].material = n[4];
         patches[i].object = n[5];
         patches[i].other_side = n[6];
-        patches[i].face = n[7];
+        patches[i].surface = n[7];
     }
     return patches;
 }
@@ -289,8 +289,7 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     const std::string text = description.dump(1);
     write_array(file, "/description", text.data(), text.size(), 1);
     write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3);
-    write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(),
-                numbers_per_patch);
+    write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), numbers_per_patch);
     write_array(file, "/scene/contacts", flattened(contact_ends(scene)).data(), 2 * scene.contacts.size(), 3);
     const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
     write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);

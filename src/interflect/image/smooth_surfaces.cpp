@@ -204,7 +204,8 @@ class SegmentTree {
         arrange_box_tree(boxes_);
     }
     void visit(const Imath::Box3f& box, const auto& body) const {
-        visit_box_tree(std::span<const Boxed>(boxes_), [&](const Imath::Box3f& b) { return b.intersects(box); }, body);
+        visit_box_tree(
+            std::span<const Boxed>(boxes_), [&](const Imath::Box3f& b) { return b.intersects(box); }, body);
     }
 
   private:
@@ -242,7 +243,7 @@ class ContactTree {
 /// Joins shorter than this share of an edge are left out: gaps between the end of a wall and the next one.
 constexpr double least_seam_share = 1e-3;
 
-/// Where patches continue each other across parts of edges; only pairs with at least one piece of a cut face.
+/// Where patches continue each other across parts of edges; only pairs with at least one patch of a cut surface.
 class SeamFinder {
   public:
     /// @param edges  Those across which nothing continues as a whole.
@@ -276,7 +277,7 @@ class SeamFinder {
     }
     const V3f& start(const PatchEdge& e) const { return position(e.start); }
     const V3f& end(const PatchEdge& e) const { return position(e.end); }
-    bool is_piece(const PatchEdge& e) const { return scene_.patches[e.patch()].face != none; }
+    bool is_piece(const PatchEdge& e) const { return scene_.patches[e.patch()].surface != none; }
 
     void add_seams(const PatchEdge& a, const PatchEdge& b, std::vector<SmoothSurfaces::Seam>& found) const {
         const StraightEdge line(start(a), end(a)), other(start(b), end(b));
@@ -291,8 +292,7 @@ class SeamFinder {
         for (const Interval& part : uncovered_parts(shared, contacts_.along(start(a), end(a)), least)) {
             const auto on_a = [&](double x) { return snapped(x / line.length(), line.length()); };
             const auto on_b = [&](double x) { return snapped((b_start - x) / (b_start - b_end), other.length()); };
-            found.push_back(
-                {{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});
+            found.push_back({{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});
         }
     }
     /// Exactly 0 or 1 at the ends.
@@ -319,10 +319,9 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     const ContactTree contacts(scene);
     const auto has_contact = [&](const PatchEdge& e) {
         const Patch& patch = scene.patches[e.patch()];
-        return patch.face != none && !contacts
-                                          .along(scene.vertices[patch.vertices[e.start % 4]],
-                                                 scene.vertices[patch.vertices[e.end % 4]])
-                                          .empty();
+        return patch.surface != none &&
+               !contacts.along(scene.vertices[patch.vertices[e.start % 4]], scene.vertices[patch.vertices[e.end % 4]])
+                    .empty();
     };
 
     const std::vector<PatchEdge> edges = sorted_edges(scene);
@@ -346,7 +345,7 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     }
 
     std::vector<SmoothSurfaces::Seam> seams;
-    if (std::any_of(scene.patches.begin(), scene.patches.end(), [](const Patch& p) { return p.face != none; })) {
+    if (std::any_of(scene.patches.begin(), scene.patches.end(), [](const Patch& p) { return p.surface != none; })) {
         std::vector<PatchEdge> open;
         std::copy_if(edges.begin(), edges.end(), std::back_inserter(open),
                      [&](const PatchEdge& e) { return !is_joined[e.start]; });

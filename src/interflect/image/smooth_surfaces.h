@@ -40,9 +40,10 @@ struct SmoothSurfaces {
 /// one where a chain of patches leads from one to the other, each continuing the last across an edge at that point.
 /// Vertices are the same where their positions are equal to rounding (2^-20 of the scene's largest coordinate).
 ///
-/// Pieces of a face that was cut (Patch::face) also continue each other, and what they border on, across parts of edges:
-/// those are seams. No patch continues another across a contact (Scene::contacts). Elsewhere a vertex of one patch in
-/// the middle of another patch's edge is not looked for: there surfaces end. Time O(n log n) in the number of patches n.
+/// Patches of a surface that was cut (Patch::surface) also continue each other, and what they border on, across parts
+/// of edges: those are seams. No patch continues another across a contact (Scene::contacts). Elsewhere a vertex of one
+/// patch in the middle of another patch's edge is not looked for: there surfaces end. Time O(n log n) in the number of
+/// patches n.
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options = {});
 
 }  // namespace interflect

@@ -34,6 +34,9 @@ constexpr double rounding = 0x1p-22;
 /// Sine of the angle (1 degree) below which two faces that are not coplanar graze each other: no shadow ends there.
 constexpr double least_angle_sine = 0.0175;
 
+/// Strips narrower than this share of a face's diameter are not divided across.
+constexpr double narrow = 2e-3;
+
 constexpr std::size_t facets_at_once = 256;
 
 /// A planar convex polygon of three or four corners: a face, or one of the two triangles of a warped quadrilateral.
@@ -57,7 +60,7 @@ struct Facet {
         }
         rounding = interflect::rounding * largest;
         const V3d doubled = (count == 3 ? (corners[1] - corners[0]).cross(corners[2] - corners[0])
-                             : (corners[2] - corners[0]).cross(corners[3] - corners[1]));
+                                        : (corners[2] - corners[0]).cross(corners[3] - corners[1]));
         area_ = doubled.length() / 2;
         normal = doubled.normalized();
     }
@@ -139,9 +142,7 @@ class ContactFinder {
     const PlaneFrame& frame() const { return frame_; }
 
     /// How far from the facet another may be to touch it [m].
-    float reach() const {
-        return static_cast<float>(std::max(touch_distance_ * facet_.diameter, 2 * facet_.rounding));
-    }
+    float reach() const { return static_cast<float>(std::max(touch_distance_ * facet_.diameter, 2 * facet_.rounding)); }
     bool plane_meets(const Imath::Box3f& box) const {
         const V3d centre = (V3d(box.min) + V3d(box.max)) * 0.5, half = V3d(box.max) - centre;
         const V3d& n = facet_.normal;
@@ -151,8 +152,8 @@ class ContactFinder {
 
     void add_contacts_with(const Facet& other) {
         if (other.face == facet_.face) return;
-        const double touching = std::max(
-            {touch_distance_ * std::min(facet_.diameter, other.diameter), facet_.rounding, other.rounding});
+        const double touching =
+            std::max({touch_distance_ * std::min(facet_.diameter, other.diameter), facet_.rounding, other.rounding});
         std::array<double, 4> height{};
         double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
         for (std::size_t i = 0; i < other.count; ++i) {
@@ -225,7 +226,8 @@ class ContactFinder {
         DisjointSets sets(segments.size());
         for (std::size_t i = 0; i < ends.size(); ++i)
             for (std::size_t j = i + 1; j < ends.size() && ends[j].x.x - ends[i].x.x <= facet_.detail(); ++j)
-                if (std::abs(ends[j].x.y - ends[i].x.y) <= facet_.detail()) sets.unite(ends[i].segment, ends[j].segment);
+                if (std::abs(ends[j].x.y - ends[i].x.y) <= facet_.detail())
+                    sets.unite(ends[i].segment, ends[j].segment);
         std::vector<std::uint32_t> chain(segments.size());
         for (std::uint32_t i = 0; i < segments.size(); ++i) chain[i] = sets.find(i);
         return chain;
@@ -268,8 +270,7 @@ class ContactFinder {
             const std::size_t next = (i + 1) % other.count;
             const V3d &p = other.corners[i], &q = other.corners[next];
             if (side(i) == 0) points[count++] = p;
-            if (side(i) * side(next) < 0)
-                points[count++] = p + (q - p) * (height[i] / (height[i] - height[next]));
+            if (side(i) * side(next) < 0) points[count++] = p + (q - p) * (height[i] / (height[i] - height[next]));
         }
         std::pair<std::size_t, std::size_t> ends{0, 0};
         double longest = 0;
@@ -305,7 +306,8 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, const ContactOptio
     CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.most_pieces_per_face);
     result.reached_limit = cut.reached_limit;
     result.contacts = std::move(cut.contacts);
-    const PieceShape shape{static_cast<double>(options.largest_aspect), 2 * static_cast<double>(options.least_extent)};
+    const PieceShape shape{static_cast<double>(options.largest_aspect),
+                           std::max(2 * static_cast<double>(options.least_extent), narrow * facet.diameter)};
     if (cut.pieces.size() > 1)
         for (const PlanarPolygon& piece : cut.pieces) divide_into_patches(piece, shape, result.patches);
     return result;
@@ -320,7 +322,8 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     std::vector<CutFacet> cut(facets.size());
     parallel_for_ranges(facets.size(), facets_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (facets[i].area() < static_cast<double>(options.least_extent) * static_cast<double>(options.least_extent))
+            if (facets[i].area() <
+                static_cast<double>(options.least_extent) * static_cast<double>(options.least_extent))
                 continue;
             ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance));
             const Imath::Box3f box = facets[i].box(finder.reach());
@@ -337,39 +340,32 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
 /// Adds patches in place of a face.
 class PieceWriter {
   public:
-    PieceWriter(const Scene& scene, Scene& result) : scene_(scene), result_(result), pool_(result.vertices) {
-        for (const Patch& patch : scene.patches)
-            if (patch.face != none) first_new_face_ = std::max(first_new_face_, patch.face + 1);
-    }
+    /// @param surfaces  The number of each patch's flat surface, or none.
+    PieceWriter(const Scene& scene, std::span<const std::uint32_t> surfaces, Scene& result)
+        : scene_(scene), surfaces_(surfaces), result_(result), pool_(result.vertices) {}
 
-    void add_whole(std::uint32_t face) { add_patch(face, scene_.patches[face].vertices, scene_.patches[face].face); }
+    void add_whole(std::uint32_t face) { add_patch(face, scene_.patches[face].vertices); }
 
     void add_pieces(const Facet& facet, const CutFacet& cut) {
         const PlaneFrame frame(facet);
         for (const PlanarPolygon& piece : cut.patches) {
             std::array<std::uint32_t, 4> vertices{none, none, none, none};
             for (std::size_t i = 0; i < piece.size(); ++i)
-                vertices[i] =
-                    piece[i].vertex != none ? piece[i].vertex : pool_.add(frame.in_space(piece[i].position));
-            add_patch(facet.face, vertices, number_of(facet.face));
+                vertices[i] = piece[i].vertex != none ? piece[i].vertex : pool_.add(frame.in_space(piece[i].position));
+            add_patch(facet.face, vertices);
         }
-        if (cut.patches.empty()) add_patch(facet.face, facet.vertices, number_of(facet.face));
+        if (cut.patches.empty()) add_patch(facet.face, facet.vertices);
         for (const PlanarSegment& s : cut.contacts)
             result_.contacts.push_back({frame.in_space(s.a), frame.in_space(s.b)});
     }
 
   private:
-    std::uint32_t number_of(std::uint32_t face) const {
-        const std::uint32_t number = scene_.patches[face].face;
-        return number != none ? number : first_new_face_ + face;
-    }
-
-    void add_patch(std::uint32_t face, const std::array<std::uint32_t, 4>& vertices, std::uint32_t number) {
+    void add_patch(std::uint32_t face, const std::array<std::uint32_t, 4>& vertices) {
         const auto index = static_cast<std::uint32_t>(result_.patches.size());
         Patch front = scene_.patches[face];
         const bool is_two_sided = front.other_side != none;
         front.vertices = vertices;
-        front.face = number;
+        front.surface = surfaces_[face];
         front.other_side = is_two_sided ? index + 1 : none;
         result_.patches.push_back(front);
         if (!is_two_sided) return;
@@ -380,10 +376,63 @@ class PieceWriter {
     }
 
     const Scene& scene_;
+    std::span<const std::uint32_t> surfaces_;
     Scene& result_;
     VertexPool pool_;
-    std::uint32_t first_new_face_ = 0;
 };
+
+/// The facets of one face, and the number of patches that it is cut into.
+struct FacetRange {
+    std::size_t first, last;
+    std::uint64_t patches = 0;  ///< 0: it stays whole.
+};
+
+/// Decides which faces are cut, within the limit of all patches, and reports the limits that were reached.
+std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
+                               const ContactOptions& options, Warnings& warnings) {
+    std::vector<FacetRange> faces;
+    std::uint64_t count = scene.patches.size();
+    for (std::size_t first = 0, last; first < facets.size(); first = last) {
+        last = first + 1;
+        while (last < facets.size() && facets[last].face == facets[first].face) ++last;
+        const std::uint64_t sides = scene.patches[facets[first].face].other_side == none ? 1 : 2;
+        FacetRange& face = faces.emplace_back(FacetRange{first, last});
+        bool is_cut = false;
+        std::uint64_t patches = 0;
+        for (std::size_t i = first; i < last; ++i) {
+            is_cut |= !cut[i].patches.empty();
+            patches += sides * std::max<std::size_t>(1, cut[i].patches.size());
+            if (cut[i].reached_limit)
+                warnings.add("contact-cuts", fmt::format("a face was cut into no more than {} pieces: elements may "
+                                                         "still lie on both sides of what stands on it",
+                                                         options.most_pieces_per_face));
+        }
+        if (!is_cut) continue;
+        if (count + patches - sides <= options.most_patches) {
+            face.patches = patches;
+            count += patches - sides;
+        } else {
+            warnings.add("contact-cuts", fmt::format("a face was not cut where others meet it, for there would be "
+                                                     "more than {} patches",
+                                                     options.most_patches));
+        }
+    }
+    return faces;
+}
+
+/// A number for each patch in a flat surface of which a face is cut, or which had one; none for the others.
+std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
+                                                   const std::vector<FacetRange>& faces) {
+    std::vector<std::uint32_t> surface = flat_surfaces(scene);
+    std::vector<bool> is_numbered(scene.patches.size(), false);
+    for (const FacetRange& face : faces)
+        if (face.patches > 0) is_numbered[surface[facets[face.first].face]] = true;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (scene.patches[i].surface != none) is_numbered[surface[i]] = true;
+    for (std::uint32_t& s : surface)
+        if (!is_numbered[s]) s = none;
+    return surface;
+}
 
 }  // namespace
 
@@ -391,37 +440,15 @@ Scene cut_at_contacts(const Scene& scene, const ContactOptions& options) {
     const std::vector<Facet> facets = facets_of(scene);
     const std::vector<CutFacet> cut = cut_facets(scene, facets, options);
     Scene result = scene;
+    const std::vector<FacetRange> faces = decide(scene, facets, cut, options, result.warnings);
+    const std::vector<std::uint32_t> surfaces = numbers_of_cut_surfaces(scene, facets, faces);
     result.patches.clear();
-    PieceWriter writer(scene, result);
-    std::uint64_t added = 0;  // patches beyond those of the scene
-    for (std::size_t first = 0, last; first < facets.size(); first = last) {
-        last = first + 1;  // facets of one face
-        while (last < facets.size() && facets[last].face == facets[first].face) ++last;
-        const std::uint32_t face = facets[first].face;
-        const std::uint64_t sides = scene.patches[face].other_side == none ? 1 : 2;
-        std::uint64_t pieces = 0;
-        bool is_cut = false;
-        for (std::size_t i = first; i < last; ++i) {
-            is_cut |= !cut[i].patches.empty();
-            pieces += std::max<std::size_t>(1, cut[i].patches.size());
-            if (cut[i].reached_limit)
-                result.warnings.add("contact-cuts", fmt::format("a face was cut into no more than {} pieces: elements "
-                                                                "may still lie on both sides of what stands on it",
-                                                                options.most_pieces_per_face));
-        }
-        if (is_cut && scene.patches.size() + added + sides * (pieces - 1) > options.most_patches) {
-            result.warnings.add("contact-cuts",
-                                fmt::format("a face was not cut where others meet it, for there would be more "
-                                            "than {} patches",
-                                            options.most_patches));
-            is_cut = false;
-        }
-        if (!is_cut) {
-            writer.add_whole(face);
-            continue;
-        }
-        added += sides * (pieces - 1);
-        for (std::size_t i = first; i < last; ++i) writer.add_pieces(facets[i], cut[i]);
+    PieceWriter writer(scene, surfaces, result);
+    for (const FacetRange& face : faces) {
+        if (face.patches == 0)
+            writer.add_whole(facets[face.first].face);
+        else
+            for (std::size_t i = face.first; i < face.last; ++i) writer.add_pieces(facets[i], cut[i]);
     }
     return result;
 }

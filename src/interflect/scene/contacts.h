@@ -12,8 +12,8 @@ struct ContactOptions {
     /// Connected segments that extend over less than this are ignored, and faces of a smaller area than its square stay
     /// whole [m], >= 0. Twice default_element_size() is a good value: elements resolve no less.
     float least_extent = 0;
-    /// Quadrilateral pieces that are longer than this times their width, which is at least twice `least_extent`, are
-    /// divided across, >= 1.
+    /// Quadrilateral pieces that are longer than this times their width are divided across, >= 1; not those narrower
+    /// than twice `least_extent` or 0.002 of the face's diameter.
     float largest_aspect = 4;
     /// Most pieces of one face, in (0, 2^31); a face that needs more is cut into fewer.
     std::uint32_t most_pieces_per_face = 1u << 16;
@@ -29,7 +29,7 @@ struct ContactOptions {
 ///
 /// Each face is cut by a binary space partition in its plane: a cut runs along the line of a segment through the whole
 /// convex piece that the segment lies in. Pieces are triangles and convex quadrilaterals with the face's material and
-/// object; they cover it exactly (to the rounding of vertices) and carry its number in Patch::face. Their vertices may
+/// object; they cover it exactly (to the rounding of vertices). Patch::surface tells what was one surface. Vertices may
 /// lie in the middle of a neighbour's edge. Scene::contacts gets the parts of the cuts on which other faces do meet the
 /// face. A warped quadrilateral is cut as the two triangles that the ray caster takes it for.
 ///

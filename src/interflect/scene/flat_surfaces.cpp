@@ -52,16 +52,13 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
+std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     std::vector<V3f> normal(count);
-    std::vector<double> area(count, 0.0);  // of each patch, then of the surface that it represents
     parallel_for_ranges(count, patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
             if (is_back(scene, i)) continue;
-            const PatchGeometry geometry(scene, scene.patches[i]);
-            normal[i] = geometry.normal();
-            area[i] = geometry.area();
+            normal[i] = PatchGeometry(scene, scene.patches[i]).normal();
         }
     });
     const auto continues = [&](std::uint32_t a, std::uint32_t b) {
@@ -76,17 +73,27 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
         for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
-    std::unordered_map<std::uint32_t, std::uint32_t> first_piece;  // of each face that was cut
+    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // of each surface that has a number
     for (std::uint32_t i = 0; i < count; ++i)
-        if (!is_back(scene, i) && scene.patches[i].face != none)
-            surfaces.unite(first_piece.try_emplace(scene.patches[i].face, i).first->second, i);
+        if (!is_back(scene, i) && scene.patches[i].surface != none)
+            surfaces.unite(first_patch.try_emplace(scene.patches[i].surface, i).first->second, i);
 
-    std::vector<std::uint32_t> surface(count);  // its lowest patch; of both sides
-    for (std::uint32_t i = 0; i < count; ++i) {
+    std::vector<std::uint32_t> surface(count);
+    for (std::uint32_t i = 0; i < count; ++i)
         surface[i] = surfaces.find(is_back(scene, i) ? scene.patches[i].other_side : i);
-        if (surface[i] != i) area[surface[i]] += area[i];
-    }
+    return surface;
+}
 
+std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
+    const auto count = static_cast<std::uint32_t>(scene.patches.size());
+    const std::vector<std::uint32_t> surface = flat_surfaces(scene);
+    std::vector<double> area(count, 0.0);  // of the surface that each patch represents
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
+
+    // Areas that are equal but for the rounding of their sums count as equal, however the surfaces are divided.
+    constexpr double steps_per_doubling = 1 << 16;  // 1e-5 each
+    for (double& a : area) a = std::round(std::log2(a) * steps_per_doubling);
     std::vector<std::uint32_t> order(count), rank(count);
     std::iota(order.begin(), order.end(), 0u);
     parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {

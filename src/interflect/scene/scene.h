@@ -28,7 +28,7 @@ struct Patch {
     std::uint32_t material = 0;
     std::uint32_t other_side = none;  ///< The patch on the back of the same face; none for a one-sided face.
     std::uint32_t object = 0;         ///< Index into Scene::objects.
-    std::uint32_t face = none;        ///< Equal for the pieces of one face that was cut; none: a whole face.
+    std::uint32_t surface = none;     ///< Equal in a flat surface of which a face was cut; none: edges tell.
 
     bool is_triangle() const { return vertices[3] == none; }
     int vertex_count() const { return is_triangle() ? 3 : 4; }

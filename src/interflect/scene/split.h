@@ -15,7 +15,8 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
 /// 48, larger where the scene's area would ask for more than about 200,000 patches [m].
 float default_mesh_size(const Scene& scene);
 
-/// The side of the smallest element where the user sets no limit: the diagonal of the scene's bounding box over 1500 [m].
+/// The side of the smallest element where the user sets no limit: the diagonal of the scene's bounding box over 1500
+/// [m].
 double default_element_size(const Scene& scene);
 
 }  // namespace interflect

@@ -39,8 +39,7 @@ void add_rectangle(Scene& scene, const V3f& corner, const V3f& u, const V3f& v, 
 
 Scene make_two_rooms(const TwoRoomsOptions& options) {
     if (!(std::abs(options.turn) <= largest_turn))
-        throw InputError(
-            fmt::format("the wall can be turned by up to {} degrees, not {}", largest_turn, options.turn));
+        throw InputError(fmt::format("the wall can be turned by up to {} degrees, not {}", largest_turn, options.turn));
     Scene scene;
     scene.name = "two rooms";
     scene.objects.emplace_back();
@@ -75,11 +74,9 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
         building::Solids(scene, wall, add_object(scene, "paper"))
             .box({-0.4f, 0.5f, 1.2f}, {-0.19f, 0.797f, 1.201f}, white);
     }
-    scene.views = {{.name = "lit", .eye = V3f(0.3f, 0.3f, 1.6f), .look_at = V3f(3.6f, 2.6f, 0.9f), .fov = 65},
-                   {.name = "dark",
-                    .eye = V3f(length - 0.3f, 0.3f, 1.6f),
-                    .look_at = V3f(length - 3.6f, 2.6f, 0.9f),
-                    .fov = 65}};
+    scene.views = {
+        {.name = "lit", .eye = V3f(0.3f, 0.3f, 1.6f), .look_at = V3f(3.6f, 2.6f, 0.9f), .fov = 65},
+        {.name = "dark", .eye = V3f(length - 0.3f, 0.3f, 1.6f), .look_at = V3f(length - 3.6f, 2.6f, 0.9f), .fov = 65}};
     return scene;
 }
 
