@@ -12,6 +12,7 @@
 #include "interflect/scene/boxes.h"
 #include "interflect/scene/maze.h"
 #include "interflect/scene/office.h"
+#include "interflect/scene/two_rooms.h"
 
 namespace interflect::command {
 
@@ -32,15 +33,22 @@ void write(const fs::path& path, const std::function<Scene()>& make) {
                  scene.views.size());
 }
 
-/// Adds one kind of scene, with the options that every kind has.
-CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help, std::uint64_t& seed,
+/// Adds one kind of scene, with the option that every kind has.
+CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help,
                    const std::function<Scene()>& make) {
     const auto output = std::make_shared<fs::path>();
     CLI::App& kind = *parent.add_subcommand(name, help);
     kind.add_option("-o,--output", *output, "Scene file to write (.mgf); its views go beside it (.views.json)")
         ->required();
-    kind.add_option("--seed", seed, "Same seed, same scene")->capture_default_str();
     kind.callback([output, make] { write(*output, make); });
+    return kind;
+}
+
+/// The same, for scenes that are drawn at random.
+CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help, std::uint64_t& seed,
+                   const std::function<Scene()>& make) {
+    CLI::App& kind = add_kind(parent, name, help, make);
+    kind.add_option("--seed", seed, "Same seed, same scene")->capture_default_str();
     return kind;
 }
 
@@ -89,6 +97,16 @@ void add_boxes(CLI::App& parent) {
     add_number(kind, "--boxes", boxes->boxes, BoxesOptions::most_boxes, "How many boxes");
 }
 
+void add_two_rooms(CLI::App& parent) {
+    const auto rooms = std::make_shared<TwoRoomsOptions>();
+    CLI::App& kind = add_kind(parent, "two-rooms", "Two sealed rooms on one floor, one of them lit: to see light leak",
+                              [rooms] { return make_two_rooms(*rooms); });
+    kind.add_option("--turn", rooms->turn, "Turn of the wall between them [degrees]")
+        ->capture_default_str()
+        ->check(CLI::Range(-40.f, 40.f));
+    kind.add_flag("--furniture", rooms->furniture, "With cabinets against that wall");
+}
+
 }  // namespace
 
 void add_make_scene(CLI::App& app) {
@@ -97,6 +115,7 @@ void add_make_scene(CLI::App& app) {
     add_maze(command);
     add_office(command);
     add_boxes(command);
+    add_two_rooms(command);
 }
 
 }  // namespace interflect::command

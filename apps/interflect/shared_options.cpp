@@ -3,8 +3,10 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <utility>
 
 #include "interflect/raycast/camera.h"
+#include "interflect/scene/contacts.h"
 #include "interflect/scene/split.h"
 #include "interflect/scene/view.h"
 
@@ -41,9 +43,23 @@ void MeshOptions::add_to(CLI::App& app) {
         ->type_name("METRES|auto|none")
         ->default_str("auto")
         ->group("Solver");
+    app.add_flag("--contact-cuts,!--no-contact-cuts", contact_cuts,
+                 "Cut faces where others stand on them, pass through or cover them, so that no light leaks there "
+                 "(default), or leave them as in the file")
+        ->group("Solver");
 }
 
 Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) const {
+    if (contact_cuts) {
+        const Warnings earlier = std::exchange(scene.warnings, {});
+        const std::size_t faces = scene.patches.size();
+        scene = cut_at_contacts(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene)),
+                                        .most_patches = read.max_patches});
+        log_warnings(scene.warnings);
+        if (scene.patches.size() > faces)
+            spdlog::info("faces are cut where others meet them: {} patches, before {}", scene.patches.size(), faces);
+        scene.warnings = earlier;
+    }
     if (size == whole_patches || (size == automatic_mesh_size && refines)) return scene;
     const float edge = size == automatic_mesh_size ? default_mesh_size(scene) : size;
     return split_patches(scene, edge, read.max_patches);

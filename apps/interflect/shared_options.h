@@ -23,11 +23,13 @@ struct SceneOptions {
     Scene load() const;
 };
 
-/// How finely a scene is divided before it is solved.
+/// How a scene is divided before it is solved.
 struct MeshOptions {
+    bool contact_cuts = true;
     float size = automatic_mesh_size;  ///< [m], or one of the two words of parse_mesh_size.
 
     void add_to(CLI::App& app);
+    /// Cuts faces where others meet them, logs the warnings of that, and divides patches to the mesh size.
     /// @param refines  Whether the method divides patches itself: then `auto` leaves them whole.
     Scene divide(Scene scene, const ReadOptions& read, bool refines) const;
 };

@@ -101,7 +101,7 @@ class Help(CommandTest):
             "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "smooth|flat=smooth", "STOPS"),
             "compare": ("IMAGE", "REFERENCE", "--scale"),
             "bench": ("--rays COUNT=4M", "--rounds"),
-            "make-scene": ("maze", "office", "boxes"),
+            "make-scene": ("maze", "office", "boxes", "two-rooms"),
         }
         self.assertEqual(tuple(expected), SUBCOMMANDS)
         for subcommand, words in expected.items():

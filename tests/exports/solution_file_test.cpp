@@ -30,6 +30,8 @@ SolvedScene example() {
     Patch triangle = scene.patches[0];
     triangle.vertices[3] = none;
     scene.patches[0] = triangle;
+    scene.patches[0].surface = 7;
+    scene.contacts = {{V3f(0.5f, 0, 1), V3f(1, 0.25f, 1)}, {V3f(0, 0, 0), V3f(0, 0, 1)}};
     scene.objects = {"", "room", "room.table"};
     scene.patches.back().object = 2;
     scene.views = {{"door", {0.1f, 0.2f, 0.3f}, {1, 2, 3}, {0, 1, 0}, 60},
@@ -69,6 +71,11 @@ void expect_equal(const ElementForest& a, const ElementForest& b) {
 void expect_equal(const SolvedScene& a, const SolvedScene& b) {
     EXPECT_EQ(a.scene.name, b.scene.name);
     EXPECT_EQ(a.scene.origin, b.scene.origin);
+    ASSERT_EQ(a.scene.contacts.size(), b.scene.contacts.size());
+    for (std::size_t i = 0; i < a.scene.contacts.size(); ++i) {
+        EXPECT_EQ(a.scene.contacts[i].a, b.scene.contacts[i].a);
+        EXPECT_EQ(a.scene.contacts[i].b, b.scene.contacts[i].b);
+    }
     EXPECT_EQ(a.scene.vertices, b.scene.vertices);
     EXPECT_EQ(a.scene.objects, b.scene.objects);
     ASSERT_EQ(a.scene.patches.size(), b.scene.patches.size());
@@ -78,6 +85,7 @@ void expect_equal(const SolvedScene& a, const SolvedScene& b) {
         EXPECT_EQ(p.material, q.material);
         EXPECT_EQ(p.object, q.object);
         EXPECT_EQ(p.other_side, q.other_side);
+        EXPECT_EQ(p.surface, q.surface);
     }
     ASSERT_EQ(a.scene.materials.size(), b.scene.materials.size());
     for (std::size_t i = 0; i < a.scene.materials.size(); ++i) {

@@ -194,7 +194,7 @@ TEST(ElementVertices, AreThePointsWhereElementsMeet) {
         EXPECT_EQ(vertices.corners(e)[3] == none, corners.size() == 3);
     }
     EXPECT_EQ(vertex_at.size(), vertices.count());
-    for (const auto& [vertex, ends] : vertices.hanging()) {
+    for (const auto& [vertex, ends, fraction] : vertices.hanging()) {
         EXPECT_LT((position[vertex] - (position[ends[0]] + position[ends[1]]) / 2).length(), 1e-5f);
         EXPECT_LT(std::max(ends[0], ends[1]), vertex);
     }

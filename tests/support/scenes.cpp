@@ -57,6 +57,30 @@ std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_
     return first_patch;
 }
 
+void add_box(Scene& scene, V3f low, V3f high, std::uint32_t material) {
+    const V3f size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+    add_rectangle(scene, low, y, x, material);
+    add_rectangle(scene, low + z, x, y, material);
+    add_rectangle(scene, low, x, z, material);
+    add_rectangle(scene, low + y, z, x, material);
+    add_rectangle(scene, low, z, y, material);
+    add_rectangle(scene, low + x, y, z, material);
+}
+
+std::map<std::pair<std::uint32_t, std::uint32_t>, double> face_areas(const Scene& scene) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> areas;
+    for (const Patch& patch : scene.patches) {
+        const auto x = [&](std::size_t i) { return Imath::V3d(scene.vertices[patch.vertices[i]]); };
+        double area = 0;
+        if (patch.is_triangle())
+            area = (x(1) - x(0)).cross(x(2) - x(0)).length() / 2;
+        else
+            area = (x(1) - x(0)).cross(x(3) - x(0)).length() / 2 + (x(3) - x(2)).cross(x(1) - x(2)).length() / 2;
+        areas[{patch.material, patch.object}] += area;
+    }
+    return areas;
+}
+
 std::uint32_t add_material(Scene& scene, Rgb reflectance, Rgb exitance) {
     scene.materials.push_back({"material " + std::to_string(scene.materials.size()), reflectance, exitance});
     return static_cast<std::uint32_t>(scene.materials.size() - 1);

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "interflect/scene/scene.h"
@@ -30,6 +32,12 @@ class TemporaryFolder {
 /// nu x nv patches; returns the index of the first of them (row by row in v).
 std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_t material, int nu = 1, int nv = 1,
                             bool two_sided = false);
+
+/// Adds a closed box of six one-sided faces that look outwards, with vertices of their own.
+void add_box(Scene& scene, V3f low, V3f high, std::uint32_t material);
+
+/// The area of each face [m^2], by material and object: of quadrilaterals as the two triangles that rays meet.
+std::map<std::pair<std::uint32_t, std::uint32_t>, double> face_areas(const Scene& scene);
 
 std::uint32_t add_material(Scene& scene, Rgb reflectance, Rgb exitance);
 

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Version 3 has the origin; before, it was 0.
+/// Version 3 has an origin, contacts, and the surfaces of patches; before, the origin was 0.
 constexpr int format_version = 3, oldest_format_version = 2;
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
@@ -170,27 +170,45 @@ void read_description(const Json& j, SolvedScene& solved) {
     scene.objects = j.at("objects").get<std::vector<std::string>>();
 }
 
-/// A patch is seven numbers: four vertices, material, object, other side.
+/// A patch is eight numbers: four vertices, material, object, other side, surface.
+constexpr std::size_t numbers_per_patch = 8;
+
 std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     std::vector<std::uint32_t> numbers;
-    numbers.reserve(7 * scene.patches.size());
+    numbers.reserve(numbers_per_patch * scene.patches.size());
     for (const Patch& p : scene.patches) {
         numbers.insert(numbers.end(), p.vertices.begin(), p.vertices.end());
-        numbers.insert(numbers.end(), {p.material, p.object, p.other_side});
+        numbers.insert(numbers.end(), {p.material, p.object, p.other_side, p.surface});
     }
     return numbers;
 }
 
-std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers) {
-    std::vector<Patch> patches(numbers.size() / 7);
+/// @param each  Numbers of a patch: all of them, or one less.
+std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
+    std::vector<Patch> patches(numbers.size() / each);
     for (std::size_t i = 0; i < patches.size(); ++i) {
-        const auto* n = &numbers[7 * i];
+        const auto* n = &numbers[each * i];
         std::copy_n(n, 4, patches[i].vertices.begin());
         patches[i].material = n[4];
         patches[i].object = n[5];
         patches[i].other_side = n[6];
+        if (each == numbers_per_patch) patches[i].surface = n[7];
     }
     return patches;
+}
+
+/// A contact is two points.
+std::vector<V3f> contact_ends(const Scene& scene) {
+    std::vector<V3f> ends;
+    for (const Contact& c : scene.contacts) ends.insert(ends.end(), {c.a, c.b});
+    return ends;
+}
+
+std::vector<Contact> contacts_of(const std::vector<V3f>& ends) {
+    if (ends.size() % 2 != 0) throw std::runtime_error("a contact has no end");
+    std::vector<Contact> contacts(ends.size() / 2);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = {ends[2 * i], ends[2 * i + 1]};
+    return contacts;
 }
 
 /// The elements that have children, in the order of their children: what a forest is rebuilt from.
@@ -247,7 +265,11 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
         throw std::runtime_error("it was written by another version of Interflect");
     read_description(description, solved);
     solved.scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
-    solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", 7));
+    const bool has_contacts = version > oldest_format_version;
+    const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
+    solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", each), each);
+    if (has_contacts)
+        solved.scene.contacts = contacts_of(grouped<V3f>(read_array<float>(file, "/scene/contacts", 3)));
     for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
 
     Solution& solution = solved.solution;
@@ -276,7 +298,8 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     const std::string text = description.dump(1);
     write_array(file, "/description", text.data(), text.size(), 1);
     write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3);
-    write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), 7);
+    write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), numbers_per_patch);
+    write_array(file, "/scene/contacts", flattened(contact_ends(scene)).data(), 2 * scene.contacts.size(), 3);
     const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
     write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);
     write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "interflect/base/random.h"
@@ -71,16 +73,17 @@ class VertexBuilder {
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(edges_of_.size()); }
 
-    std::vector<ElementVertices::Hanging> hanging_vertices() const {
+    /// The vertices that lie on seams, as hanging ones or coupled, and then those inside patches and whole edges.
+    void find_hanging_vertices(std::vector<ElementVertices::Hanging>& hanging,
+                               std::vector<ElementVertices::Coupling>& couplings) const {
+        find_vertices_on_seams(hanging, couplings);
         std::vector<bool> hangs(count(), false);
         for (std::uint32_t e = 0; e < forest_.size(); ++e)
             if (forest_.is_leaf(e)) mark_middles_of_edges(e, hangs);
-        std::vector<ElementVertices::Hanging> hanging;
         for (std::uint32_t v = surfaces_.corners.count; v < count(); ++v) {
             hangs[v] = hangs[v] || lies_on_half_of_a_leafs_edge(v, hangs);
             if (hangs[v]) hanging.push_back({v, edges_of_[v]});
         }
-        return hanging;
     }
 
     std::vector<Corners> release_corners() { return std::move(corners_); }
@@ -136,6 +139,114 @@ class VertexBuilder {
                (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
     }
 
+    /// The edge of a leaf along an edge of its patch.
+    struct LeafEdge {
+        std::array<std::uint32_t, 2> vertices;
+        std::array<float, 2> at;  // parameters of the patch's edge, ascending
+
+        float size() const { return at[1] - at[0]; }
+    };
+
+    /// The leaves along an edge of a patch, within [from, to] of its length; `e` covers [low, high].
+    void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
+                            std::vector<LeafEdge>& found) const {
+        if (high <= from || low >= to) return;
+        const std::uint32_t corners = corner_count(corners_[e]), next = (c + 1) % corners;
+        if (forest_.is_leaf(e)) {
+            found.push_back({{corners_[e][c], corners_[e][next]}, {low, high}});
+            return;
+        }
+        // Children are turned as their parent is: its edge c is made of the edges c of the children at both ends.
+        constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
+        const auto child = [&](std::uint32_t corner) {
+            return forest_.first_child(e) + (corners == 3 ? corner : child_at_corner[corner]);
+        };
+        const float middle = (low + high) / 2;
+        collect_leaf_edges(child(c), c, low, middle, from, to, found);
+        collect_leaf_edges(child(next), c, middle, high, from, to, found);
+    }
+
+    /// Both sides of a seam: its leaves, and how long the patch's edge is.
+    struct SeamSide {
+        std::vector<LeafEdge> leaves;
+        float length;  // [m]
+    };
+    using SeamSides = std::array<SeamSide, 2>;
+
+    SeamSides sides_of(const SmoothSurfaces::Seam& seam) const {
+        SeamSides sides;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::uint32_t patch = seam.edge[k] / 4, corner = seam.edge[k] % 4;
+            collect_leaf_edges(patch, corner, 0, 1, seam.from[k], seam.to[k], sides[k].leaves);
+            const PatchGeometry& geometry = forest_.geometry(patch);
+            constexpr std::array<Parameters, 4> square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+            constexpr std::array<Parameters, 3> triangle{{{0, 0}, {1, 0}, {0, 1}}};
+            const auto point = [&](std::uint32_t c) {
+                return geometry.point(geometry.is_triangle() ? triangle[c] : square[c]);
+            };
+            sides[k].length = (point((corner + 1) % (geometry.is_triangle() ? 3 : 4)) - point(corner)).length();
+        }
+        return sides;
+    }
+
+    /// A vertex on one side of a seam and the leaf's edge on the other side that it lies in.
+    struct SeamVertex {
+        std::uint32_t vertex;
+        std::array<std::uint32_t, 2> ends;
+        float fraction, angle;
+        float edge_length;  // [m]
+    };
+
+    /// Vertices of side k inside leaves of the other side. One at an end of the seam is on its last edge by half.
+    static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
+                                  std::vector<SeamVertex>& found) {
+        constexpr float margin = 1e-5f;  // of a patch's edge, at least
+        const std::size_t other = 1 - k;
+        const auto& leaves = sides[other].leaves;
+        const auto add = [&](std::uint32_t vertex, float at) {
+            if (at < seam.from[k] - margin || at > seam.to[k] + margin) return;
+            const bool is_end = at < seam.from[k] + margin || at > seam.to[k] - margin;
+            const float share = std::clamp((at - seam.from[k]) / (seam.to[k] - seam.from[k]), 0.0f, 1.0f);
+            const float there = seam.to[other] + share * (seam.from[other] - seam.to[other]);
+            const auto leaf =
+                std::find_if(leaves.begin(), leaves.end(), [&](const LeafEdge& l) { return there <= l.at[1]; });
+            if (leaf == leaves.end() || leaf->vertices[0] == vertex || leaf->vertices[1] == vertex) return;
+            constexpr float pi = std::numbers::pi_v<float>;
+            found.push_back({vertex, leaf->vertices, std::clamp((there - leaf->at[0]) / leaf->size(), 0.0f, 1.0f),
+                             is_end ? pi / 2 : pi, leaf->size() * sides[other].length});
+        };
+        for (const LeafEdge& leaf : sides[k].leaves) add(leaf.vertices[0], leaf.at[0]);
+        if (!sides[k].leaves.empty()) add(sides[k].leaves.back().vertices[1], sides[k].leaves.back().at[1]);
+    }
+
+    /// A vertex hangs on a longer edge than its own ones; from others it gets what the leaf there has.
+    void find_vertices_on_seams(std::vector<ElementVertices::Hanging>& hanging,
+                                std::vector<ElementVertices::Coupling>& couplings) const {
+        std::vector<SeamVertex> found;
+        std::unordered_map<std::uint32_t, float> longest_own;  // edge at a vertex [m]
+        for (const SmoothSurfaces::Seam& seam : surfaces_.seams) {
+            const SeamSides sides = sides_of(seam);
+            for (std::size_t k = 0; k < 2; ++k) {
+                add_seam_vertices(seam, sides, k, found);
+                for (const LeafEdge& leaf : sides[k].leaves)
+                    for (const std::uint32_t v : leaf.vertices) {
+                        float& longest = longest_own[v];
+                        longest = std::max(longest, leaf.size() * sides[k].length);
+                    }
+            }
+        }
+        // Longest edges first: their ends hang, if at all, on longer ones yet.
+        std::stable_sort(found.begin(), found.end(),
+                         [](const SeamVertex& a, const SeamVertex& b) { return a.edge_length > b.edge_length; });
+        constexpr float clearly_longer = 1.01f;
+        std::unordered_set<std::uint32_t> hangs;
+        for (const SeamVertex& v : found)
+            if (v.edge_length > clearly_longer * longest_own[v.vertex] && hangs.insert(v.vertex).second)
+                hanging.push_back({v.vertex, v.ends, v.fraction});
+        for (const SeamVertex& v : found)
+            if (!hangs.contains(v.vertex)) couplings.push_back({v.vertex, v.ends, v.fraction, v.angle});
+    }
+
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;  // of each element
@@ -166,7 +277,7 @@ std::array<float, 4> corner_angles(const PatchGeometry& patch, const Cell& cell)
 ElementVertices::ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options) {
     VertexBuilder builder(scene, forest, options);
     count_ = builder.count();
-    hanging_ = builder.hanging_vertices();
+    builder.find_hanging_vertices(hanging_, couplings_);
     corners_ = builder.release_corners();
 }
 
@@ -183,10 +294,16 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
             weight[corners[c]] += angles[c];
         }
     }
-    std::vector<Rgb> means(vertices.count(), Rgb(0, 0, 0));
-    for (std::size_t v = 0; v < means.size(); ++v)
-        if (weight[v] > 0) means[v] = Rgb(sum[v] / weight[v]);
-    for (const auto& [vertex, ends] : vertices.hanging()) means[vertex] = (means[ends[0]] + means[ends[1]]) / 2;
+    const auto mean = [&](std::uint32_t v) { return weight[v] > 0 ? Rgb(sum[v] / weight[v]) : Rgb(0, 0, 0); };
+    std::vector<Rgb> means(vertices.count());
+    for (std::uint32_t v = 0; v < means.size(); ++v) means[v] = mean(v);
+    for (const auto& [vertex, ends, fraction, angle] : vertices.couplings()) {
+        sum[vertex] += RgbD(means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction) * angle;
+        weight[vertex] += angle;
+    }
+    for (const auto& coupling : vertices.couplings()) means[coupling.vertex] = mean(coupling.vertex);
+    for (const auto& [vertex, ends, fraction] : vertices.hanging())
+        means[vertex] = means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction;
     return means;
 }
 

@@ -8,7 +8,7 @@
 #include "interflect/base/random.h"
 #include "interflect/raycast/covered_area.h"
 #include "interflect/raycast/face_overlap.h"
-#include "interflect/raycast/flat_surfaces.h"
+#include "interflect/scene/flat_surfaces.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {

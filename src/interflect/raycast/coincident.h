@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/raycast/box_tree.h"
+#include "interflect/base/box_tree.h"
 #include "interflect/raycast/ranked_bits.h"
 #include "interflect/scene/scene.h"
 

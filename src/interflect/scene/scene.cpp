@@ -24,6 +24,9 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     check(is_finite(scene.origin), [] { return std::string("the origin is not finite"); });
     for (std::size_t i = 0; i < scene.vertices.size(); ++i)
         check(is_finite(scene.vertices[i]), [&] { return fmt::format("vertex {} is not finite", i); });
+    for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+        check(is_finite(scene.contacts[i].a) && is_finite(scene.contacts[i].b),
+              [&] { return fmt::format("contact {} is not finite", i); });
     for (const Material& m : scene.materials) {
         const Rgb &r = m.reflectance, &e = m.exitance;
         check(is_reflectance(r), [&] {

@@ -31,9 +31,15 @@ struct Patch {
     std::uint32_t material = 0;
     std::uint32_t other_side = none;  ///< The patch on the back of the same face; none for a one-sided face.
     std::uint32_t object = 0;         ///< Index into Scene::objects.
+    std::uint32_t surface = none;     ///< Equal in a flat surface of which a face was cut; none: edges tell.
 
     bool is_triangle() const { return vertices[3] == none; }
     int vertex_count() const { return is_triangle() ? 3 : 4; }
+};
+
+/// A segment along which a face was cut because another face meets it there: light differs on its two sides.
+struct Contact {
+    V3f a, b;  ///< Ends [m]; on edges of the pieces.
 };
 
 /// A pinhole camera, in world coordinates whatever the scene's origin: Camera makes it relative.
@@ -54,6 +60,7 @@ struct Scene {
     Imath::V3d origin{0, 0, 0};
     std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Those that no patch uses count for nothing.
     std::vector<Patch> patches;
+    std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().
     std::vector<Material> materials;
     std::vector<std::string> objects;  ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
     std::vector<View> views;

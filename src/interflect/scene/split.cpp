@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <unordered_map>
 
 #include "interflect/base/error.h"
 #include "interflect/scene/core.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/scene/vertex_pool.h"
 
 namespace interflect {
 
@@ -36,28 +35,6 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     }
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
-
-/// Vertices of the new scene, found again by where they lie, so that neighbours share them.
-class VertexPool {
-  public:
-    explicit VertexPool(std::vector<V3f>& vertices) : vertices_(vertices) {}
-
-    std::uint32_t add(const V3f& v) {
-        const auto [entry, is_new] = index_.try_emplace(v, static_cast<std::uint32_t>(vertices_.size()));
-        if (is_new) vertices_.push_back(v);
-        return entry->second;
-    }
-
-  private:
-    struct Hash {
-        std::size_t operator()(const V3f& v) const {
-            const std::hash<float> h;
-            return (h(v.x) * 31 + h(v.y)) * 31 + h(v.z);
-        }
-    };
-    std::vector<V3f>& vertices_;
-    std::unordered_map<V3f, std::uint32_t, Hash> index_;
-};
 
 /// Adds one piece of `patch`, and that of its other side where it has one.
 void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> vertices) {
@@ -125,6 +102,23 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
             split_quadrilateral(split, pool, patch, geometry, n);
     }
     return split;
+}
+
+double default_element_size(const Scene& scene) {
+    constexpr double largest = 0.005;  // [m]
+    constexpr double typical_side_over_size = 1000;
+    std::vector<float> areas;
+    areas.reserve(scene.patches.size());
+    double all = 0;
+    for (const Patch& patch : scene.patches) {
+        areas.push_back(patch_area(scene, patch));
+        all += areas.back();
+    }
+    std::sort(areas.begin(), areas.end());
+    double below = 0;
+    for (const float area : areas)
+        if ((below += area) >= all / 2) return std::min(largest, std::sqrt(static_cast<double>(area)) / typical_side_over_size);
+    return largest;
 }
 
 float default_mesh_size(const Scene& scene) {

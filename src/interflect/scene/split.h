@@ -15,4 +15,9 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
 /// (core_bounds) over 48, larger where the scene's area would ask for more than about 200,000 patches [m].
 float default_mesh_size(const Scene& scene);
 
+/// The side of the smallest element where nothing else sets a limit: 5 mm, or a thousandth of the side of a typical
+/// surface if that is less, as in a model in kilometres: half of the scene's area is in patches that are smaller. It
+/// does not depend on the size of the world [m].
+double default_element_size(const Scene& scene);
+
 }  // namespace interflect

@@ -17,8 +17,7 @@ class ElementFloor {
     /// @return         [m^2]; SolveOptions::smallest_area wherever that is given.
     float smallest_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// Where no view looks: 5 mm squared, or a thousandth of the side of a typical surface squared if that is less (a
-    /// model in kilometres): the median of all surfaces' by area.
+    /// Where no view looks: the square of default_element_size().
     float unseen() const { return unseen_; }
 
   private:

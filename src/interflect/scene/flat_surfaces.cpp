@@ -1,11 +1,13 @@
-#include "interflect/raycast/flat_surfaces.h"
+#include "interflect/scene/flat_surfaces.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
+#include "interflect/base/disjoint_sets.h"
 #include "interflect/base/parallel.h"
 #include "interflect/scene/patch_geometry.h"
 
@@ -52,24 +54,6 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Disjoint sets of patches; the representative of a set is its lowest patch.
-class PatchSets {
-  public:
-    explicit PatchSets(std::size_t patches) : parent_(patches) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-    std::uint32_t representative(std::uint32_t patch) {
-        while (parent_[patch] != patch) patch = parent_[patch] = parent_[parent_[patch]];
-        return patch;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = representative(a), b = representative(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
 /// The place of each surface, by its representative, in the order of their areas. @param area  Of each surface.
 std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
                                              const std::vector<double>& area) {
@@ -95,16 +79,13 @@ std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vect
 
 }  // namespace
 
-std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
+std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     std::vector<V3f> normal(count);
-    std::vector<double> area(count, 0.0);  // of each patch, then of the surface that it represents
     parallel_for_ranges(count, patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
             if (is_back(scene, i)) continue;
-            const PatchGeometry geometry(scene, scene.patches[i]);
-            normal[i] = geometry.normal();
-            area[i] = geometry.area();
+            normal[i] = PatchGeometry(scene, scene.patches[i]).normal();
         }
     });
     const auto continues = [&](std::uint32_t a, std::uint32_t b) {
@@ -113,17 +94,29 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
                std::abs(normal[a].dot(normal[b])) > same_plane_cosine;
     };
 
-    PatchSets surfaces(count);
+    DisjointSets surfaces(count);
     const std::vector<Edge> edges = sorted_edges(scene);
     for (std::size_t i = 1; i < edges.size(); ++i)
         for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
-            if (continues(edges[i].patch, edges[j].patch)) surfaces.join(edges[i].patch, edges[j].patch);
+            if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
-    std::vector<std::uint32_t> surface(count);  // its lowest patch; of both sides
-    for (std::uint32_t i = 0; i < count; ++i) {
-        surface[i] = surfaces.representative(is_back(scene, i) ? scene.patches[i].other_side : i);
-        if (surface[i] != i) area[surface[i]] += area[i];
-    }
+    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // of each surface that has a number
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (!is_back(scene, i) && scene.patches[i].surface != none)
+            surfaces.unite(first_patch.try_emplace(scene.patches[i].surface, i).first->second, i);
+
+    std::vector<std::uint32_t> surface(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+        surface[i] = surfaces.find(is_back(scene, i) ? scene.patches[i].other_side : i);
+    return surface;
+}
+
+std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
+    const auto count = static_cast<std::uint32_t>(scene.patches.size());
+    const std::vector<std::uint32_t> surface = flat_surfaces(scene);
+    std::vector<double> area(count, 0.0);  // of the surface that each patch represents
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
 
     const std::vector<std::uint32_t> place = order_of_surfaces(scene, surface, area);
     std::vector<std::uint32_t> order(count), rank(count);
