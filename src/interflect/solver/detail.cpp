@@ -1,6 +1,7 @@
 #include "interflect/solver/detail.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -74,10 +75,12 @@ struct Sums {
     double weight = 0, mean = 0, noise = 0, bias = 0;
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
     double assumed = 0;                       // within leaves without siblings
+    double within = 0;                        // of the leaves' siblings, where pixels resolve what is within a leaf
 
     Sums& operator+=(const Sums& o) {
         weight += o.weight, mean += o.mean, noise += o.noise, bias += o.bias;
-        signal += o.signal, signal_of_parent += o.signal_of_parent, assumed += o.assumed;
+        signal += o.signal, signal_of_parent += o.signal_of_parent;
+        assumed += o.assumed, within += o.within;
         return *this;
     }
 };
@@ -99,17 +102,20 @@ Sums sum_errors(const Run& run, const ElementErrors& errors) {
             sums.weight += w;
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
+            // What varies within a pixel is no error of the picture.
+            const double resolved = run.view.empty() ? 1 : std::max(0.0f, 1 - smallest_area(run, e) / forest.area(e));
             if (e < forest.patch_count()) {
-                sums.assumed += w * std::pow(assumed_variation * h, 2);
+                sums.assumed += w * resolved * std::pow(assumed_variation * h, 2);
                 continue;
             }
             const std::uint32_t parent = forest.parent(e);
-            if (run.history[e] == 0) {  // made since: what is known is their parents' siblings' variation
-                sums.signal += w * signal_beside(run, parent) * least_decay;
-                continue;
-            }
-            sums.signal += w * signal_beside(run, e);
-            sums.signal_of_parent += w * signal_beside(run, parent);
+            const double signal_of_parent = signal_beside(run, parent);
+            const bool is_new = run.history[e] == 0;  // then what is known is how its parent's siblings differ
+            const double signal = is_new ? least_decay * signal_of_parent : signal_beside(run, e);
+            sums.within += w * resolved * signal;
+            if (is_new) continue;
+            sums.signal += w * signal;
+            sums.signal_of_parent += w * signal_of_parent;
         }
         return sums;
     });
@@ -154,7 +160,7 @@ SolutionError solution_error(const Run& run) {
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = run.view.empty() ? sums.weight : 1;
     const double decay = decay_of(sums);
-    const double within_leaves = std::max(0.0, sums.signal) * decay / (1 - decay) + sums.assumed;
+    const double within_leaves = std::max(0.0, sums.within) * decay / (1 - decay) + sums.assumed;
     const double discretisation = run.options.method.refines ? std::max(0.0, sums.bias + within_leaves) : 0;
     return {std::sqrt(sums.noise / total_weight) / mean, std::sqrt(discretisation / total_weight) / mean};
 }
@@ -194,18 +200,22 @@ void finish_solution(Run& run) {
     }
     run.streams.used.resize(forest.size(), 0);
     solution.rays.assign(run.streams.used.begin(), run.streams.used.end());
-    if (!shrinks(run)) return;
     std::vector<Rgb> reduced = solution.irradiance;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const Detail detail = detail_of(run, first);
-        const float kept = detail.noise == unknown ? 1 : detail.shrinkage();
         const std::uint32_t parent = forest.parent(first);
-        const Rgb &mean = solution.irradiance[parent], &target = reduced[parent];
-        for (std::uint32_t e = first; e < first + 4; ++e)
-            for (int c = 0; c < 3; ++c) {  // as ratios, lest anything becomes negative
-                const float ratio = mean[c] > 0 ? solution.irradiance[e][c] / mean[c] : 1;
-                reduced[e][c] = target[c] * (1 + kept * (ratio - 1));
-            }
+        const Detail detail = detail_of(run, first);
+        const float kept = shrinks(run) && detail.noise != unknown ? detail.shrinkage() : 1.0f;
+        std::array<Rgb, 4> difference;
+        for (std::uint32_t k = 0; k < 4; ++k)
+            difference[k] = kept * (solution.irradiance[first + k] - solution.irradiance[parent]);
+        for (int c = 0; c < 3; ++c) {
+            // Of light there is none less than none: where noise says so, all four differences are reduced alike.
+            float lowest = 0;
+            for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
+            const float mean = reduced[parent][c], factor = -lowest > mean ? mean / -lowest : 1;
+            for (std::uint32_t k = 0; k < 4; ++k)
+                reduced[first + k][c] = std::max(0.0f, mean + factor * difference[k][c]);
+        }
     });
     solution.irradiance = std::move(reduced);
 }

@@ -53,6 +53,23 @@ void merge_into(const Run& run, std::vector<T>& mean, const std::vector<T>& rece
 void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan) {
     merge_into(run, mean, received, plan);
 }
+void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan) {
+    const ElementForest& forest = *run.forest;
+    const auto rays = static_cast<float>(plan.rays);
+    const auto tau = [&](std::uint32_t e) { return rays / (run.history[e] + rays); };
+    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] -= mean[forest.parent(first)];
+    });
+    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] += tau(e) * (received[e] - mean[e]);
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        const std::uint32_t parent = forest.parent(first);
+        for (std::uint32_t e = first; e < first + 4; ++e)
+            mean[e] += mean[parent] + tau(e) * (received[e] - received[parent] - mean[e]);
+    });
+}
+
 void merge(const Run& run, std::vector<float>& mean, const std::vector<float>& received, const IterationPlan& plan) {
     merge_into(run, mean, received, plan);
 }

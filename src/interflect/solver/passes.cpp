@@ -181,7 +181,7 @@ RgbD iterate_pass(Run& run, PassState& state, IterationPlan& plan) {
     const FreshEstimate fresh = trace_pass(run, state, plan.rays - for_importance, by_power, escaped_power);
     plan.rays = std::max<std::int64_t>(1, run.power_rays + run.importance_rays - rays_before);
     estimate_noise(run, fresh, plan.rays);
-    merge(run, run.solution.irradiance, fresh.irradiance, plan);
+    merge_details(run, run.solution.irradiance, fresh.irradiance, plan);
     remember(run, plan, before);
     if (run.options.method.refines && !by_power && run.noise.is_known()) {
         const std::uint32_t size = run.forest->size();

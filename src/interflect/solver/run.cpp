@@ -54,6 +54,15 @@ Received run_step(Run& run, TransportStep step) {
     return received;
 }
 
+float smallest_area(const Run& run, std::uint32_t element) {
+    const ElementForest& forest = *run.forest;
+    const std::uint32_t patch = forest.patch(element);
+    const PatchGeometry& geometry = forest.geometry(patch);
+    const bool is_seen = !run.view.empty() && run.solution.view_importance[patch] > 0;
+    const V3f centre = geometry.point(forest.cell(element).centre(geometry.is_triangle()));
+    return run.floor.smallest_area(centre, geometry.normal(), is_seen);
+}
+
 void grow_with_forest(Run& run, std::uint32_t first) {
     inherit(*run.forest, first, run.solution.irradiance);
     run.noise.grow(*run.forest, first);

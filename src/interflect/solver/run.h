@@ -45,6 +45,9 @@ struct Run {
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest.
 Received run_step(Run& run, TransportStep step);
 
+/// The smallest area that an element's parts may have, by ElementFloor [m^2].
+float smallest_area(const Run& run, std::uint32_t element);
+
 /// Gives elements from `first` on, made since, what their parents have.
 void grow_with_forest(Run& run, std::uint32_t first);
 

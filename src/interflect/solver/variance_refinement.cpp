@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "interflect/solver/detail.h"
-#include "interflect/solver/element_floor.h"
 
 namespace interflect {
 
@@ -21,16 +20,20 @@ constexpr float assumed_square = 0.04f;
 /// far. More rays will come, and until then the differences are reduced to what they are worth.
 constexpr float least_signal = 0.25f;
 /// A leaf is left alone if what splitting it gains is less than this share of the whole squared error.
-constexpr double negligible_gain = 1e-6;
+constexpr double negligible_gain = 2e-7;
+/// A leaf is split too if it radiates more than this share of all light from other places than it should: what is
+/// reflected from a bright corner of a lamp's housing leaves it less easily than it would from everywhere.
+constexpr double negligible_misplacement = 1e-6;
 /// How much the squared error of the shape of what is not seen counts beside what is: it reaches the view spread out.
 constexpr double unseen_shape = 0.02;
 
 /// Decides about the leaves of a run.
 class VarianceOracle {
   public:
-    explicit VarianceOracle(const Run& run) : run_(run), forest_(*run.forest), floor_(run.floor) {
+    explicit VarianceOracle(const Run& run) : run_(run), forest_(*run.forest) {
         const double error = solution_error(run).total();
         least_gain_ = std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
+        least_misplaced_power_ = negligible_misplacement * received_power();
     }
 
     bool splits(std::uint32_t leaf) const {
@@ -45,7 +48,9 @@ class VarianceOracle {
             noise = 4 * detail.noise;
         }
         if (!(signal > least_signal * noise)) return false;
-        return weight(leaf) * static_cast<double>(signal) > least_gain_ && is_large_enough(leaf);
+        const bool matters = weight(leaf) * static_cast<double>(signal) > least_gain_ ||
+                             misplaced_power(leaf, signal) > least_misplaced_power_;
+        return matters && is_large_enough(leaf);
     }
 
   private:
@@ -58,13 +63,13 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    bool is_large_enough(std::uint32_t leaf) const {
-        const std::uint32_t patch = forest_.patch(leaf);
-        const PatchGeometry& geometry = forest_.geometry(patch);
-        const bool is_seen = !run_.view.empty() && run_.solution.view_importance[patch] > 0;
-        const V3f centre = geometry.point(forest_.cell(leaf).centre(geometry.is_triangle()));
-        return forest_.area(leaf) >= 4 * floor_.smallest_area(centre, geometry.normal(), is_seen);
+    /// Power that leaves the leaf from other places than it should, times what power from there matters to the view.
+    double misplaced_power(std::uint32_t leaf, float signal) const {
+        const std::vector<float>& psi = run_.solution.indirect_importance;
+        const double rho = luminance(run_.surfaces.reflectance(forest_.patch(leaf)));
+        return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi.empty() ? 1.0 : psi[leaf]);
     }
+    bool is_large_enough(std::uint32_t leaf) const { return forest_.area(leaf) >= 4 * smallest_area(run_, leaf); }
     double weighted_mean_square() const {
         const double mean = error_reference(run_);
         double weight = run_.view.empty() ? 0 : 1;
@@ -73,10 +78,19 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
+    /// What all surfaces receive, by its importance.
+    double received_power() const {
+        const std::vector<float>& psi = run_.solution.indirect_importance;
+        double sum = 0;
+        for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
+            sum += static_cast<double>(luminance(run_.solution.irradiance[i])) * forest_.area(i) * (psi.empty() ? 1.0f : psi[i]);
+        return sum;
+    }
+
     const Run& run_;
     const ElementForest& forest_;
-    const ElementFloor& floor_;
-    double least_gain_ = 0;  // [weight times irradiance^2]
+    double least_gain_ = 0;             // [weight times irradiance^2]
+    double least_misplaced_power_ = 0;  // [lm or W, times importance]
 };
 
 }  // namespace
