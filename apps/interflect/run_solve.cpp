@@ -112,6 +112,8 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
             100 * escapes.share());
 }
 
+std::string percent(double share) { return fmt::format("{:.{}f}%", 100 * share, share < 0.0995 ? 1 : 0); }
+
 void log_outcome(const Solution& solution) {
     if (solution.non_finite > 0)
         spdlog::warn("{} powers were not finite and were left out: the result is not to be trusted",
@@ -121,12 +123,15 @@ void log_outcome(const Solution& solution) {
     spdlog::info("{}: {} rays in {}, {} elements{}{}", solution.options.method.name,
                  magnitude(static_cast<double>(last.rays)), duration(last.seconds), last.elements,
                  std::isfinite(last.error_estimate)
-                     ? fmt::format(", estimated relative error {:.2g}%", 100 * last.error_estimate)
+                     ? fmt::format(", estimated relative error {} (noise {}, mesh {})", percent(last.error_estimate),
+                                   percent(last.noise_estimate), percent(last.discretisation_estimate))
                      : "",
                  last.escaped_rays > 0
                      ? fmt::format(", {:.2g}% of the rays left the scene",
                                    100.0 * static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays))
                      : "");
+    if (!solution.options.views.empty() && !std::isfinite(last.error_estimate) && solution.iterations.size() > 2)
+        spdlog::warn("no view shows a lit surface that reflects light: the error is not known");
     if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.most_elements)
         spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements or --memory",
                      last.elements);

@@ -162,8 +162,9 @@ void SolverOptions::add_sampling(CLI::App& app) {
     group(add_parsed(app, "--rays-per-iteration", solve_.rays_per_iteration, parse_count,
                      "Rays of each iteration; default: small at first, then growing")
               ->type_name("COUNT"));
-    group(app.add_flag("--complete-passes,!--one-bounce", solve_.complete_passes,
-                       "Each iteration follows light bounce by bounce to its end (default), or takes the mean one bounce further"));
+    group(app.add_flag(
+        "--complete-passes,!--one-bounce", solve_.complete_passes,
+        "Each iteration follows light bounce by bounce to its end (default), or takes the mean one bounce further"));
 }
 
 void SolverOptions::add_refinement(CLI::App& app) {
@@ -172,8 +173,9 @@ void SolverOptions::add_refinement(CLI::App& app) {
                                  {{"variance", Refinement::variance}, {"power", Refinement::power}},
                                  "Elements are split by what rays tell of them, or pairs by power (Eq. 14, 15)")
               ->default_str("variance"));
-    group(app.add_flag("--shrinkage,!--no-shrinkage", solve_.shrinks,
-                       "Reduce differences of neighbouring elements that are mostly noise (with --refinement variance)"));
+    group(
+        app.add_flag("--shrinkage,!--no-shrinkage", solve_.shrinks,
+                     "Reduce differences of neighbouring elements that are mostly noise (with --refinement variance)"));
     group(app.add_option("--epsilon", solve_.epsilon,
                          "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
                          "once 20M rays are averaged")

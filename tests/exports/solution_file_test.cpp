@@ -104,6 +104,7 @@ void expect_equal(const SolvedScene& a, const SolvedScene& b) {
     expect_equal(*a.solution.forest, *b.solution.forest);
     EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
     EXPECT_EQ(a.solution.standard_error, b.solution.standard_error);
+    EXPECT_EQ(a.solution.discretisation_error, b.solution.discretisation_error);
     EXPECT_EQ(a.solution.rays, b.solution.rays);
     EXPECT_EQ(a.solution.view_importance, b.solution.view_importance);
     EXPECT_EQ(a.solution.indirect_importance, b.solution.indirect_importance);

@@ -236,12 +236,14 @@ struct ElementNumbers {
     const char* name;
     std::vector<float> Solution::*values;
     bool needs_view;
+    int since_version;
 };
-constexpr std::array<ElementNumbers, 4> element_numbers = {
-    {{"/solution/standard_error", "standard error", &Solution::standard_error, false},
-     {"/solution/rays", "number of rays", &Solution::rays, false},
-     {"/solution/view_importance", "view importance", &Solution::view_importance, true},
-     {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true}}};
+constexpr std::array<ElementNumbers, 5> element_numbers = {
+    {{"/solution/standard_error", "standard error", &Solution::standard_error, false, 2},
+     {"/solution/discretisation_error", "discretisation error", &Solution::discretisation_error, false, 3},
+     {"/solution/rays", "number of rays", &Solution::rays, false, 2},
+     {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
+     {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
 void require_per_element(std::size_t size, const ElementForest& forest, const char* what) {
     if (size != forest.size()) throw std::runtime_error(fmt::format("{} and elements differ in number", what));
@@ -268,8 +270,7 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     const bool has_contacts = version > oldest_format_version;
     const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
     solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", each), each);
-    if (has_contacts)
-        solved.scene.contacts = contacts_of(grouped<V3f>(read_array<float>(file, "/scene/contacts", 3)));
+    if (has_contacts) solved.scene.contacts = contacts_of(grouped<V3f>(read_array<float>(file, "/scene/contacts", 3)));
     for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
 
     Solution& solution = solved.solution;
@@ -279,8 +280,12 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     solution.irradiance = grouped<Rgb>(irradiance);
     require_per_element(solution.irradiance.size(), *solution.forest, "irradiance");
     const bool has_importance = description.at("has_importance").get<bool>();
-    for (const auto& [dataset, name, values, needs_view] : element_numbers) {
+    for (const auto& [dataset, name, values, needs_view, since_version] : element_numbers) {
         if (needs_view && !has_importance) continue;
+        if (version < since_version) {
+            (solution.*values).assign(solution.forest->size(), 0.0f);
+            continue;
+        }
         solution.*values = read_array<float>(file, dataset, 1);
         require_per_element((solution.*values).size(), *solution.forest, name);
         require_quantities(solution.*values, 1, name);
@@ -303,7 +308,7 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
     write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);
     write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);
-    for (const auto& [dataset, name, values, needs_view] : element_numbers)
+    for (const auto& [dataset, name, values, needs_view, since_version] : element_numbers)
         if (!needs_view || !solution.view_importance.empty())
             write_array(file, dataset, (solution.*values).data(), (solution.*values).size(), 1);
 }

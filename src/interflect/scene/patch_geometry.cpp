@@ -81,18 +81,17 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
     const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
     if (!parallelogram_) {
-        // Newton's method on the bilinear map, in the plane; it starts close and a handful of steps reach rounding.
-        for (int step = 0; step < 8; ++step) {
-            const V3f residual = d - (p.u * shape_.edge_u + p.v * shape_.edge_v + (p.u * p.v) * shape_.twist);
-            const V3f du = shape_.edge_u + p.v * shape_.twist, dv = shape_.edge_v + p.u * shape_.twist;
-            const V3f n = du.cross(dv);
-            const float n2 = n.length2();
-            if (!(n2 > 0)) break;
-            const Parameters delta{dv.cross(n).dot(residual) / n2, n.cross(du).dot(residual) / n2};
-            p.u = std::clamp(p.u + delta.u, -0.5f, 1.5f);
-            p.v = std::clamp(p.v + delta.v, -0.5f, 1.5f);
-            if (std::abs(delta.u) + std::abs(delta.v) < 1e-6f) break;
-        }
+        // d = u edge_u + v edge_v + u v twist in the plane: a quadratic equation for v, of which the root that stays
+        // finite as the twist vanishes is the one within a convex quadrilateral.
+        using Imath::V3d;
+        const V3d n(normal_), h(d), e(shape_.edge_u), f(shape_.edge_v), g(shape_.twist);
+        const auto cross = [&](const V3d& a, const V3d& b) { return n.dot(a.cross(b)); };
+        const double square = cross(g, f), linear = cross(e, f) + cross(h, g), constant = cross(h, e);
+        const double root = std::sqrt(std::max(0.0, linear * linear - 4 * constant * square));
+        const double v = linear + root > 0 ? std::clamp(-2 * constant / (linear + root), 0.0, 1.0) : 0;
+        const V3d along = e + v * g, from = h - v * f;
+        const double length2 = along.dot(along);
+        p = {static_cast<float>(length2 > 0 ? from.dot(along) / length2 : 0), static_cast<float>(v)};
     }
     p.u = std::clamp(p.u, 0.0f, 1.0f);
     p.v = std::clamp(p.v, 0.0f, triangle_ ? 1.0f - p.u : 1.0f);

@@ -117,7 +117,8 @@ double default_element_size(const Scene& scene) {
     std::sort(areas.begin(), areas.end());
     double below = 0;
     for (const float area : areas)
-        if ((below += area) >= all / 2) return std::min(largest, std::sqrt(static_cast<double>(area)) / typical_side_over_size);
+        if ((below += area) >= all / 2)
+            return std::min(largest, std::sqrt(static_cast<double>(area)) / typical_side_over_size);
     return largest;
 }
 

@@ -11,8 +11,9 @@
 namespace interflect {
 
 /// What the rays of a step bring to elements, as integers in units of the step's, so that the order of arrival does not
-/// matter: three channels of power, the square of its luminance, then importance. Every thread collects arrivals in a Sorter of its own, which hands
-/// them on by the hundred and by region of the forest: no addition is atomic, and those of one lot are close together.
+/// matter: three channels of power, the square of its luminance, then importance. Every thread collects arrivals in a
+/// Sorter of its own, which hands them on by the hundred and by region of the forest: no addition is atomic, and those
+/// of one lot are close together.
 class Arrivals {
   public:
     static constexpr std::size_t of_power = 4, importance = 4;  // how many come first; which is the last

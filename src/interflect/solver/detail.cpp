@@ -35,24 +35,37 @@ AddedError added_error(const Run& run, const Detail& detail) {
     return {noise, detail.risk() - noise};
 }
 
-/// Mean square errors of every element, and of what its siblings tell.
+/// Pixels are averages: what is left of the mean square of a quantity that is constant over squares of one area and
+/// independent from one to the next, averaged over squares of another, placed anywhere.
+float left_by_pixels(float area, float pixel_area) {
+    const float r = std::sqrt(area / pixel_area);
+    const float along_one_side = r > 1 ? 1 - 1 / (3 * r) : r * (1 - r / 3);
+    return along_one_side * along_one_side;
+}
+
+/// Mean square errors of every element; bias may be negative.
 struct ElementErrors {
-    std::vector<float> noise, bias;  // by element; bias may be negative
+    std::vector<float> noise, bias;
 };
 
-ElementErrors element_errors(const Run& run) {
+/// @param of_pixels  Of what a view shows of the element in its pixels, rather than of the element itself.
+ElementErrors element_errors(const Run& run, bool of_pixels) {
     const ElementForest& forest = *run.forest;
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
+    const auto left = [&](std::uint32_t e) {
+        return of_pixels ? left_by_pixels(forest.area(e), pixel_area(run, e)) : 1.0f;
+    };
     for (std::uint32_t root = 0; root < forest.patch_count(); ++root)
-        errors.noise[root] = run.noise.variance(forest, root, std::max(run.history[root], 1.0f));
+        errors.noise[root] = run.noise.variance(forest, root, std::max(run.history[root], 1.0f)) * left(root);
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const auto [noise, bias] = added_error(run, detail_of(run, first));
         const std::uint32_t parent = forest.parent(first);
+        const float share = left(first);
         for (std::uint32_t e = first; e < first + 4; ++e) {
-            errors.noise[e] = errors.noise[parent] + noise;
-            errors.bias[e] = errors.bias[parent] + bias;
+            errors.noise[e] = errors.noise[parent] + share * noise;
+            errors.bias[e] = errors.bias[parent] + share * bias;
         }
     });
     return errors;
@@ -103,7 +116,7 @@ Sums sum_errors(const Run& run, const ElementErrors& errors) {
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
             // What varies within a pixel is no error of the picture.
-            const double resolved = run.view.empty() ? 1 : std::max(0.0f, 1 - smallest_area(run, e) / forest.area(e));
+            const double resolved = run.view.empty() ? 1 : std::max(0.0f, 1 - pixel_area(run, e) / forest.area(e));
             if (e < forest.patch_count()) {
                 sums.assumed += w * resolved * std::pow(assumed_variation * h, 2);
                 continue;
@@ -156,7 +169,7 @@ SolutionError solution_error(const Run& run) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double mean = error_reference(run);
     if (!run.noise.is_known() || !(mean > 0)) return {infinity, infinity};
-    const Sums sums = sum_errors(run, element_errors(run));
+    const Sums sums = sum_errors(run, element_errors(run, !run.view.empty()));
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = run.view.empty() ? sums.weight : 1;
     const double decay = decay_of(sums);
@@ -190,7 +203,7 @@ double error_weight(const Run& run, std::uint32_t element) {
 void finish_solution(Run& run) {
     const ElementForest& forest = *run.forest;
     Solution& solution = run.solution;
-    const ElementErrors errors = element_errors(run);
+    const ElementErrors errors = element_errors(run, false);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {

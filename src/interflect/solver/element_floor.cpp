@@ -24,16 +24,19 @@ ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options) : is
     }
 }
 
-float ElementFloor::smallest_area(const V3f& centre, const V3f& normal, bool is_seen) const {
-    if (!is_seen || is_given_ || eyes_.empty()) return unseen_;
+float ElementFloor::pixel_area(const V3f& centre, const V3f& normal) const {
     float smallest = std::numeric_limits<float>::infinity();
     for (const auto& [eye, pixel] : eyes_) {
         const V3f d = centre - eye;
         const float width = pixel * d.length();
-        const float cosine = std::max(least_cosine, std::abs(normal.dot(d)) / std::max(d.length(), std::numeric_limits<float>::min()));
-        smallest = std::min(smallest, width * width / cosine);
+        const float along_normal = std::abs(normal.dot(d)) / std::max(d.length(), std::numeric_limits<float>::min());
+        smallest = std::min(smallest, width * width / std::max(least_cosine, along_normal));
     }
     return smallest;
+}
+
+float ElementFloor::smallest_area(const V3f& centre, const V3f& normal, bool is_seen) const {
+    return !is_seen || is_given_ || eyes_.empty() ? unseen_ : pixel_area(centre, normal);
 }
 
 }  // namespace interflect

@@ -13,6 +13,9 @@ class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
+    /// The area that a pixel of the nearest view shows of a surface there [m^2]; infinite where there is no view.
+    float pixel_area(const V3f& centre, const V3f& normal) const;
+
     /// @param is_seen  By a view: then the area that a pixel of the nearest view shows there; else as below.
     /// @return         [m^2]; SolveOptions::smallest_area wherever that is given.
     float smallest_area(const V3f& centre, const V3f& normal, bool is_seen) const;

@@ -266,8 +266,7 @@ std::vector<Overload> LinkedElements::overloaded_links() const {
     const ImportanceUse use = importance_use(solution);
     const std::vector<float> psi =
         use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
-    const double threshold = solution.options.epsilon *
-                             reference_power(solution) *
+    const double threshold = solution.options.epsilon * reference_power(solution) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi));
     std::vector<Overload> overloads;
     if (!(threshold > 0)) return overloads;
@@ -363,6 +362,7 @@ Solution solve_by_links(const Scene& scene, const RayCaster& ray_caster, const S
             break;
     }
     run.solution.standard_error.assign(run.forest->size(), 0.0f);
+    run.solution.discretisation_error.assign(run.forest->size(), 0.0f);
     run.solution.rays.assign(run.forest->size(), 0.0f);
     return std::move(run.solution);
 }

@@ -53,7 +53,8 @@ void merge_into(const Run& run, std::vector<T>& mean, const std::vector<T>& rece
 void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan) {
     merge_into(run, mean, received, plan);
 }
-void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan) {
+void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+                   const IterationPlan& plan) {
     const ElementForest& forest = *run.forest;
     const auto rays = static_cast<float>(plan.rays);
     const auto tau = [&](std::uint32_t e) { return rays / (run.history[e] + rays); };

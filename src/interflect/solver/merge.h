@@ -14,9 +14,9 @@ namespace interflect {
 void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan);
 void merge(const Run& run, std::vector<float>& mean, const std::vector<float>& received, const IterationPlan& plan);
 
-/// The same for estimates that are not shot again: how siblings differ from their parent is averaged with a tau of their
-/// own, but as differences, which may make an element's mean negative. So it stays unbiased, and its noise known, where
-/// siblings are young and few rays have reached them.
+/// The same for estimates that are not shot again: how siblings differ from their parent is averaged with a tau of
+/// their own, but as differences, which may make an element's mean negative. So it stays unbiased, and its noise known,
+/// where siblings are young and few rays have reached them.
 void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan);
 
 /// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which

@@ -30,23 +30,24 @@ void NoiseModel::grow(const ElementForest& forest, std::uint32_t first) {
 
 void NoiseModel::add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
                      std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight) {
-    const Spread spread = parallel_sum(forest.size(), elements_at_once, Spread(), [&](std::size_t begin, std::size_t end) {
-        Spread sum;
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const float m = history[e];
-            per_ray_[e] += rays / (rays + std::max(m, rays)) * (rays * fresh.variance[e] - per_ray_[e]);
-            if (iterations_ == 0) per_ray_[e] = rays * fresh.variance[e];
-            if (!(m > 0)) continue;
-            float difference = luminance(fresh.irradiance[e]) - luminance(mean[e]);
-            if (const std::uint32_t parent = forest.parent(e); parent != none)
-                difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
-            const double w = weight(e);
-            const auto level = static_cast<std::size_t>(forest.level(e));
-            sum.observed[level] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
-            sum.independent[level] += w * static_cast<double>(independent_variance(forest, e));
-        }
-        return sum;
-    });
+    const Spread spread =
+        parallel_sum(forest.size(), elements_at_once, Spread(), [&](std::size_t begin, std::size_t end) {
+            Spread sum;
+            for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+                const float m = history[e];
+                per_ray_[e] += rays / (rays + std::max(m, rays)) * (rays * fresh.variance[e] - per_ray_[e]);
+                if (iterations_ == 0) per_ray_[e] = rays * fresh.variance[e];
+                if (!(m > 0)) continue;
+                float difference = luminance(fresh.irradiance[e]) - luminance(mean[e]);
+                if (const std::uint32_t parent = forest.parent(e); parent != none)
+                    difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
+                const double w = weight(e);
+                const auto level = static_cast<std::size_t>(forest.level(e));
+                sum.observed[level] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
+                sum.independent[level] += w * static_cast<double>(independent_variance(forest, e));
+            }
+            return sum;
+        });
     ++iterations_;
     if (!is_known()) return;
     for (std::size_t l = 0; l < levels; ++l) {

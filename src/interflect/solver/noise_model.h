@@ -19,7 +19,8 @@ struct FreshEstimate {
 
 /// How noisy the running mean of irradiance is. Of every element it keeps the variance that one ray would cause if rays
 /// arrived independently: that is known from few rays. How much less it is thanks to low-discrepancy points, or more
-/// since noise is reflected on, is told by how much independent iterations differ, for the elements of a level together.
+/// since noise is reflected on, is told by how much independent iterations differ, for the elements of a level
+/// together.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }

@@ -72,7 +72,8 @@ void start_importance(Run& run, std::int64_t rays) {
     BounceBudget budget(rays, 0);
     std::vector<float> unshot = solution.view_importance;
     for (double left = 1; left > negligible_importance && !budget.is_last();) {
-        TransportStep step = importance_step(run.surfaces, solution, Importance(unshot), std::max<std::int64_t>(1, budget.next(left)));
+        TransportStep step =
+            importance_step(run.surfaces, solution, Importance(unshot), std::max<std::int64_t>(1, budget.next(left)));
         run.importance_rays += step.rays;
         unshot = run_step(run, std::move(step)).importance;
         left = 0;  // of the reflected importance; at first all of V is to be shot
@@ -92,6 +93,25 @@ std::vector<Rgb> handed_on(PassState& state, std::size_t elements, std::int64_t 
     return unshot;
 }
 
+/// Traces one bounce and adds it to the pass. @return What is to be shot next: what it brought.
+std::vector<Rgb> trace_bounce(Run& run, TransportStep step, FreshEstimate& pass, RgbD& escaped_power) {
+    const bool carries_importance = step.carries_importance();
+    const IterationPlan plan{step.rays, false};
+    const double share = carries_importance ? run.options.alpha : 0;
+    const std::int64_t for_importance = std::llround(share * static_cast<double>(step.rays));
+    run.importance_rays += for_importance;
+    run.power_rays += step.rays - for_importance;
+    const std::uint32_t before = run.forest->size();
+    Received received = run_step(run, std::move(step));
+    escaped_power += received.escaped_power;
+    run.quanta += received.quanta;
+    inherit(*run.forest, before, pass.irradiance);
+    inherit(*run.forest, before, pass.variance);
+    add(pass, received);
+    if (carries_importance) merge(run, run.solution.indirect_importance, received.importance, plan);
+    return std::move(received.irradiance);
+}
+
 }  // namespace
 
 FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool oracle_refines, RgbD& escaped_power) {
@@ -101,37 +121,24 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
     FreshEstimate fresh{std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
     std::vector<Rgb> unshot = handed_on(state, run.forest->size(), rays);
     PowerStep first;
-    double bounces = 0;
     run.quanta = {};
+    state.bounces = 0;
     for (bool emits = true; !budget.is_last(); emits = false) {
+        // Importance is carried on by the first bounce alone, which has the most rays.
         const Light light(run.surfaces, unshot, emits);
         PowerStep bounce = power_step(run.surfaces, solution, light, carries_importance && emits, 0);
-        if (emits) first = PowerStep{{}, bounce.power, bounce.driven_power};
+        if (emits) first = {{}, bounce.power, bounce.driven_power};
         const double weight = unshot_weight(bounce, first, run.options.beta);
-        bounce.step.rays = budget.next(weight);
-        if (bounce.step.rays == 0 || !(bounce.power > 0)) break;
-        bounces += weight;
-        const std::int64_t for_importance =
-            bounce.step.carries_importance() ? std::llround(run.options.alpha * static_cast<double>(bounce.step.rays)) : 0;
-        run.importance_rays += for_importance;
-        run.power_rays += bounce.step.rays - for_importance;
+        bounce.step.rays = bounce.power > 0 ? budget.next(weight) : 0;
+        if (bounce.step.rays == 0) break;
+        state.bounces += weight;
         bounce.step.known_light = Light(run.surfaces, solution.irradiance);
-        if (oracle_refines) bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
-        const bool brings_importance = bounce.step.carries_importance();
-        const IterationPlan plan{bounce.step.rays, false};
-        const std::uint32_t before = run.forest->size();
-        Received received = run_step(run, std::move(bounce.step));
-        escaped_power += received.escaped_power;
-        run.quanta += received.quanta;
-        inherit(*run.forest, before, fresh.irradiance);
-        inherit(*run.forest, before, fresh.variance);
-        add(fresh, received);
-        if (brings_importance) merge(run, solution.indirect_importance, received.importance, plan);
-        unshot = std::move(received.irradiance);
+        if (oracle_refines)
+            bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
+        unshot = trace_bounce(run, std::move(bounce.step), fresh, escaped_power);
     }
     state.unshot = std::move(unshot);
     state.unshot_rays = static_cast<double>(rays);
-    state.bounces = bounces;
     return fresh;
 }
 
@@ -167,8 +174,10 @@ void make_first_estimate(Run& run) {
 RgbD iterate_pass(Run& run, PassState& state, IterationPlan& plan) {
     RgbD escaped_power(0, 0, 0);
     const std::int64_t rays_before = run.power_rays + run.importance_rays;
-    const bool has_importance_step = importance_use(run.solution) == ImportanceUse::full && run.options.separate_iterations;
-    const std::int64_t for_importance = has_importance_step ? std::llround(run.options.alpha * static_cast<double>(plan.rays)) : 0;
+    const bool has_importance_step =
+        importance_use(run.solution) == ImportanceUse::full && run.options.separate_iterations;
+    const std::int64_t for_importance =
+        has_importance_step ? std::llround(run.options.alpha * static_cast<double>(plan.rays)) : 0;
     if (for_importance > 0) {
         const Importance psi = importance_of(run.solution);
         const Received received = run_step(run, importance_step(run.surfaces, run.solution, psi, for_importance));

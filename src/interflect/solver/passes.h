@@ -25,8 +25,8 @@ struct PassState {
 /// @return                Of every element.
 FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool oracle_refines, RgbD& escaped_power);
 
-/// Finds importance and, where the method refines, an initial mesh by Eq. 14 and 15, from two small passes. The light of
-/// the second is the estimate until passes are merged, but none of it counts then.
+/// Finds importance and, where the method refines, an initial mesh by Eq. 14 and 15, from two small passes. The light
+/// of the second is the estimate until passes are merged, but none of it counts then.
 /// @return The state that the first pass begins with.
 PassState prepare_passes(Run& run);
 

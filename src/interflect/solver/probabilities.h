@@ -38,8 +38,8 @@ struct Shares {
 
 /// Who gets rays.
 struct Mixture {
-    std::vector<float> q;          ///< Of every element, 0 for inner ones; they sum to the shares that are used.
-    std::int64_t lost_leaves = 0;  ///< Those whose radiosity is not finite: nothing is shot from there.
+    std::vector<float> q;                ///< Of every element, 0 for inner ones; they sum to the shares that are used.
+    std::int64_t lost_leaves = 0;        ///< Those whose radiosity is not finite: nothing is shot from there.
     double power = 0, driven_power = 0;  ///< Sums of these weights over the leaves, before they were normalised.
 };
 Mixture mixture(const Sampled& sampled, const Shares& shares);

@@ -32,7 +32,8 @@ double Quanta::quantile_over_mean(double share) const {
     const double exceeding = share * static_cast<double>(count_);
     double above = 0;
     std::size_t bin = rays_.size();
-    while (bin > 0 && above + static_cast<double>(rays_[bin - 1]) <= exceeding) above += static_cast<double>(rays_[--bin]);
+    while (bin > 0 && above + static_cast<double>(rays_[bin - 1]) <= exceeding)
+        above += static_cast<double>(rays_[--bin]);
     const double upper_end = std::exp2((static_cast<double>(bin) - bins / 2) / bins_per_octave);
     return std::min(upper_end, largest_) / power_ * static_cast<double>(count_);
 }

@@ -54,7 +54,8 @@ void Receiver::find_way_to_leaf(std::uint32_t leaf) {
     way_ = static_cast<std::uint32_t>(ways_.size());
     for (int digit = std::bit_width(path) - 1;;) {
         const V3f centre = geometry.point(cell.centre(geometry.is_triangle()));
-        ways_.push_back({element, cell, centre, forest_.area(element), step_.light_for_oracle().radiosity(material, element)});
+        ways_.push_back(
+            {element, cell, centre, forest_.area(element), step_.light_for_oracle().radiosity(material, element)});
         if (digit == 0) break;
         digit -= 2;
         const unsigned k = path >> digit & 3u;

@@ -22,6 +22,11 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     return std::min(largest, options.most_elements + excess);
 }
 
+V3f centre_of(const ElementForest& forest, std::uint32_t element) {
+    const PatchGeometry& geometry = forest.geometry(forest.patch(element));
+    return geometry.point(forest.cell(element).centre(geometry.is_triangle()));
+}
+
 }  // namespace
 
 Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m)
@@ -55,12 +60,14 @@ Received run_step(Run& run, TransportStep step) {
 }
 
 float smallest_area(const Run& run, std::uint32_t element) {
-    const ElementForest& forest = *run.forest;
-    const std::uint32_t patch = forest.patch(element);
-    const PatchGeometry& geometry = forest.geometry(patch);
+    const std::uint32_t patch = run.forest->patch(element);
     const bool is_seen = !run.view.empty() && run.solution.view_importance[patch] > 0;
-    const V3f centre = geometry.point(forest.cell(element).centre(geometry.is_triangle()));
-    return run.floor.smallest_area(centre, geometry.normal(), is_seen);
+    return run.floor.smallest_area(centre_of(*run.forest, element), run.forest->geometry(patch).normal(), is_seen);
+}
+
+float pixel_area(const Run& run, std::uint32_t element) {
+    const V3f normal = run.forest->geometry(run.forest->patch(element)).normal();
+    return run.floor.pixel_area(centre_of(*run.forest, element), normal);
 }
 
 void grow_with_forest(Run& run, std::uint32_t first) {

@@ -31,9 +31,9 @@ struct Run {
     SampleStreams streams;
     Schedule schedule;
     Solution solution;
-    std::vector<float> history;   // of each element: rays that its mean stands for
+    std::vector<float> history;  // of each element: rays that its mean stands for
     NoiseModel noise;
-    Quanta quanta;                // of the last iteration
+    Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     Clock::time_point start = Clock::now();
 
@@ -45,8 +45,9 @@ struct Run {
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest.
 Received run_step(Run& run, TransportStep step);
 
-/// The smallest area that an element's parts may have, by ElementFloor [m^2].
+/// The smallest area that an element's parts may have, and the area that a pixel shows there: see ElementFloor [m^2].
 float smallest_area(const Run& run, std::uint32_t element);
+float pixel_area(const Run& run, std::uint32_t element);
 
 /// Gives elements from `first` on, made since, what their parents have.
 void grow_with_forest(Run& run, std::uint32_t first);

@@ -92,8 +92,8 @@ struct SolveOptions {
     /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
     /// 1]. At 0 it is the same for all iterations, as in the paper.
     double epsilon_decay = 0.75;
-    /// No element smaller than this [m^2]; >= 0. 0: with a view, the area that a pixel shows of the element; of elements
-    /// that no view shows, and without a view, see ElementFloor.
+    /// No element smaller than this [m^2]; >= 0. 0: with a view, the area that a pixel shows of the element; of
+    /// elements that no view shows, and without a view, see ElementFloor.
     double smallest_area = 0;
     std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
@@ -138,12 +138,12 @@ struct IterationReport {
 /// elements have the mean of their children.
 struct Solution {
     std::shared_ptr<const ElementForest> forest;
-    std::vector<Rgb> irradiance;             ///< H [lm/m^2 or W/m^2].
-    std::vector<float> view_importance;      ///< v; empty where there is no view.
-    std::vector<float> indirect_importance;  ///< psi - v; likewise.
-    std::vector<float> standard_error;       ///< Estimated, of the luminance of H [as H].
+    std::vector<Rgb> irradiance;              ///< H [lm/m^2 or W/m^2].
+    std::vector<float> view_importance;       ///< v; empty where there is no view.
+    std::vector<float> indirect_importance;   ///< psi - v; likewise.
+    std::vector<float> standard_error;        ///< Estimated, of the luminance of H [as H].
     std::vector<float> discretisation_error;  ///< Estimated: how far H within the element is from its mean [as H].
-    std::vector<float> rays;                 ///< How many started on it.
+    std::vector<float> rays;                  ///< How many started on it.
     SolveOptions options;
     std::vector<IterationReport> iterations;
     RgbD emitted_power{0, 0, 0};  ///< Sum of W [lm or W].

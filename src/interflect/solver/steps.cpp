@@ -51,14 +51,14 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined,
-                     std::int64_t rays) {
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined, std::int64_t rays) {
     TransportStep step;
     const Shares shares = power_step_shares(so_far, combined);
     const std::vector<float> drives = shares.driven_power > 0 ? driver(so_far) : std::vector<float>();
     step.light = step.known_light = light;
     if (combined) step.importance = importance_of(so_far);
-    auto [q, lost_leaves, power, driven_power] = mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
+    auto [q, lost_leaves, power, driven_power] =
+        mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;

@@ -43,10 +43,10 @@ TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, 
 /// @param rays  That irradiance is the mean of, after this step; > 0. The more, the lower the threshold.
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double smallest_area);
 
-/// The power that the oracle's threshold is relative to [lm or W]. With a view: what arrives at the surfaces it sees, as
-/// if all were lit as they are on average; so it depends neither on lamps in the picture nor on lights elsewhere, nor on
-/// how an emitter is divided, nor (times a length squared on both sides of Eq. 14) on the unit of length. Without a view,
-/// and as long as what it sees is dark: all emitted power.
+/// The power that the oracle's threshold is relative to [lm or W]. With a view: what arrives at the surfaces it sees,
+/// as if all were lit as they are on average; so it depends neither on lamps in the picture nor on lights elsewhere,
+/// nor on how an emitter is divided, nor (times a length squared on both sides of Eq. 14) on the unit of length.
+/// Without a view, and as long as what it sees is dark: all emitted power.
 double reference_power(const Solution& so_far);
 
 /// psi_max of Eq. 15: the area-weighted mean of psi over the patches that the view sees [1/m^2].

@@ -115,7 +115,7 @@ class Carried {
 /// What all rays of a step carry together.
 struct Totals {
     RgbD power{0, 0, 0};  ///< [lm or W]
-    double square = 0;  ///< Of the luminance of each ray's power, summed.
+    double square = 0;    ///< Of the luminance of each ray's power, summed.
     double importance = 0;
     Quanta quanta;
 
@@ -153,8 +153,7 @@ Totals all_carried(const TransportStep& step, const RayAllocation& allocation, c
 struct Units {
     FixedPoint power, square, importance;
 
-    explicit Units(const Totals& all)
-        : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
+    explicit Units(const Totals& all) : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
 
     Arrivals::Load load(const TransportStep& step, const Carried& carried, std::uint32_t leaf) const {
         Arrivals::Load load{};

@@ -36,7 +36,8 @@ struct TransportStep {
     Importance importance;  ///< psi, as it is reflected and shot on; empty: rays carry none.
     bool carries_power() const { return !light.empty(); }
     bool carries_importance() const { return !importance.empty(); }
-    Light known_light;  ///< What the oracle takes to leave the elements, be it shot in this step or not; empty: `light`.
+    Light
+        known_light;  ///< What the oracle takes to leave the elements, be it shot in this step or not; empty: `light`.
     const Light& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
@@ -44,7 +45,7 @@ struct TransportStep {
 
 /// What one step brought, for every element of the (grown) forest.
 struct Received {
-    std::vector<Rgb> irradiance;    ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
+    std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
     /// Estimated variance of the luminance of that: as if rays arrived independently of each other (Poisson).
     std::vector<float> variance;
     std::vector<float> importance;  ///< Importance per area, likewise; empty unless the step carried it.

@@ -18,12 +18,12 @@ constexpr float expected_decay = 0.3f;
 constexpr float assumed_square = 0.04f;
 /// Children are made once their expected differences are this share of the noise that they would have with the rays so
 /// far. More rays will come, and until then the differences are reduced to what they are worth.
-constexpr float least_signal = 0.25f;
+constexpr float least_signal = 0.12f;
 /// A leaf is left alone if what splitting it gains is less than this share of the whole squared error.
 constexpr double negligible_gain = 2e-7;
 /// A leaf is split too if it radiates more than this share of all light from other places than it should: what is
 /// reflected from a bright corner of a lamp's housing leaves it less easily than it would from everywhere.
-constexpr double negligible_misplacement = 1e-6;
+constexpr double negligible_misplacement = 1e-7;
 /// How much the squared error of the shape of what is not seen counts beside what is: it reaches the view spread out.
 constexpr double unseen_shape = 0.02;
 
@@ -48,9 +48,11 @@ class VarianceOracle {
             noise = 4 * detail.noise;
         }
         if (!(signal > least_signal * noise)) return false;
-        const bool matters = weight(leaf) * static_cast<double>(signal) > least_gain_ ||
-                             misplaced_power(leaf, signal) > least_misplaced_power_;
-        return matters && is_large_enough(leaf);
+        const bool blurs = weight(leaf) * static_cast<double>(signal) > least_gain_ &&
+                           forest_.area(leaf) >= 4 * smallest_area(run_, leaf);
+        const bool misplaces =
+            misplaced_power(leaf, signal) > least_misplaced_power_ && forest_.area(leaf) >= 4 * run_.floor.unseen();
+        return blurs || misplaces;
     }
 
   private:
@@ -69,7 +71,6 @@ class VarianceOracle {
         const double rho = luminance(run_.surfaces.reflectance(forest_.patch(leaf)));
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi.empty() ? 1.0 : psi[leaf]);
     }
-    bool is_large_enough(std::uint32_t leaf) const { return forest_.area(leaf) >= 4 * smallest_area(run_, leaf); }
     double weighted_mean_square() const {
         const double mean = error_reference(run_);
         double weight = run_.view.empty() ? 0 : 1;
@@ -83,7 +84,8 @@ class VarianceOracle {
         const std::vector<float>& psi = run_.solution.indirect_importance;
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
-            sum += static_cast<double>(luminance(run_.solution.irradiance[i])) * forest_.area(i) * (psi.empty() ? 1.0f : psi[i]);
+            sum += static_cast<double>(luminance(run_.solution.irradiance[i])) * forest_.area(i) *
+                   (psi.empty() ? 1.0f : psi[i]);
         return sum;
     }
 
