@@ -16,6 +16,8 @@ namespace {
 
 /// A pass ends when the next bounce would get fewer rays; what is left to shoot is handed on to the next pass.
 constexpr double fewest_rays_of_bounce = 16;
+/// Or less than this share of the pass's rays, since every bounce takes time for every element.
+constexpr double least_share_of_bounce = 1e-3;
 /// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
 constexpr double assumed_bounces = 2;
 /// Importance is followed at first until this share of it is left.
@@ -24,7 +26,14 @@ constexpr double negligible_importance = 0.005;
 /// Shares the rays of a pass among its bounces.
 class BounceBudget {
   public:
-    BounceBudget(std::int64_t rays, double bounces) : rays_(rays), left_(rays), bounces_(bounces) {}
+    /// @param bounces   Sum over all bounces of what is left to shoot, relative to the first; 0: not known.
+    /// @param is_final  No other pass will shoot what this one leaves.
+    BounceBudget(std::int64_t rays, double bounces, bool is_final)
+        : rays_(rays),
+          left_(rays),
+          bounces_(bounces),
+          fewest_(is_final ? fewest_rays_of_bounce
+                           : std::max(fewest_rays_of_bounce, least_share_of_bounce * static_cast<double>(rays))) {}
 
     /// @param unshot  What is left to shoot, relative to the first bounce.
     /// @return        The rays of the next bounce; all that are left if it is the last; 0 if there are none.
@@ -36,7 +45,7 @@ class BounceBudget {
         const double share = static_cast<double>(rays_) * unshot / (bounces_ > 0 ? bounces_ : assumed_bounces);
         const double rays = first_ && bounces_ > 0 ? share : std::min(share, std::max(affordable, 1.0));
         first_ = false;
-        is_last_ = rays < fewest_rays_of_bounce;
+        is_last_ = rays < fewest_;
         const std::int64_t taken = is_last_ ? left_ : std::min<std::int64_t>(left_, std::llround(rays));
         left_ -= taken;
         return taken;
@@ -45,7 +54,7 @@ class BounceBudget {
 
   private:
     std::int64_t rays_, left_;
-    double bounces_, last_unshot_ = 0;
+    double bounces_, fewest_, last_unshot_ = 0;
     bool first_ = true, is_last_ = false;
 };
 
@@ -69,7 +78,7 @@ void add(FreshEstimate& sum, const Received& received) {
 /// Follows importance bounce by bounce, with so many rays at first; what it finds at each is added to the estimate.
 void start_importance(Run& run, std::int64_t rays) {
     Solution& solution = run.solution;
-    BounceBudget budget(rays, 0);
+    BounceBudget budget(rays, 0, true);
     std::vector<float> unshot = solution.view_importance;
     for (double left = 1; left > negligible_importance && !budget.is_last();) {
         TransportStep step =
@@ -96,7 +105,7 @@ std::vector<Rgb> handed_on(PassState& state, std::size_t elements, std::int64_t 
 /// Traces one bounce and adds it to the pass. @return What is to be shot next: what it brought.
 std::vector<Rgb> trace_bounce(Run& run, TransportStep step, FreshEstimate& pass, RgbD& escaped_power) {
     const bool carries_importance = step.carries_importance();
-    const IterationPlan plan{step.rays, false};
+    const IterationPlan plan{.rays = step.rays};
     const double share = carries_importance ? run.options.alpha : 0;
     const std::int64_t for_importance = std::llround(share * static_cast<double>(step.rays));
     run.importance_rays += for_importance;
@@ -117,28 +126,32 @@ std::vector<Rgb> trace_bounce(Run& run, TransportStep step, FreshEstimate& pass,
 FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool oracle_refines, RgbD& escaped_power) {
     Solution& solution = run.solution;
     const bool carries_importance = importance_use(solution) == ImportanceUse::full && !run.options.separate_iterations;
-    BounceBudget budget(rays, state.bounces);
+    BounceBudget budget(rays, state.bounces, state.is_final);
     FreshEstimate fresh{std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
     std::vector<Rgb> unshot = handed_on(state, run.forest->size(), rays);
+    std::vector<float> driver = power_driver(solution);
     PowerStep first;
     run.quanta = {};
     state.bounces = 0;
     for (bool emits = true; !budget.is_last(); emits = false) {
         // Importance is carried on by the first bounce alone, which has the most rays.
         const Light light(run.surfaces, unshot, emits);
-        PowerStep bounce = power_step(run.surfaces, solution, light, carries_importance && emits, 0);
+        PowerStep bounce = power_step(run.surfaces, solution, light, driver, carries_importance && emits, 0);
         if (emits) first = {{}, bounce.power, bounce.driven_power};
         const double weight = unshot_weight(bounce, first, run.options.beta);
         bounce.step.rays = bounce.power > 0 ? budget.next(weight) : 0;
         if (bounce.step.rays == 0) break;
         state.bounces += weight;
         bounce.step.known_light = Light(run.surfaces, solution.irradiance);
+        bounce.step.leaves_only = !oracle_refines;
         if (oracle_refines)
             bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
         unshot = trace_bounce(run, std::move(bounce.step), fresh, escaped_power);
+        if (!driver.empty()) inherit(*run.forest, static_cast<std::uint32_t>(driver.size()), driver);
     }
     state.unshot = std::move(unshot);
     state.unshot_rays = static_cast<double>(rays);
+    if (!oracle_refines) pull(*run.forest, fresh.irradiance), pull_variance(*run.forest, fresh.variance);
     return fresh;
 }
 
@@ -163,6 +176,7 @@ PassState prepare_passes(Run& run) {
 
 void make_first_estimate(Run& run) {
     PassState state = prepare_passes(run);
+    state.is_final = true;
     if (run.power_rays == 0) {
         RgbD escaped_power(0, 0, 0);
         run.solution.irradiance = trace_pass(run, state, run.schedule.start_rays(), false, escaped_power).irradiance;
@@ -185,6 +199,7 @@ RgbD iterate_pass(Run& run, PassState& state, IterationPlan& plan) {
         run.importance_rays += for_importance;
     }
     if (plan.rays == for_importance) return escaped_power;
+    state.is_final = plan.is_final;
     const bool by_power = run.options.method.refines && !refines_by_variance(run.options);
     const std::uint32_t before = run.forest->size();
     const FreshEstimate fresh = trace_pass(run, state, plan.rays - for_importance, by_power, escaped_power);

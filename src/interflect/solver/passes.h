@@ -15,6 +15,7 @@ struct PassState {
     /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
     /// Tells how many rays a bounce may have.
     double bounces = 0;
+    bool is_final = false;  ///< The next pass is the last one.
 };
 
 /// One pass: shoots what the emitters emit, then what that brought, and so on, bounce by bounce, until little is left

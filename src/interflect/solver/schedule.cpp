@@ -49,7 +49,7 @@ IterationPlan Schedule::next(double seconds) const {
     // What would remain for a last iteration of less than half the size goes into this one.
     if (left < rays + rays / 2) rays = left;
     if (rays <= 0) return {};
-    return {rays, warming_up};
+    return {rays, warming_up, rays == left};
 }
 
 void Schedule::done(const IterationPlan& plan) {

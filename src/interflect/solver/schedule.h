@@ -10,6 +10,7 @@ namespace interflect {
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
     bool warms_up = false;  ///< It is not averaged: the next one takes its place.
+    bool is_final = false;  ///< It has all rays that are left.
 };
 
 /// How many rays the next iteration gets. Iterations are averaged by their ray counts, tau = N_m / (N_1 + ... + N_m) in

@@ -12,15 +12,6 @@ namespace {
 /// SolveOptions::epsilon is the threshold after so many rays.
 constexpr double rays_at_epsilon = 20e6;
 
-/// What drives the rays of power, of every element: what is seen, or total or indirect importance.
-std::vector<float> driver(const Solution& so_far) {
-    const SolveOptions& o = so_far.options;
-    const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
-                           : o.total_importance                            ? importance_of(so_far)
-                                                                           : Importance(so_far.indirect_importance);
-    return driving_importance(*so_far.forest, psi, o.importance_smoothing, o.importance_exponent);
-}
-
 /// How the rays of a step that carries power are shared: Eq. 3, 9, 10, and 11 where it carries importance too.
 Shares power_step_shares(const Solution& so_far, bool combined) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
@@ -51,14 +42,23 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined, std::int64_t rays) {
+std::vector<float> power_driver(const Solution& so_far) {
+    const SolveOptions& o = so_far.options;
+    if (power_step_shares(so_far, false).driven_power == 0) return {};
+    const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
+                           : o.total_importance                            ? importance_of(so_far)
+                                                                           : Importance(so_far.indirect_importance);
+    return driving_importance(*so_far.forest, psi, o.importance_smoothing, o.importance_exponent);
+}
+
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, std::span<const float> driver,
+                     bool combined, std::int64_t rays) {
     TransportStep step;
     const Shares shares = power_step_shares(so_far, combined);
-    const std::vector<float> drives = shares.driven_power > 0 ? driver(so_far) : std::vector<float>();
     step.light = step.known_light = light;
     if (combined) step.importance = importance_of(so_far);
     auto [q, lost_leaves, power, driven_power] =
-        mixture({surfaces, *so_far.forest, light, step.importance, drives}, shares);
+        mixture({surfaces, *so_far.forest, light, step.importance, driver}, shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;

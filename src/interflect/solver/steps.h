@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interflect/solver/solve.h"
@@ -20,6 +21,10 @@ Importance importance_of(const Solution& so_far);
 /// The same, added up.
 std::vector<float> total_importance(const Solution& so_far);
 
+/// The importance that drives the rays of power, of every element, as the method and the options ask for; empty where
+/// none does.
+std::vector<float> power_driver(const Solution& so_far);
+
 /// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
 /// drives rays (Eq. 9, 10; 0 where none does).
 struct PowerStep {
@@ -31,8 +36,10 @@ struct PowerStep {
 /// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
 /// alone. No oracle is set.
 /// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
+/// @param driver  power_driver(so_far).
 /// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, bool combined, std::int64_t rays);
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, std::span<const float> driver,
+                     bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
 /// it.

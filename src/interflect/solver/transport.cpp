@@ -217,18 +217,6 @@ void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_eleme
     }
 }
 
-/// The variance of the area-weighted mean of elements whose values are independent, from the leaves up.
-void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
-        float sum = 0, area = 0;
-        for (std::uint32_t e = first; e < first + 4; ++e) {
-            sum += variance[e] * forest.area(e) * forest.area(e);
-            area += forest.area(e);
-        }
-        variance[forest.parent(first)] = sum / (area * area);
-    });
-}
-
 /// Turns sums of arrivals into what each element receives, per unit of area, from its own and its ancestors' arrivals.
 void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
@@ -248,7 +236,7 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
         }
         arrived.release(begin, end);
     });
-    if (step.carries_power()) {
+    if (step.carries_power() && !step.leaves_only) {
         push(forest, received.irradiance), pull(forest, received.irradiance);
         push(forest, received.variance), pull_variance(forest, received.variance);
     }

@@ -41,6 +41,8 @@ struct TransportStep {
     const Light& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
+    /// What inner elements receive is of no interest: it stays 0. Not with an oracle that refines.
+    bool leaves_only = false;
 };
 
 /// What one step brought, for every element of the (grown) forest.
@@ -69,6 +71,18 @@ struct Received {
 /// received.
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
+
+/// The variance of the area-weighted mean of elements whose values are independent, from the leaves up.
+inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
+    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+        float sum = 0, area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            sum += variance[e] * forest.area(e) * forest.area(e);
+            area += forest.area(e);
+        }
+        variance[forest.parent(first)] = sum / (area * area);
+    });
+}
 
 /// The rays that transport() would trace, in its order.
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,

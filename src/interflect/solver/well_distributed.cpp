@@ -15,7 +15,7 @@ WellDistributedRays::WellDistributedRays(const Run& run)
 RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     const ElementForest& forest = *run.forest;
     const Light light(run.surfaces, run.solution.irradiance);
-    TransportStep step = power_step(run.surfaces, run.solution, light, false, plan.rays).step;
+    TransportStep step = power_step(run.surfaces, run.solution, light, {}, false, plan.rays).step;
     step.equal_quanta = true;
     // These methods know no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(forest, light));
