@@ -60,7 +60,7 @@ class LongRuns(MemoryCase):
     REPORT = 200  # bytes that are kept for each, with room to spare
 
     def peak_after(self, iterations):
-        few = ("--no-incremental-start", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
+        few = ("--one-bounce", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
         mesh = ("--view", "room-0", "--mesh-size", "0.2", "--epsilon", "1e-3")  # no elements are made on the way
         return self.peak("solve", "maze:2", "-o", str(self.folder / "out.h5"), *mesh, *few)[0]
 

@@ -67,7 +67,8 @@ class Statistics(CommandTest):
             self.assertEqual(
                 list(line),
                 ["iteration", "seconds", "rays", "power_rays", "importance_rays", "elements", "leaves"]
-                + ["total_power", "escaped_power", "error_estimate"],
+                + ["total_power", "escaped_power", "error_estimate", "noise_estimate", "discretisation_estimate"]
+                + ["largest_quantum", "high_quantum"],
             )
             self.assertEqual(line["power_rays"] + line["importance_rays"], line["rays"])
             self.assertEqual(line["escaped_power"], [0, 0, 0])  # the room is closed
