@@ -6,7 +6,7 @@ import unittest
 
 from command import BAD_INPUT, COMMAND, DONE, CommandTest
 
-FINE = ("--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
+FINE = ("--refinement", "power", "--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
 MIB = 1 << 20
 
 
