@@ -4,7 +4,7 @@
 //
 // Seen to fail: noise that forgets how few rays the iteration has, scale of one level for all, inner elements without
 // the factor 3/4; risk without its last term; differences merged with the tau of the patches, siblings scaled to their
-// parent's mean as by merge() (negative control below); a split criterion without noise, or without signal.
+// parent's mean as by merge() (negative control below); new elements that trust in full what they inherit; a split criterion without noise, or without signal.
 
 #include "interflect/solver/detail.h"
 
@@ -190,6 +190,26 @@ TEST(MergeDetails, IsUnbiasedForYoungSiblings) {
         EXPECT_GT(4 * t_test(merged[k], k == 0 ? 4 : 0), false_alarm) << k;
         EXPECT_LT(4 * t_test(merged[k], k == 0 ? 4.3 : 0.3), false_alarm) << k << ": would notice 0.3";
         EXPECT_LT(4 * t_test(scaled[k], k == 0 ? 4 : 0), false_alarm) << k << ": scaling is biased";
+    }
+}
+
+TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
+    constexpr std::uint32_t patches = 6;
+    const IterationPlan plan{100, false};
+    for (const float trust : {0.0f, 0.1f, 1.0f}) {
+        Setting s(1, 1);
+        s.options.inherited_trust = trust;
+        std::vector<Rgb>& mean = s.run.solution.irradiance;
+        mean.assign(mean.size(), Rgb(1));
+        remember(s.run, plan, patches);  // what the first iteration brought; elements below the patches were made in it
+        std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
+        for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
+        pull(*s.run.forest, received);
+        merge(s.run, mean, received, plan);
+        EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
+        const float missed = trust / (1 + trust), others = (trust + 4.0f / 3) / (1 + trust);
+        EXPECT_NEAR(mean[patches].x, missed, 1e-5);
+        EXPECT_NEAR(mean[patches + 1].x, others, 1e-5);
     }
 }
 

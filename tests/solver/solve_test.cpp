@@ -117,12 +117,13 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
 TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
     const Scene scene = colourful_box();
     for (const char* method : {"srr", "hsrr", "ihsrr"})
-        for (const std::int64_t rays : {1, 2, 3, 4, 7, 1000, 123'457})
+        for (const std::int64_t rays : {1, 2, 3, 4, 7, 12'345})
             for (const bool complete_passes : {true, false})
                 for (const std::int64_t per_iteration : {0, 500'000}) {
                     SolveOptions options = with_rays(rays);
                     options.method = find_method(method);
                     options.views = {{into_the_corner}};
+                    options.eye_rays = 1000;
                     options.complete_passes = complete_passes;
                     options.rays_per_iteration = per_iteration;
                     const Solution solution = solve(scene, options);
