@@ -248,15 +248,12 @@ TEST(LinkRadiosity, FindsTheShadowOfABoard) {
 }
 
 TEST(LinkRadiosity, FindsLightThatTheFirstLinesMissed) {
-    for (double w : {0.003, 0.01, 0.02})
-        for (double eps : {1e-4, 1e-5, 3e-6, 1e-6}) {
-            Scene scene = lamp_over_floor();
-            add_board(scene, -9, 0.3f);
-            add_board(scene, 0.3f + (float)w, 10);
-            SolveOptions o = refined_to(eps);
-            const Solution s = solve_scene(scene, o);
-            std::printf("TMP w %g eps %g: unref %g  %g of %u rays %ld\n", w, eps, (double)solve_scene(scene, unrefined()).irradiance[1].x, s.irradiance[1].x / expected_through_slit(0.3, 0.3+w), s.forest->size(), (long)s.iterations.back().rays);
-        }
+    Scene scene = lamp_over_floor();
+    add_board(scene, -9, 0.3f);
+    add_board(scene, 0.301f, 10);
+    EXPECT_EQ(solve_scene(scene, unrefined()).irradiance[1], Rgb(0));
+    // So narrow a slit is found once elements are about as small as they may be, 5 mm.
+    EXPECT_NEAR(solve_scene(scene, refined_to(1e-6)).irradiance[1].x / expected_through_slit(0.3, 0.301), 1, 0.2);
 }
 
 TEST(LinkRadiosity, WhatReflectsNothingIsNotRefined) {
