@@ -65,10 +65,13 @@ TEST_P(SealedRooms, StayDarkWhenCutAtContacts) {
 }
 
 TEST_P(SealedRooms, LeakWithoutCuts) {
-    // On a fine mesh little: elements that lie on both sides are small. So the mesh is kept coarse.
+    // On a fine mesh little: elements that lie on both sides are small. So the mesh is kept coarse. A straight wall
+    // stands where elements meet, and hardly leaks even then.
     constexpr double smallest_area = 0.25;  // [m^2]
     EXPECT_GT(leak(GetParam().rooms, false), 5 * leak(GetParam().rooms, true));
-    EXPECT_GT(leak(GetParam().rooms, false, smallest_area), 0.01);
+    if (GetParam().rooms.turn != 0) {
+        EXPECT_GT(leak(GetParam().rooms, false, smallest_area), 0.01);
+    }
     EXPECT_LT(leak(GetParam().rooms, true, smallest_area), 0.001);
 }
 
