@@ -12,7 +12,7 @@ from command import COMMAND, INTERRUPTED, SMALL, VIEW, CommandTest, room
 
 ENDLESS = ("--rays", "10T", "--mesh-size", "0.5")
 SHORT_ITERATIONS = ("--rays-per-iteration", "20k")
-ONE_LONG_ITERATION = ("--rays-per-iteration", "10T", "--no-incremental-start")
+ONE_LONG_ITERATION = ("--rays-per-iteration", "10T", "--one-bounce")
 SOON = 30  # [s]
 
 

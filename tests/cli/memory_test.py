@@ -6,7 +6,7 @@ import unittest
 
 from command import BAD_INPUT, COMMAND, DONE, CommandTest
 
-FINE = ("--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
+FINE = ("--refinement", "power", "--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
 MIB = 1 << 20
 
 
@@ -60,7 +60,7 @@ class LongRuns(MemoryCase):
     REPORT = 200  # bytes that are kept for each, with room to spare
 
     def peak_after(self, iterations):
-        few = ("--no-incremental-start", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
+        few = ("--one-bounce", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
         mesh = ("--view", "room-0", "--mesh-size", "0.2", "--epsilon", "1e-3")  # no elements are made on the way
         return self.peak("solve", "maze:2", "-o", str(self.folder / "out.h5"), *mesh, *few)[0]
 

@@ -4,7 +4,7 @@ import json
 import time
 import unittest
 
-from command import LAMP, CommandTest, room
+from command import LAMP, CommandTest, room, vertices
 
 COARSE = ("--mesh-size", "0.5")
 
@@ -67,7 +67,8 @@ class Statistics(CommandTest):
             self.assertEqual(
                 list(line),
                 ["iteration", "seconds", "rays", "power_rays", "importance_rays", "elements", "leaves"]
-                + ["total_power", "escaped_power", "error_estimate"],
+                + ["total_power", "escaped_power", "error_estimate", "noise_estimate", "discretisation_estimate"]
+                + ["largest_quantum", "high_quantum"],
             )
             self.assertEqual(line["power_rays"] + line["importance_rays"], line["rays"])
             self.assertEqual(line["escaped_power"], [0, 0, 0])  # the room is closed
@@ -108,6 +109,22 @@ class Statistics(CommandTest):
         self.assertGreater(iterations[-1]["seconds"], 0.8 * asked)
         self.assertLess(iterations[-1]["seconds"], 2 * asked)
         self.assertLess(took, 4 * asked)
+
+
+class BlackView(CommandTest):
+    def test_has_no_error_and_says_so(self):
+        """What a view shows reflects nothing: no error is known, and none is small enough for --until."""
+        black = vertices((-1, 4, 0), (3, 4, 0), (3, 4, 3), (-1, 4, 3)) + "m black =\n\trd 0\n"
+        self.write("dark.mgf", room() + black + "f v0 v1 v2 v3\n")
+        view = ("--eye", "1,6,1.5", "--look-at", "1,4,1.5", "--fov", "30")
+        run = ("-o", "out.h5", "--stats", "stats", "--rays", "100k", "--until", "99%", *COARSE)
+        result = self.interflect("solve", "dark.mgf", *view, *run)
+        self.assertEqual(result.stderr.count("the error is not known"), 1, result.stderr)
+        _, *iterations = map(json.loads, (self.folder / "stats").read_text().splitlines())
+        self.assertEqual({line["error_estimate"] for line in iterations}, {None})
+        self.assertEqual(iterations[-1]["rays"], 100_000)
+        inside = ("--eye", "1,2.5,1.5", "--look-at", "1,0,1.2")  # of the room
+        self.assertNotIn("the error is not known", self.interflect("solve", "dark.mgf", *inside, *run).stderr)
 
 
 class Light(CommandTest):

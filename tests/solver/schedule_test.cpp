@@ -95,6 +95,8 @@ TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 10'000) << "an eighth of the budget";
     options.rays_per_iteration = 77;
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 77);
+    options.rays_per_iteration = 1'000'000;
+    EXPECT_EQ(Schedule(options, 100'000).start_rays(), 10'000) << "whatever an iteration has";
 }
 
 TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {

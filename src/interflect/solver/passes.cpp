@@ -20,6 +20,8 @@ constexpr double fewest_rays_of_bounce = 16;
 constexpr double least_share_of_bounce = 1e-3;
 /// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
 constexpr double assumed_bounces = 2;
+/// With fewer rays in all there is none to spare before the first iteration.
+constexpr std::int64_t fewest_rays_with_preparation = 4;
 /// Importance is followed at first until this share of it is left.
 constexpr double negligible_importance = 0.005;
 
@@ -156,9 +158,10 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
 }
 
 PassState prepare_passes(Run& run) {
+    PassState state;
+    if (run.options.rays < fewest_rays_with_preparation) return state;
     const std::int64_t rays = run.schedule.start_rays();
     if (importance_use(run.solution) == ImportanceUse::full) start_importance(run, rays);
-    PassState state;
     RgbD escaped_power(0, 0, 0);
     if (run.options.method.refines) {
         run.solution.irradiance = trace_pass(run, state, rays, false, escaped_power).irradiance;

@@ -25,6 +25,10 @@ Schedule::Schedule(const SolveOptions& options, std::size_t patches) : options_(
         std::min({smallest_, largest_iteration, std::max<std::int64_t>(1, options.rays / budget_over_first_rays)});
 }
 
+std::int64_t Schedule::start_rays() const {
+    return std::min(smallest_, std::max<std::int64_t>(1, options_.rays / budget_over_first_rays));
+}
+
 void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     rays_ = power_rays + other_rays;
     averaged_rays_ = power_rays;

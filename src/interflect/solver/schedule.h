@@ -20,9 +20,9 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays for the incremental start.
-    std::int64_t start_rays() const { return smallest_; }
-    /// Enters the incremental start's rays; those that carried power are the first term of the average.
+    /// Rays of each pass before the first iteration: no more than an eighth of all, but one.
+    std::int64_t start_rays() const;
+    /// Enters the rays of those passes; those that carried power are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds) const;

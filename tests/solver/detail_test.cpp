@@ -1,0 +1,260 @@
+// What is known of how siblings differ, on simulated estimates whose truth and noise are known: the noise that a model
+// finds, Stein's estimate of the error after shrinkage, means that are merged, and where elements are split.
+// Statistical tests have fixed seeds; correct code fails each with a chance of 0.001 (statistics.h).
+//
+// Seen to fail: noise that forgets how few rays the iteration has, scale of one level for all, inner elements without
+// the factor 3/4; risk without its last term; differences merged with the tau of the patches, siblings scaled to their
+// parent's mean as by merge() (negative control below); new elements that trust in full what they inherit; a split criterion without noise, or without signal.
+
+#include "interflect/solver/detail.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "interflect/solver/merge.h"
+#include "interflect/solver/variance_refinement.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr double sure = 4;  // standard deviations: a normal variable is farther off with a chance of 6e-5
+
+/// A run that has not traced any ray yet, on a mesh whose patches, n x n on each wall of a cube, are divided `levels`
+/// times.
+struct Setting {
+    Scene scene;
+    RayCaster ray_caster;
+    SolveOptions options;
+    Monitor monitor;
+    Run run;
+    std::mt19937_64 random{1};
+
+    Setting(int n, int levels, float exitance = 1)
+        : scene(closed_box({1, 1, 1}, n, {{"wall", Rgb(0.5f), Rgb(exitance)}})),
+          ray_caster(scene),
+          options(hierarchical()),
+          run(scene, ray_caster, options, monitor) {
+        for (int level = 0; level < levels; ++level) divide();
+    }
+    static SolveOptions hierarchical() {
+        SolveOptions options;
+        options.method = find_method("hsrr");
+        return options;
+    }
+    void divide() {
+        const std::uint32_t before = run.forest->size();
+        for (const std::uint32_t leaf : run.forest->leaves()) run.forest->subdivide(leaf);
+        run.forest->put_in_order(before);
+        grow_with_forest(run, before);
+        run.streams.used.resize(run.forest->size(), 0);
+    }
+
+    /// An iteration of so many rays. Siblings differ from their parent by the signal and by noise that has, before the
+    /// siblings' mean is taken off, factor[level] times `variance` / rays; the model is told `variance` / rays.
+    template <class Signal>
+    FreshEstimate iteration(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
+        const ElementForest& forest = *run.forest;
+        FreshEstimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)),
+                            std::vector<float>(forest.size(), variance / rays)};
+        std::normal_distribution<float> normal;
+        const auto noise = [&](std::size_t level) { return std::sqrt(factor[level] * variance / rays) * normal(random); };
+        for (std::uint32_t e = 0; e < forest.patch_count(); ++e) fresh.irradiance[e] = Rgb(1 + noise(0));
+        for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
+            std::array<float, 4> difference;
+            float mean = 0;
+            for (float& d : difference) mean += (d = noise(static_cast<std::size_t>(forest.level(first)))) / 4;
+            for (std::uint32_t k = 0; k < 4; ++k)
+                fresh.irradiance[first + k] =
+                    fresh.irradiance[forest.parent(first)] + Rgb(difference[k] - mean + signal(first, k));
+        }
+        return fresh;
+    }
+    template <class Signal>
+    void iterate(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
+        const FreshEstimate fresh = iteration(rays, factor, variance, signal);
+        const IterationPlan plan{static_cast<std::int64_t>(rays), false};
+        estimate_noise(run, fresh, plan.rays);
+        merge_details(run, run.solution.irradiance, fresh.irradiance, plan);
+        remember(run, plan, run.forest->size());
+    }
+};
+
+constexpr auto no_signal = [](std::uint32_t, std::uint32_t) { return 0.0f; };
+
+TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseEachLevelHas) {
+    Setting s(10, 2);  // 600 patches, 2400 and 9600 elements below
+    const std::vector<float> factor{3, 1, 0.1f};
+    constexpr float variance = 2;  // of one ray
+    for (int k = 0; k < 12; ++k) {
+        EXPECT_EQ(s.run.noise.is_known(), k > 1) << k;
+        s.iterate(100.0f * static_cast<float>(1 + k), factor, variance, no_signal);
+    }
+    const std::array<std::uint32_t, 3> first{0, 600, 3000};
+    for (std::size_t level = 0; level < 3; ++level) {
+        // Three of four siblings are independent; four iterations count, by the model's memory.
+        const double expected = variance * factor[level] * (level == 0 ? 1 : 0.75);
+        const double freedom = 4.0 * (level == 0 ? 600 : 0.75 * (level == 1 ? 2400 : 9600));
+        const double found = s.run.noise.variance(*s.run.forest, first[level], 1);
+        EXPECT_NEAR(found / expected, 1, sure * std::sqrt(2 / freedom)) << "level " << level;
+        EXPECT_GT(std::abs(found / (1.5 * expected) - 1), sure * std::sqrt(2 / freedom)) << "would notice a half more";
+        EXPECT_NEAR(s.run.noise.variance(*s.run.forest, first[level], 10) / found, 0.1, 1e-5) << "falls with the rays";
+    }
+}
+
+class Risk : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(SignalToNoise, Risk, testing::Values(0.0, 0.5, 1.0, 2.0, 5.0));
+
+TEST_P(Risk, IsTheMeanSquareErrorThatIsLeft) {
+    constexpr int trials = 200'000;
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal;
+    const double a = GetParam();  // of unit noise
+    const std::array<double, 4> signal{a, a, -a, -a};
+    std::vector<double> differences, without_last_term;
+    double mean_error = 0, mean_unreduced = 0;
+    for (int t = 0; t < trials; ++t) {
+        std::array<double, 4> y;
+        double mean = 0, spread = 0, error = 0;
+        for (double& x : y) mean += (x = normal(random)) / 4;
+        for (std::size_t k = 0; k < 4; ++k) {
+            y[k] += signal[k] - mean;
+            spread += y[k] * y[k] / 4;
+            mean_unreduced += std::pow(y[k] - signal[k], 2) / (4 * trials);
+        }
+        const Detail detail{static_cast<float>(spread), 0.75f};
+        for (std::size_t k = 0; k < 4; ++k)
+            error += std::pow(static_cast<double>(detail.shrinkage()) * y[k] - signal[k], 2) / 4;
+        differences.push_back(static_cast<double>(detail.risk()) - error);
+        without_last_term.push_back(static_cast<double>(std::min(detail.noise, detail.signal())) - error);
+        mean_error += error / trials;
+    }
+    EXPECT_GT(t_test(differences, 0), false_alarm);
+    EXPECT_LT(t_test(differences, 0.05 * mean_error), false_alarm) << "would notice five percent";
+    EXPECT_LT(t_test(without_last_term, 0), false_alarm);
+    if (a < 1) {
+        EXPECT_LT(mean_error, 0.8 * mean_unreduced) << "reduction helps where there is little signal";
+    }
+}
+
+TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
+    Setting s(2, 2);
+    std::uniform_real_distribution<float> history(0, 1000);
+    for (int k = 0; k < 5; ++k) {
+        for (float& h : s.run.history) h = history(s.random);
+        for (std::uint32_t e = 0; e < s.run.forest->size(); ++e)
+            if (e >= s.run.forest->patch_count() && (e - s.run.forest->patch_count()) % 4 != 0)
+                s.run.history[e] = s.run.history[e - (e - s.run.forest->patch_count()) % 4];  // as siblings have it
+        const FreshEstimate fresh = s.iteration(100, {1, 1, 1}, 2, no_signal);
+        merge_details(s.run, s.run.solution.irradiance, fresh.irradiance, {100, false});
+    }
+    std::vector<Rgb> means = s.run.solution.irradiance;
+    pull(*s.run.forest, means);
+    for (std::uint32_t e = 0; e < means.size(); ++e) EXPECT_NEAR(means[e].x, s.run.solution.irradiance[e].x, 1e-5f) << e;
+}
+
+/// Mean over trials of how young siblings are found, of which the first alone is lit, and each estimate of that is
+/// either nothing or much: two merges of 100 rays where patches already stand for 1000.
+template <class Merge>
+std::array<std::vector<double>, 4> young_siblings(const Merge& merge_one) {
+    Setting s(1, 1);
+    std::array<std::vector<double>, 4> found;
+    std::bernoulli_distribution hit(0.2);
+    for (int trial = 0; trial < 2000; ++trial) {
+        std::vector<Rgb>& mean = s.run.solution.irradiance;
+        mean.assign(mean.size(), Rgb(1));  // inherited: four for the first of the siblings, none for the others
+        for (std::uint32_t e = 0; e < mean.size(); ++e) s.run.history[e] = e < 6 ? 1000.0f : 0.0f;
+        for (int k = 0; k < 2; ++k) {
+            std::vector<Rgb> received(mean.size(), Rgb(0));
+            for (std::uint32_t first = 6; first < mean.size(); first += 4) received[first] = Rgb(hit(s.random) ? 20 : 0);
+            pull(*s.run.forest, received);
+            const IterationPlan plan{100, false};
+            merge_one(s.run, mean, received, plan);
+            remember(s.run, plan, s.run.forest->size());
+        }
+        for (std::uint32_t k = 0; k < 4; ++k) found[k].push_back(mean[6 + k].x);
+    }
+    return found;
+}
+
+TEST(MergeDetails, IsUnbiasedForYoungSiblings) {
+    const auto merged = young_siblings([](const interflect::Run& run, auto&&... a) { merge_details(run, a...); });
+    const auto scaled = young_siblings([](const interflect::Run& run, auto&&... a) { merge(run, a...); });
+    for (std::size_t k = 0; k < 4; ++k) {
+        EXPECT_GT(4 * t_test(merged[k], k == 0 ? 4 : 0), false_alarm) << k;
+        EXPECT_LT(4 * t_test(merged[k], k == 0 ? 4.3 : 0.3), false_alarm) << k << ": would notice 0.3";
+        EXPECT_LT(4 * t_test(scaled[k], k == 0 ? 4 : 0), false_alarm) << k << ": scaling is biased";
+    }
+}
+
+TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
+    constexpr std::uint32_t patches = 6;
+    const IterationPlan plan{100, false};
+    for (const float trust : {0.0f, 0.1f, 1.0f}) {
+        Setting s(1, 1);
+        s.options.inherited_trust = trust;
+        std::vector<Rgb>& mean = s.run.solution.irradiance;
+        mean.assign(mean.size(), Rgb(1));
+        remember(s.run, plan, patches);  // what the first iteration brought; elements below the patches were made in it
+        std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
+        for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
+        pull(*s.run.forest, received);
+        merge(s.run, mean, received, plan);
+        EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
+        const float missed = trust / (1 + trust), others = (trust + 4.0f / 3) / (1 + trust);
+        EXPECT_NEAR(mean[patches].x, missed, 1e-5);
+        EXPECT_NEAR(mean[patches + 1].x, others, 1e-5);
+    }
+}
+
+/// The share of leaves that are split after iterations with unit noise and this signal.
+template <class Signal>
+double share_split(const Signal& signal) {
+    Setting s(10, 1);
+    for (int k = 0; k < 6; ++k) s.iterate(1000, {1, 1}, 10, signal);
+    const auto leaves = static_cast<double>(s.run.forest->leaves().size());
+    const std::uint32_t before = s.run.forest->size();
+    refine_by_variance(s.run);
+    for (std::uint32_t e = before; e < s.run.forest->size(); ++e) EXPECT_EQ(s.run.history[e], 0) << "measured anew";
+    return (s.run.forest->size() - before) / 4 / leaves;
+}
+
+TEST(VarianceRefinement, SeldomSplitsPureNoise) {
+    // Siblings are split where spread / noise > 1 + 0.12 * 4 / 0.3 = 2.6; three times that is chi-square with three
+    // degrees of freedom, above 7.8 with a chance of 0.0503. 600 groups of siblings: 4 standard deviations are 0.036.
+    const double share = share_split(no_signal);
+    EXPECT_NEAR(share, 0.0503, 0.036);
+}
+
+TEST(VarianceRefinement, SplitsAtAShadowEdge) {
+    // Six iterations: noise of a difference has the variance 0.75 * 10 / 6000 = 0.035^2.
+    EXPECT_EQ(share_split([](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.3f : -0.3f; }), 1);
+    const auto in_half = [](std::uint32_t first, std::uint32_t k) {
+        return first / 4 % 2 == 0 ? 0.0f : k < 2 ? 0.3f : -0.3f;
+    };
+    EXPECT_NEAR(share_split(in_half), 0.525, 0.03) << "and nowhere else";
+}
+
+TEST(VarianceRefinement, KeepsItsLimitsAndLeavesWhatIsMeasuredTooLittle) {
+    Setting s(4, 1);
+    const auto edge = [](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.3f : -0.3f; };
+    for (int k = 0; k < 4; ++k) s.iterate(1000, {1, 1}, 10, edge);
+    s.options.most_elements = s.run.forest->size() + 21;
+    const std::uint32_t before = s.run.forest->size();
+    refine_by_variance(s.run);
+    EXPECT_EQ(s.run.forest->size(), before + 20);
+    s.options.most_elements = 1 << 20;
+    for (float& h : s.run.history) h = 0;
+    const std::uint32_t then = s.run.forest->size();
+    refine_by_variance(s.run);
+    EXPECT_EQ(s.run.forest->size(), then) << "nothing was measured";
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,142 @@
+// What a run says of its own error, and the mesh that it makes for it: the same whether the lamp is in the picture or
+// not, since emission is no part of either. The truth is a long run's picture, shaded flat, of whose light that the lamp
+// emits straight to the eye is taken off.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "interflect/image/render.h"
+#include "interflect/solver/solve.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr int width = 160, height = 90;  // of pictures [pixels]
+
+/// A room of 4 x 3 x 2.5 m with a table, and a lamp on its far wall near the ceiling.
+Scene room() {
+    Scene scene = closed_box({4, 3, 2.5f}, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
+    const std::uint32_t wood = add_material(scene, Rgb(0.4f), Rgb(0)), lamp = add_material(scene, Rgb(0), Rgb(300));
+    add_rectangle(scene, {1.5f, 1, 0.7f}, {1.2f, 0, 0}, {0, 0.9f, 0}, wood, 1, 1, true);
+    add_rectangle(scene, {3.9f, 1.2f, 2.1f}, {0, 0, 0.08f}, {0, 0.6f, 0}, lamp);  // shines towards -x
+    return scene;
+}
+
+/// From beside the near wall towards the far one; the lamp is at the upper edge of the picture, or just above it.
+WeightedView view(bool shows_lamp) {
+    WeightedView v;
+    v.view = {"room", {0.2, 1.5, 1.4}, {4, 1.5, shows_lamp ? 1.13 : 0.93}, {0, 0, 1}, 34};
+    v.pixel_rows = height;
+    return v;
+}
+
+SolveOptions options_for(const char* method, bool shows_lamp, std::int64_t rays, std::uint64_t seed) {
+    SolveOptions options;
+    options.method = find_method(method);
+    options.views = {view(shows_lamp)};
+    options.rays = rays;
+    options.seed = seed;
+    return options;
+}
+
+Image picture(const Scene& scene, const RayCaster& ray_caster, const Solution& s, const std::vector<Rgb>& irradiance) {
+    const RenderOptions options{.width = width, .height = height, .samples = 64, .shading = Shading::flat};
+    return render(scene, *s.forest, ray_caster, s.options.views[0].view, irradiance, options).image;
+}
+
+class ErrorEstimate : public testing::TestWithParam<bool> {  // whether the lamp is in the picture
+  protected:
+    const Scene scene_ = room();
+    const RayCaster ray_caster_{scene_};
+};
+INSTANTIATE_TEST_SUITE_P(Lamp, ErrorEstimate, testing::Values(true, false),
+                         [](const auto& test) { return test.param ? "InThePicture" : "OutsideIt"; });
+
+// With hsrr: of ihsrr some runs are far off here, since a few rays carry much (IterationReport::largest_quantum).
+TEST_P(ErrorEstimate, IsTheErrorOfReflectedLightInThePicture) {
+    constexpr int runs = 4;
+    const Solution reference = solve(scene_, ray_caster_, options_for("hsrr", GetParam(), 24'000'000, 99));
+    const Image truth = picture(scene_, ray_caster_, reference, reference.irradiance);
+    const Image emission =
+        picture(scene_, ray_caster_, reference, std::vector<Rgb>(reference.irradiance.size(), Rgb(0)));
+    double mean = 0, emitted = 0;
+    for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+        mean += static_cast<double>(luminance(truth.pixels[i]) - luminance(emission.pixels[i])) /
+                static_cast<double>(truth.pixels.size());
+        emitted += luminance(emission.pixels[i]);
+    }
+    EXPECT_EQ(emitted > 0, GetParam()) << "the lamp is where the test says";
+    for (const std::int64_t rays : {300'000, 1'200'000}) {
+        double estimate = 0, error = 0;  // mean squares over the runs
+        std::string each;                // what the runs say of themselves
+        for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+            const Solution s = solve(scene_, ray_caster_, options_for("hsrr", GetParam(), rays, seed));
+            const IterationReport& last = s.iterations.back();
+            EXPECT_NEAR(last.error_estimate, std::hypot(last.noise_estimate, last.discretisation_estimate), 1e-9);
+            estimate += std::pow(last.error_estimate, 2) / runs;
+            each += std::to_string(last.noise_estimate) + ' ' + std::to_string(last.discretisation_estimate) + "; ";
+            const Image found = picture(scene_, ray_caster_, s, s.irradiance);
+            for (std::size_t i = 0; i < truth.pixels.size(); ++i)
+                error += std::pow(static_cast<double>(luminance(found.pixels[i]) - luminance(truth.pixels[i])) / mean, 2) /
+                         static_cast<double>(runs * truth.pixels.size());
+        }
+        const double ratio = std::sqrt(estimate / error);
+        RecordProperty("ratio at " + std::to_string(rays), std::to_string(ratio));
+        EXPECT_GT(ratio, 0.8) << rays << " rays, error " << std::sqrt(error) << ", noise and mesh " << each;
+        EXPECT_LT(ratio, 1.25) << rays << " rays, error " << std::sqrt(error) << ", noise and mesh " << each;
+    }
+}
+
+TEST(MeshByVariance, IsTheSameWithTheLampInThePictureAndOutsideIt) {
+    const Scene scene = room();
+    const RayCaster ray_caster(scene);
+    const auto lamp = static_cast<std::uint32_t>(scene.patches.size() - 1);
+    const auto leaves = [&](bool shows_lamp) {
+        double count = 0;
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            const Solution s = solve(scene, ray_caster, options_for("ihsrr", shows_lamp, 600'000, seed));
+            EXPECT_EQ(s.view_importance[lamp] > 0, shows_lamp);
+            for (const std::uint32_t leaf : s.forest->leaves()) count += s.forest->patch(leaf) != lamp;
+        }
+        return count;
+    };
+    const double with_lamp = leaves(true), without = leaves(false);
+    EXPECT_GT(without, 4 * 500);
+    EXPECT_NEAR(with_lamp / without, 1, 0.05);
+}
+
+TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
+    Scene scene = closed_box({4, 3, 2.5f}, 1,
+                             {{"black", Rgb(0), Rgb(0)},
+                              {"grey", Rgb(0.5f), Rgb(0)},
+                              {"grey", Rgb(0.5f), Rgb(0)},
+                              {"grey", Rgb(0.5f), Rgb(0)},
+                              {"grey", Rgb(0.5f), Rgb(0)},
+                              {"lamp", Rgb(0.5f), Rgb(10)}});
+    SolveOptions options;
+    options.method = find_method("ihsrr");
+    options.views = {{View{"black", {2, 1.5, 1.2}, {0, 1.5, 1.2}, {0, 0, 1}, 30}}};
+    options.rays = 100'000;
+    options.until = 0.99;
+    const RayCaster ray_caster(scene);
+    const Solution s = solve(scene, ray_caster, options);
+    for (const IterationReport& report : s.iterations) {
+        EXPECT_TRUE(std::isinf(report.error_estimate));
+        EXPECT_TRUE(std::isinf(report.noise_estimate));
+    }
+    EXPECT_EQ(s.iterations.back().rays, options.rays) << "no error is small enough where none is known";
+    scene.materials[0].reflectance = Rgb(0.5f);
+    const Solution grey = solve(scene, RayCaster(scene), options);
+    EXPECT_LT(grey.iterations.back().error_estimate, 0.99);
+    EXPECT_LT(grey.iterations.back().rays, options.rays);
+}
+
+}  // namespace
+}  // namespace interflect
