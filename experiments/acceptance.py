@@ -1,4 +1,4 @@
-"""Measures what the solver promises against its targets: `experiments/run acceptance [ROWS]`, such as `acceptance abd`.
+"""Measures what the solver promises against its targets: `experiments/run acceptance --rows abd`.
 
 Every measured value is a row of results/acceptance.csv; what is there already is not measured again, so delete the file after
 a change of the solver. The table is printed and written to docs/figures/acceptance.md. References are path-traced, and their

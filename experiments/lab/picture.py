@@ -46,5 +46,12 @@ def _unzipped(packed: bytes, size: int) -> bytes:
     return raw.tobytes()
 
 
+def noise_floor(picture: Path, error: Path) -> float:
+    """The relative MSE (docs/metrics.md) that the picture's noise alone causes; `error` has its standard error."""
+    wanted, deviation = read_exr(picture), read_exr(error)
+    mean = luminance(wanted).mean()
+    return float(np.mean(deviation**2 / (wanted**2 + (0.01 * mean) ** 2)))
+
+
 def luminance(picture: np.ndarray) -> np.ndarray:
     return picture @ LUMINANCE
