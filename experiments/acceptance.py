@@ -10,6 +10,7 @@ import json
 import math
 import re
 import sys
+import tempfile
 from collections import defaultdict
 from pathlib import Path
 
@@ -31,6 +32,8 @@ class Bench:
 
     def __init__(self):
         WORK.mkdir(parents=True, exist_ok=True)
+        self._temporary = tempfile.TemporaryDirectory()
+        self._folder = Path(self._temporary.name)
         self.program = program.find_program()
         self.rows = list(csv.DictReader(TABLE.open())) if TABLE.is_file() else []
         if not self.rows:
@@ -59,15 +62,15 @@ class Bench:
         return program.run(self.program, arguments.split()).output
 
     def solve(self, scene: str, options: str) -> dict:
-        """The last iteration's statistics; the solution is WORK/solved.h5."""
-        self.run(f"solve {scene} {options} -o {WORK}/solved.h5 --stats {WORK}/stats")
-        header, last = program.read_stats(WORK / "stats")
+        """Solves, for picture() to draw. Returns the last iteration's statistics."""
+        self.run(f"solve {scene} {options} -o {self._folder}/solved.h5 --stats {self._folder}/stats")
+        header, last = program.read_stats(self._folder / "stats")
         return last | {"emitted_power": header["emitted_power"]}
 
     def picture(self, view: str, options: str) -> Path:
         """Of the last solution."""
-        path = WORK / "picture.exr"
-        self.run(f"render {WORK}/solved.h5 {view} {options} -o {path}")
+        path = self._folder / "picture.exr"
+        self.run(f"render {self._folder}/solved.h5 {view} {options} -o {path}")
         return path
 
     def reference(self, scene: str, view: str, size: str, paths: int) -> tuple[Path, np.ndarray]:
@@ -140,10 +143,10 @@ def measure_b(bench: Bench) -> None:
 
 def table_b(bench: Bench):
     for case, values in bench.values("b", "ratio to path tracer").items():
-        yield f"office-graz, {case} rays, mean over the path tracer's", "± 1%", difference(values), len(values)
+        yield f"office-graz, {case} rays, mean over the path tracer's", "0%", difference(values), len(values)
     for case, values in bench.values("b", "ratio to Cycles").items():
         figure = f"{np.mean(values):.1f}"
-        yield f"office-graz, {case}{' rays' if case != 'path tracer' else ''}, ratio to Cycles", "179 ± 1%", figure, len(values)
+        yield f"office-graz, {case}{' rays' if case != 'path tracer' else ''}, ratio to Cycles", "179", figure, len(values)
 
 
 def is_near_lamp(reference: np.ndarray) -> np.ndarray:
@@ -181,7 +184,7 @@ def measure_c(bench: Bench) -> None:
         for name, scene, view in HONEST:
             if scene == "two-rooms":
                 scene = made(bench, scene)
-            reference, noise = bench.reference(scene, view, "160x90", 2048)
+            reference, noise = bench.reference(scene, view, "160x90", 1024)
             wanted = luminance(read_exr(reference))
             kept = ~is_near_lamp(wanted)
             for seed in (1, 2):
@@ -267,7 +270,7 @@ def table_e(bench: Bench):
 
 def measure_g(bench: Bench) -> None:
     scene, view = "maze:9:furniture", "--view room-4"
-    reference, noise = bench.reference(scene, view, "320x180", 512)
+    reference, noise = bench.reference(scene, view, "320x180", 256)
     for rays, seeds in (("4500k", (1, 2, 3)), ("20M", (1, 2, 3))):
         for seed in seeds:
             options = f"{view} --method ihsrr --rays {rays} --seed {seed}"
@@ -320,7 +323,7 @@ def measure_h(bench: Bench) -> None:
     with_tiny_lamps(plain, scene)
     scene.with_suffix(".views.json").write_text(plain.with_suffix(".views.json").read_text())
     view, size = "--view room-5", "480x270"
-    reference, _ = bench.reference(str(scene), view, size, 64)
+    reference, _ = bench.reference(str(scene), view, size, 32)
     bound = 2 * widest(luminance(read_exr(reference)))
     for method in ("ihsrr", "hsrr"):
         for seed in (1, 2, 3):
@@ -346,7 +349,7 @@ LADDERS = {  # million rays, by rooms
     "ihsrr": {rooms: (0.5, 1, 2, 4, 8) for rooms in WORLDS},
     "hsrr": {1: (0.5, 1, 2, 4, 8), 4: (1, 4, 16), 16: (4, 16, 64), 64: (16, 64, 192)},
 }
-SAME_ERROR = 0.01  # relative MSE, flat
+SAME_ERROR = 0.003  # relative MSE, flat
 
 
 def measure_f(bench: Bench) -> None:
