@@ -21,8 +21,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         drawing.logarithmic(ax, "rays", metric)
     drawing.shared_legend(figure, axes[0], 2)
     iterations = next(method["iterations"] for method in config["methods"] if "iterations" in method)
-    caption = f"""Importance-driven runs with the program's schedule, whose first estimate follows the light bounce by bounce
-        and whose iterations grow, and with the paper's: {iterations} equal iterations from darkness. Trust is how much its
+    caption = f"""Importance-driven runs with the program's schedule, whose iterations follow the light bounce by bounce and grow, and with the paper's: {iterations} equal iterations from darkness. Trust is how much its
         parent's past counts for a new element. Bands are 95% confidence intervals."""
     drawing.save(figure, folder, "averaging", caption)
     results.write_summary(folder / "averaging.md", rows)

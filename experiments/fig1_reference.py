@@ -17,5 +17,5 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
     drawing.show_picture(axes, row["picture"], f"{row['rays'] / 1e6:.0f} million rays, {row['elements']:,.0f} elements")
     caption = f"""The reference: {row['scene']} seen from one of its nine rooms, solved without importance, every ray kept
         ({config['reference']['options'].split()[1]}), in {row['seconds']:.0f} s. The paper's has 433 million rays and
-        308,018 elements. The picture is what the errors of the other figures are measured against."""
+        308,018 elements. Errors are measured against path-traced pictures."""
     drawing.save(figure, folder, "fig1-reference", caption)

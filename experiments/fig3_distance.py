@@ -24,7 +24,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
             drawing.draw_curve(ax, results.curve(runs, "seconds", distance), str(name), number)
         drawing.logarithmic(ax, "seconds", distance)
     drawing.shared_legend(figure, axes[0], 2)
-    caption = f"""Distance from the reference (hwdrs, {config['reference']['rays'] / 1e6:g} million rays) against the
+    caption = f"""Distance from the reference (path-traced, {config['reference']['paths']} paths a pixel) against the
         solver's time; lower is better, and the gap between the lines at a time is what importance gains. Each point is
         the mean of separate runs of that many rays ({min(config['seeds'])} to {max(config['seeds'])} seeds); bands are 95%
         confidence intervals. {', '.join(f'{b / 1e6:g}' for b in config['budgets'])} million rays."""

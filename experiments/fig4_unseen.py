@@ -13,11 +13,11 @@ def entries(config: dict) -> list[Entry]:
         for method in config["methods"] + config["also"]
     }
     first = next(iter(solves.values()))
-    reference = reference_of(config)
+    shown = reference_of(config, "shown")
     above, look = config["overview_picture"], config["picture"]
     found = [
         Entry("importance: overview", Picture(first, config["overview"], f"{above} --show importance")),
-        Entry("reference: unseen", Picture(reference, config["unseen"], f"{look} --shading flat")),
+        Entry("reference: unseen", Picture(shown, config["unseen"], f"{look} --shading flat")),
     ]
     for method in config["methods"]:
         for place, options in (("overview", above), ("unseen", look)):
@@ -25,7 +25,7 @@ def entries(config: dict) -> list[Entry]:
             found.append(Entry(f"{method['name']}: {place}", picture))
     for name, solve in solves.items():
         for place, view in (("seen", config["view"]), ("unseen", config["unseen"])):
-            found.append(Entry(f"{name}: error {place}", Measure(solve, view, reference)))
+            found.append(Entry(f"{name}: error {place}", Measure(solve, view, reference_of(config | {"view": view}))))
     return found
 
 

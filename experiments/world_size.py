@@ -68,8 +68,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
     drawing.shared_legend(figure, axes[0], len(needs))
     caption = f"""What it takes to draw one room with a {drawing.LABELS[config['metric']]} of {config['target']:g}, against the
         number of rooms around it: flat lines mean that the rest of the world costs nothing. Hollow marks are extrapolated
-        from the runs there are. Reference: {config['reference']['options'].split()[1]},
-        {config['reference']['rays'] / 1e6:g} million rays."""
+        from the runs there are. Reference: path-traced, {config['reference']['paths']} paths a pixel."""
     drawing.save(figure, folder, "world-size", caption)
     draw_errors(config, rows, folder)
     write_needs(needs, folder)

@@ -8,14 +8,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from .picture import noise_floor
 from .program import ROOT, Finished, Program, expanded, read_stats, run
-from .tasks import SHADINGS, Measure, Picture, Solve, Task, probe
+from .tasks import SHADINGS, Measure, Picture, Reference, Solve, Task, probe
 
 METRICS = ("relative_mse", "perceptual_distance", "flip")  # keys of `compare --json`
 COLUMNS = (
     ["series", "scene", "view", "budget", "rays", "seed", "seconds", "elements", "peak_mib"]
     + [f"{metric}_{shading}" for metric in METRICS for shading in SHADINGS]
-    + ["picture", "version", "command", "reference", "machine", "threads"]
+    + ["picture", "version", "command", "reference", "reference_noise", "machine", "threads"]
 )
 
 
@@ -54,7 +55,14 @@ class Store:
             path.unlink(missing_ok=True)
             stats.unlink(missing_ok=True)
 
-    def do(self, task: Task, solution: Solution) -> None:
+    def trace(self, reference: Reference) -> None:
+        """Renders a path-traced reference, and notes the relative MSE that its noise causes."""
+        picture, error = self._path(reference, "exr"), self._path(reference, "error.exr")
+        self.run(reference.arguments(str(picture), str(error)))
+        self._path(reference, "json").write_text(json.dumps({"noise": noise_floor(picture, error)}))
+        error.unlink()
+
+    def do(self, task: Picture | Measure, solution: Solution) -> None:
         """Does a task of the solution's. What it needs of other solutions, a Measure's reference, must be done."""
         found = self._draw(task, solution) if isinstance(task, Picture) else self._compare(task, solution)
         path = self._path(task, "json")
@@ -87,21 +95,28 @@ class Store:
         return {"picture": os.path.relpath(path, ROOT)}
 
     def _compare(self, measure: Measure, solution: Solution) -> dict:
-        found = {
-            "reference": f"{measure.reference.options} --rays {measure.reference.rays} --seed {measure.reference.seed}"
-        }
+        """Relative MSE less what the reference's noise causes. Below a tenth of that nothing is known."""
+        reference, noise = measure.reference, 0.0
+        if isinstance(reference, Reference):
+            found = {"reference": reference.options}
+            noise = json.loads(self._path(reference, "json").read_text())["noise"]
+        else:
+            found = {"reference": f"{reference.options} --rays {reference.rays} --seed {reference.seed}"}
+        found["reference_noise"] = noise
         for shading in SHADINGS:
-            wanted = self._path(probe(measure.reference, measure.view, shading), "exr")
+            traced = isinstance(reference, Reference)
+            wanted = self._path(reference if traced else probe(reference, measure.view, shading), "exr")
             seen = solution.path.with_suffix(".exr")
             self.run(probe(measure.solve, measure.view, shading).arguments(str(solution.path), str(seen)))
             difference = json.loads(self.run(["compare", str(seen), str(wanted), "--json"]).output)
             found |= {f"{metric}_{shading}": difference[metric] for metric in METRICS}
+            found[f"relative_mse_{shading}"] = max(difference["relative_mse"] - noise, noise / 10)
             seen.unlink()
         return found
 
     def _path(self, value: Solve | Task, suffix: str) -> Path:
         """Where what belongs to `value` is kept; elsewhere for another build or another content of the scene file."""
-        scene = Path(expanded((value if isinstance(value, Solve) else value.solve).scene))
+        scene = Path(expanded((value if isinstance(value, Solve | Reference) else value.solve).scene))
         content = hashlib.sha256(scene.read_bytes()).hexdigest() if scene.is_file() else ""
         key = hashlib.sha256(f"{self._program.fingerprint}{content}{value}".encode()).hexdigest()[:20]
         return self._folder / f"{key}.{suffix}"

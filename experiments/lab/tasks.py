@@ -34,23 +34,42 @@ class Picture:
 
 
 SHADINGS = ("flat", "smooth")  # the elements as they are; what people look at
+PROBE_SIZE = "320x180"
 
 
 def probe(solve: Solve, view: str, shading: str) -> Picture:
     """The picture that errors are measured in."""
-    return Picture(solve, view, f"--size 320x180 --samples 4 --shading {shading}", "exr")
+    return Picture(solve, view, f"--size {PROBE_SIZE} --samples 64 --shading {shading}", "exr")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A path-traced probe: it shares neither mesh nor estimator with what is measured against it."""
+
+    scene: str
+    view: str
+    paths: int  # a pixel
+    seed: int
+
+    @property
+    def options(self) -> str:
+        return f"--shading path --samples {self.paths} --seed {self.seed}"
+
+    def arguments(self, output: str, error: str) -> list[str]:
+        view, options = shlex.split(self.view), shlex.split(self.options)
+        return ["render", self.scene, "-o", output, "--error-image", error, *view, "--size", PROBE_SIZE, *options]
 
 
 @dataclass(frozen=True)
 class Measure:
-    """How far the probes of a solution are from those of a reference."""
+    """How far the probes of a solution are from a reference: path-traced, or a long run on the same fixed mesh."""
 
     solve: Solve
     view: str
-    reference: Solve
+    reference: Reference | Solve
 
 
-Task = Picture | Measure
+Task = Picture | Measure | Reference
 
 
 @dataclass(frozen=True)
@@ -66,7 +85,7 @@ def with_iterations(options: str, rays: int, iterations: int | None) -> str:
     return options if iterations is None else f"{options} --rays-per-iteration {rays // iterations}"
 
 
-def ladder(config: dict, methods: list[dict], reference: Solve) -> list[Entry]:
+def ladder(config: dict, methods: list[dict], reference: Reference | Solve) -> list[Entry]:
     """Measures each method at each of the `budgets` with as many seeds as `seeds` says for it, in runs of their own."""
     entries = []
     for method in methods:
@@ -78,7 +97,9 @@ def ladder(config: dict, methods: list[dict], reference: Solve) -> list[Entry]:
     return entries
 
 
-def reference_of(config: dict, table: str = "reference") -> Solve:
-    """The long run to compare with: same scene and view, and a seed that no measured run has."""
+def reference_of(config: dict, table: str = "reference") -> Reference | Solve:
+    """What to compare with: same scene and view, and a seed that no measured run has. Path-traced if it has `paths`."""
     reference = config[table]
+    if "paths" in reference:
+        return Reference(config["scene"], config["view"], reference["paths"], reference["seed"])
     return Solve(config["scene"], config["view"], reference["options"], reference["rays"], reference["seed"])

@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable
 
 from .store import Store
-from .tasks import SHADINGS, Measure, Picture, Solve, Task, probe
+from .tasks import SHADINGS, Measure, Picture, Reference, Solve, Task, probe
 
 CALIBRATION_RAYS = 4_000_000
 
@@ -15,14 +15,17 @@ def with_references(tasks: Iterable[Task]) -> list[Task]:
     """All that has to be done for `tasks`, each once: the references' pictures first."""
     tasks = list(tasks)
     measures = [task for task in tasks if isinstance(task, Measure)]
-    probes = [probe(m.reference, m.view, shading) for m in measures for shading in SHADINGS]
-    return list(dict.fromkeys([*probes, *tasks]))
+    wanted = []
+    for measure in measures:
+        traced = isinstance(measure.reference, Reference)
+        wanted += [measure.reference] if traced else [probe(measure.reference, measure.view, s) for s in SHADINGS]
+    return list(dict.fromkeys([*wanted, *tasks]))
 
 
 def by_solution(tasks: Iterable[Task]) -> dict[Solve, list[Task]]:
-    """Tasks that share a solution together, so that it is solved once; references stay in front."""
+    """Tasks that share a solution together, so that it is solved once; path-traced references have none."""
     groups: dict[Solve, list[Task]] = {}
-    for task in tasks:
+    for task in (task for task in tasks if not isinstance(task, Reference)):
         groups.setdefault(task.solve, []).append(task)
     return groups
 
@@ -58,7 +61,11 @@ class Clock:
 
 def do(tasks: Iterable[Task], store: Store) -> None:
     """Does what is not done yet. What is finished is kept when it is interrupted."""
-    groups = by_solution(task for task in with_references(tasks) if not store.has(task))
+    missing = [task for task in with_references(tasks) if not store.has(task)]
+    for reference in (task for task in missing if isinstance(task, Reference)):
+        print(f"Reference: {reference.scene} {reference.view} {reference.options}", file=sys.stderr)
+        store.trace(reference)
+    groups = by_solution(missing)
     if not groups:
         print("Everything is there already.", file=sys.stderr)
         return

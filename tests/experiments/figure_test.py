@@ -22,8 +22,7 @@ options = "--method ihsrr --epsilon 1e-4"
 name = "without importance"
 options = "--method hsrr --epsilon 1e-4"
 [reference]
-options = "--method hwdrs --epsilon 1e-4"
-rays = 200_000
+paths = 64
 seed = 99
 """
 RUNS = 2 * (2 + 2 + 1)
@@ -57,7 +56,7 @@ class Figure(CommandTest):
             return list(csv.DictReader(file))
 
     def test_results_and_figures(self):
-        self.assertIn("11 runs, 1 M rays: about ", self.run_experiment())
+        self.assertIn("10 runs, 0 M rays: about ", self.run_experiment())
         rows = self.rows()
         self.assertEqual(len(rows), RUNS)
         for row in rows:
@@ -65,7 +64,8 @@ class Figure(CommandTest):
             self.assertEqual(row["version"], "0.1.0")
             self.assertIn(row["command"].split()[0:3], [["interflect", "solve", "maze:1"]])
             self.assertIn(f"--rays {row['rays']} --seed {row['seed']}", row["command"])
-            self.assertEqual(row["reference"], "--method hwdrs --epsilon 1e-4 --rays 200000 --seed 99")
+            self.assertEqual(row["reference"], "--shading path --samples 64 --seed 99")
+            self.assertTrue(0 < float(row["reference_noise"]) < 0.1, row["reference_noise"])
             self.assertRegex(row["machine"], r"\w.*, \d+ cores")
             self.assertGreater(int(row["threads"]), 0)
             self.assertGreater(float(row["seconds"]), 0)
@@ -98,7 +98,7 @@ class Figure(CommandTest):
     def test_an_interrupted_run_goes_on_where_it_was(self):
         process = self.start()
         seen = ""
-        while "[5/11]" not in seen:
+        while "[5/10]" not in seen:
             line = process.stderr.readline()
             self.assertTrue(line, seen)
             seen += line
@@ -107,7 +107,7 @@ class Figure(CommandTest):
         self.assertEqual(process.returncode, 130, messages)
         self.assertIn("goes on from there", messages)
         self.assertNotIn("Traceback", messages)
-        self.assertRegex(self.run_experiment(), r"(?m)^[56] runs")
+        self.assertRegex(self.run_experiment(), r"(?m)^[45] runs")
         self.assertEqual(len(self.rows()), RUNS)
         self.assertIn("Everything is there already", self.run_experiment())
 

@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
 from lab import experiment, work
-from lab.tasks import Entry, Measure, Picture, Solve, ladder, probe
+from lab.tasks import Entry, Measure, Picture, Reference, Solve, ladder, probe, reference_of
 
 REFERENCE = Solve("maze:1", "--view room-0", "--method hwdrs", 5_000_000, 99)
 CONFIG = {"scene": "maze:1", "view": "--view room-0", "budgets": [1000, 4000], "seeds": [2, 1]}
@@ -39,6 +39,14 @@ class Order(unittest.TestCase):
         self.assertEqual(list(groups), [REFERENCE, solve])
         self.assertEqual(groups[REFERENCE], [probe(REFERENCE, solve.view, shading) for shading in ("flat", "smooth")])
         self.assertEqual(groups[solve], [picture, measure])
+
+    def test_path_traced_references_need_no_solution(self):
+        traced = reference_of(CONFIG | {"reference": {"paths": 64, "seed": 99}})
+        self.assertEqual(traced, Reference("maze:1", "--view room-0", 64, 99))
+        solve = Solve("maze:1", "--view room-0", "--method ihsrr", 1000, 1)
+        tasks = work.with_references([Measure(solve, solve.view, traced)] * 2)
+        self.assertEqual(tasks, [traced, Measure(solve, solve.view, traced)])
+        self.assertEqual(list(work.by_solution(tasks)), [solve])
 
 
 class Configuration(unittest.TestCase):
