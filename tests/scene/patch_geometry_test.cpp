@@ -92,7 +92,7 @@ TEST_P(PatchGeometries, FindsTheParametersOfItsPoints) {
         }
 }
 
-// Convex quadrilaterals far from parallelograms. Seen to fail with Newton's method in place of the closed form, which
+// Convex quadrilaterals far from parallelograms. Meant to fail with Newton's method in place of the closed form, which
 // did not converge for the first of them.
 class SkewQuadrilaterals : public testing::TestWithParam<std::vector<V3f>> {};
 INSTANTIATE_TEST_SUITE_P(
