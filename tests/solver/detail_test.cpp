@@ -2,7 +2,7 @@
 // finds, Stein's estimate of the error after shrinkage, means that are merged, and where elements are split.
 // Statistical tests have fixed seeds; correct code fails each with a chance of 0.001 (statistics.h).
 //
-// Seen to fail: noise that forgets how few rays the iteration has, scale of one level for all, inner elements without
+// Meant to fail, faults of scripts/plant-faults not yet seen: noise that forgets how few rays the iteration has, scale of one level for all, inner elements without
 // the factor 3/4; risk without its last term; differences merged with the tau of the patches, siblings scaled to their
 // parent's mean as by merge() (negative control below); new elements that trust in full what they inherit; a split criterion without noise, or without signal.
 

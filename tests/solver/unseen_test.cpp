@@ -48,6 +48,7 @@ SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t see
     SolveOptions options;
     options.method = find_method(method);
     options.views = {{first_chamber}};
+    options.refinement = Refinement::power;
     options.epsilon_decay = 0;
     options.epsilon = 2e-6;  // what the bounds below were found with
     options.rays = rays;
