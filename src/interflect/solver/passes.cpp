@@ -20,6 +20,8 @@ constexpr double fewest_rays_of_bounce = 16;
 constexpr double least_share_of_bounce = 1e-3;
 /// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
 constexpr double assumed_bounces = 2;
+/// What is left to shoot is expected to fall at least to this share from one bounce to the next, on the whole.
+constexpr double most_decay = 0.9;
 /// With fewer rays in all there is none to spare before the first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 /// Importance is followed at first until this share of it is left.
@@ -34,30 +36,32 @@ class BounceBudget {
         : rays_(rays),
           left_(rays),
           bounces_(bounces),
-          fewest_(is_final ? fewest_rays_of_bounce
-                           : std::max(fewest_rays_of_bounce, least_share_of_bounce * static_cast<double>(rays))) {}
+          fewest_(is_final ? 1 : std::max(fewest_rays_of_bounce, least_share_of_bounce * static_cast<double>(rays))) {}
 
     /// @param unshot  What is left to shoot, relative to the first bounce.
     /// @return        The rays of the next bounce; all that are left if it is the last; 0 if there are none.
     std::int64_t next(double unshot) {
-        const double decay = last_unshot_ > 0 ? std::min(1.0, unshot / last_unshot_) : 0.5;
-        last_unshot_ = unshot;
+        const double left = static_cast<double>(left_), all = static_cast<double>(rays_);
         // If all bounces to come decay alike, they must do with what is left.
-        const double affordable = (1 - decay) * static_cast<double>(left_);
-        const double share = static_cast<double>(rays_) * unshot / (bounces_ > 0 ? bounces_ : assumed_bounces);
-        const double rays = first_ && bounces_ > 0 ? share : std::min(share, std::max(affordable, 1.0));
-        first_ = false;
-        is_last_ = rays < fewest_;
-        const std::int64_t taken = is_last_ ? left_ : std::min<std::int64_t>(left_, std::llround(rays));
+        decay_ = last_unshot_ > 0 ? std::min(most_decay, unshot / last_unshot_) : 1 - most_decay;
+        last_unshot_ = unshot;
+        const double share = all * unshot / (bounces_ > 0 ? bounces_ : assumed_bounces);
+        is_last_ = share < fewest_ || left < fewest_;
+        const double rays = is_last_ ? left : std::min(share, std::max(1.0, (1 - decay_) * left));
+        const std::int64_t taken = std::min<std::int64_t>(left_, std::llround(rays));
         left_ -= taken;
+        unshot_sum_ += unshot;
         return taken;
     }
     bool is_last() const { return is_last_ || left_ == 0; }
+    /// Of this pass; what the bounces that it lacks would have to shoot is extrapolated.
+    double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 
   private:
     std::int64_t rays_, left_;
-    double bounces_, fewest_, last_unshot_ = 0;
-    bool first_ = true, is_last_ = false;
+    double bounces_, fewest_;
+    double last_unshot_ = 0, unshot_sum_ = 0, decay_ = 0;
+    bool is_last_ = false;
 };
 
 /// What a bounce has to shoot, as a number that rays are shared by.
@@ -134,7 +138,6 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
     std::vector<float> driver = power_driver(solution);
     PowerStep first;
     run.quanta = {};
-    state.bounces = 0;
     for (bool emits = true; !budget.is_last(); emits = false) {
         // Importance is carried on by the first bounce alone, which has the most rays.
         const Light light(run.surfaces, unshot, emits);
@@ -143,7 +146,6 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
         const double weight = unshot_weight(bounce, first, run.options.beta);
         bounce.step.rays = bounce.power > 0 ? budget.next(weight) : 0;
         if (bounce.step.rays == 0) break;
-        state.bounces += weight;
         bounce.step.known_light = Light(run.surfaces, solution.irradiance);
         bounce.step.leaves_only = !oracle_refines;
         if (oracle_refines)
@@ -151,6 +153,7 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
         unshot = trace_bounce(run, std::move(bounce.step), fresh, escaped_power);
         if (!driver.empty()) inherit(*run.forest, static_cast<std::uint32_t>(driver.size()), driver);
     }
+    state.bounces = budget.bounces();
     state.unshot = std::move(unshot);
     state.unshot_rays = static_cast<double>(rays);
     if (!oracle_refines) pull(*run.forest, fresh.irradiance), pull_variance(*run.forest, fresh.variance);
