@@ -66,6 +66,7 @@ Leaves leaves_of(const char* method, const Room& room) {
     options.rays = room.rays;
     options.epsilon = room.epsilon;
     options.epsilon_decay = room.epsilon_decay;
+    options.refinement = Refinement::power;  // Eq. 14 and 15 as published
     options.smallest_area = std::pow(0.02 * room.metre, 2);
     options.seed = room.seed;
     const Solution solution = solve(scene, RayCaster(scene), options);
@@ -101,7 +102,7 @@ TEST_P(Mesh, DoesNotDependOnTheDivisionOfALamp) {
     };
     for (const int divisions : {2, 4, 8}) EXPECT_NEAR(ratio(divisions), 1, tolerance) << divisions;
     // Areas fall by a factor of 4 from level to level: dividing by anything but halves moves where the steps fall.
-    EXPECT_NEAR(ratio(3), 1, 0.15);
+    EXPECT_NEAR(ratio(3), 1, 0.25);
 }
 
 TEST(MeshOfImportance, DoesNotDependOnLightsThatMatterNothingToTheView) {
