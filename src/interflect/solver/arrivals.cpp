@@ -16,8 +16,8 @@ void Arrivals::Sorter::hand_on(std::size_t region) {
         const Load& load = loads_[a.source];
         Load& sum = arrivals_->sums_[a.element];
         const std::int64_t power = -static_cast<std::int64_t>(a.power);  // a mask: all ones or all zeros
-        for (std::size_t c = 0; c < of_power; ++c) sum[c] += load[c] & power;
-        sum[importance] += load[importance] & -static_cast<std::int64_t>(a.importance);
+        for (std::size_t c = 0; c < power_terms; ++c) sum[c] += load[c] & power;
+        sum[importance_term] += load[importance_term] & -static_cast<std::int64_t>(a.importance);
     }
     lot.count = 0;
 }

@@ -16,7 +16,7 @@ namespace interflect {
 /// of one lot are close together.
 class Arrivals {
   public:
-    static constexpr std::size_t of_power = 4, importance = 4;  // how many come first; which is the last
+    static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
     using Load = std::array<std::int64_t, 5>;
 
     /// @param elements  Of the forest so far. @param capacity  Most elements ever.

@@ -163,7 +163,7 @@ struct Units {
             std::copy(of_power.begin(), of_power.end(), load.begin());
             load[3] = square.from(std::pow(luminance(carried_power), 2));
         }
-        if (step.carries_importance()) load[Arrivals::importance] = importance.from(carried.importance(leaf));
+        if (step.carries_importance()) load[Arrivals::importance_term] = importance.from(carried.importance(leaf));
         return load;
     }
 };
