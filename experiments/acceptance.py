@@ -44,6 +44,7 @@ class Bench:
         if any((r["row"], r["case"], r["seed"]) == (row, case, str(seed)) for r in self.rows):
             return
         print(f"{row}: {case}, seed {seed}", file=sys.stderr, flush=True)
+        command = command.replace(f"{program.ROOT}/", "")
         for quantity, value in found().items():
             values = [row, case, str(seed), quantity, f"{value:.6g}", command, self.program.version]
             self.rows.append(dict(zip(COLUMNS, values)))
