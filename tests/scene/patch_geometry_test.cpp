@@ -95,13 +95,14 @@ TEST_P(PatchGeometries, FindsTheParametersOfItsPoints) {
 // Convex quadrilaterals far from parallelograms. Meant to fail with Newton's method in place of the closed form, which
 // did not converge for the first of them.
 class SkewQuadrilaterals : public testing::TestWithParam<std::vector<V3f>> {};
-INSTANTIATE_TEST_SUITE_P(
-    Corners, SkewQuadrilaterals,
-    testing::Values(std::vector<V3f>{{1.841784f, 3.850133f, 0}, {0.9566491f, 4.369944f, 0}, {1.294364f, 3.382406f, 0},
-                                     {1.583523f, 3.48129f, 0}},
-                    std::vector<V3f>{{0, 0, 0}, {10, 0, 0}, {0.6f, 0.9f, 0}, {0, 0.7f, 0}},
-                    std::vector<V3f>{{0, 0, 0}, {0.1f, 0, 0}, {1, 3, 0}, {-2, 3, 0}},
-                    std::vector<V3f>{{0, 0, 0}, {1, 0, 0}, {1.001f, 0.001f, 0}, {0, 1, 0}}));
+INSTANTIATE_TEST_SUITE_P(Corners, SkewQuadrilaterals,
+                         testing::Values(std::vector<V3f>{{1.841784f, 3.850133f, 0},
+                                                          {0.9566491f, 4.369944f, 0},
+                                                          {1.294364f, 3.382406f, 0},
+                                                          {1.583523f, 3.48129f, 0}},
+                                         std::vector<V3f>{{0, 0, 0}, {10, 0, 0}, {0.6f, 0.9f, 0}, {0, 0.7f, 0}},
+                                         std::vector<V3f>{{0, 0, 0}, {0.1f, 0, 0}, {1, 3, 0}, {-2, 3, 0}},
+                                         std::vector<V3f>{{0, 0, 0}, {1, 0, 0}, {1.001f, 0.001f, 0}, {0, 1, 0}}));
 
 TEST_P(SkewQuadrilaterals, HaveParametersThatLeadBackToTheirPoints) {
     for (std::size_t first = 0; first < 4; ++first) {  // whichever corner comes first

@@ -2,9 +2,10 @@
 // finds, Stein's estimate of the error after shrinkage, means that are merged, and where elements are split.
 // Statistical tests have fixed seeds; correct code fails each with a chance of 0.001 (statistics.h).
 //
-// Meant to fail, faults of scripts/plant-faults not yet seen: noise that forgets how few rays the iteration has, scale of one level for all, inner elements without
-// the factor 3/4; risk without its last term; differences merged with the tau of the patches, siblings scaled to their
-// parent's mean as by merge() (negative control below); new elements that trust in full what they inherit; a split criterion without noise, or without signal.
+// Meant to fail, faults of scripts/plant-faults not yet seen: noise that forgets how few rays the iteration has, scale
+// of one level for all, inner elements without the factor 3/4; risk without its last term; differences merged with the
+// tau of the patches, siblings scaled to their parent's mean as by merge() (negative control below); new elements that
+// trust in full what they inherit; a split criterion without noise, or without signal.
 
 #include "interflect/solver/detail.h"
 
@@ -64,7 +65,9 @@ struct Setting {
         FreshEstimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)),
                             std::vector<float>(forest.size(), variance / rays)};
         std::normal_distribution<float> normal;
-        const auto noise = [&](std::size_t level) { return std::sqrt(factor[level] * variance / rays) * normal(random); };
+        const auto noise = [&](std::size_t level) {
+            return std::sqrt(factor[level] * variance / rays) * normal(random);
+        };
         for (std::uint32_t e = 0; e < forest.patch_count(); ++e) fresh.irradiance[e] = Rgb(1 + noise(0));
         for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
             std::array<float, 4> difference;
@@ -156,7 +159,8 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
     }
     std::vector<Rgb> means = s.run.solution.irradiance;
     pull(*s.run.forest, means);
-    for (std::uint32_t e = 0; e < means.size(); ++e) EXPECT_NEAR(means[e].x, s.run.solution.irradiance[e].x, 1e-5f) << e;
+    for (std::uint32_t e = 0; e < means.size(); ++e)
+        EXPECT_NEAR(means[e].x, s.run.solution.irradiance[e].x, 1e-5f) << e;
 }
 
 /// Mean over trials of how young siblings are found, of which the first alone is lit, and each estimate of that is
@@ -172,7 +176,8 @@ std::array<std::vector<double>, 4> young_siblings(const Merge& merge_one) {
         for (std::uint32_t e = 0; e < mean.size(); ++e) s.run.history[e] = e < 6 ? 1000.0f : 0.0f;
         for (int k = 0; k < 2; ++k) {
             std::vector<Rgb> received(mean.size(), Rgb(0));
-            for (std::uint32_t first = 6; first < mean.size(); first += 4) received[first] = Rgb(hit(s.random) ? 20 : 0);
+            for (std::uint32_t first = 6; first < mean.size(); first += 4)
+                received[first] = Rgb(hit(s.random) ? 20 : 0);
             pull(*s.run.forest, received);
             const IterationPlan plan{100, false};
             merge_one(s.run, mean, received, plan);

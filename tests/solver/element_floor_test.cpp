@@ -1,6 +1,7 @@
 // How small elements may become: what a pixel of the nearest view shows of them; where no view looks, a length that
 // depends on the surfaces of the scene, not on the size of the world.
-// Meant to fail (not yet seen) with the cosine left out, with the first view in place of the nearest, with the scene's origin ignored.
+// Meant to fail (not yet seen) with the cosine left out, with the first view in place of the nearest, with the scene's
+// origin ignored.
 
 #include "interflect/solver/element_floor.h"
 

@@ -1,6 +1,6 @@
 // What a run says of its own error, and the mesh that it makes for it: the same whether the lamp is in the picture or
-// not, since emission is no part of either. The truth is a long run's picture, shaded flat, of whose light that the lamp
-// emits straight to the eye is taken off.
+// not, since emission is no part of either. The truth is a long run's picture, shaded flat, of whose light that the
+// lamp emits straight to the eye is taken off.
 
 #include <gtest/gtest.h>
 
@@ -84,8 +84,9 @@ TEST_P(ErrorEstimate, IsTheErrorOfReflectedLightInThePicture) {
             each += std::to_string(last.noise_estimate) + ' ' + std::to_string(last.discretisation_estimate) + "; ";
             const Image found = picture(scene_, ray_caster_, s, s.irradiance);
             for (std::size_t i = 0; i < truth.pixels.size(); ++i)
-                error += std::pow(static_cast<double>(luminance(found.pixels[i]) - luminance(truth.pixels[i])) / mean, 2) /
-                         static_cast<double>(runs * truth.pixels.size());
+                error +=
+                    std::pow(static_cast<double>(luminance(found.pixels[i]) - luminance(truth.pixels[i])) / mean, 2) /
+                    static_cast<double>(runs * truth.pixels.size());
         }
         const double ratio = std::sqrt(estimate / error);
         RecordProperty("ratio at " + std::to_string(rays), std::to_string(ratio));

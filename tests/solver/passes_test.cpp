@@ -1,10 +1,10 @@
 // Passes that follow light from the emitters bounce by bounce: each is an unbiased estimate of all bounces on the mesh
-// as it is, and what a pass leaves unshot is handed on to the next. Against dense solutions, which are exact in an empty
-// box; in a furnace, where irradiance is M / (1 - rho) everywhere. Correct code fails a test with a chance of 0.001
-// (statistics.h) unless it says otherwise; seeds are fixed.
+// as it is, and what a pass leaves unshot is handed on to the next. Against dense solutions, which are exact in an
+// empty box; in a furnace, where irradiance is M / (1 - rho) everywhere. Correct code fails a test with a chance of
+// 0.001 (statistics.h) unless it says otherwise; seeds are fixed.
 //
-// Meant to fail (not yet seen): the irradiance that a pass did not shoot is dropped (TotalPower at high reflectance); it is handed on
-// without the ratio of the passes' rays; passes are averaged with equal weights.
+// Meant to fail (not yet seen): the irradiance that a pass did not shoot is dropped (TotalPower at high reflectance);
+// it is handed on without the ratio of the passes' rays; passes are averaged with equal weights.
 
 #include <gtest/gtest.h>
 
@@ -83,7 +83,9 @@ Scene box_of_walls(float rho) {
     return closed_box({1, 2, 3}, 3, walls);
 }
 
-double mean_of(const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size()); }
+double mean_of(const std::vector<double>& x) {
+    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
 
 double deviation_of(const std::vector<double>& x) {
     double square = 0;
@@ -151,8 +153,8 @@ TEST(FurnaceOfPasses, IsRightAtAnyDistanceFromAnEdgeAndInElementsOfAnySize) {
         for (const std::uint32_t e : s.forest->leaves()) {
             const Parameters p = s.forest->cell(e).centre(false);
             const float d = std::min({p.u, 1 - p.u, p.v, 1 - p.v});
-            const auto within = static_cast<std::size_t>(
-                std::upper_bound(distances.begin(), distances.end(), d) - distances.begin());
+            const auto within =
+                static_cast<std::size_t>(std::upper_bound(distances.begin(), distances.end(), d) - distances.begin());
             const double area = s.forest->area(e), power = area * static_cast<double>(s.irradiance[e].x);
             for (auto* sums : {&distance_sums[within], &level_sums.at(static_cast<std::size_t>(s.forest->level(e)))})
                 (*sums)[0] += power, (*sums)[1] += area;

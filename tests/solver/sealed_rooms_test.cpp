@@ -1,6 +1,6 @@
 // Two sealed rooms, a lamp in one: whatever light is found in the other has leaked through elements that lie on both
-// sides of the wall. Cuts at contacts leave none of those. Light that leaks is a bias, not noise: no seeds are averaged.
-// Without cuts it leaks, which shows that the test can see it.
+// sides of the wall. Cuts at contacts leave none of those. Light that leaks is a bias, not noise: no seeds are
+// averaged. Without cuts it leaks, which shows that the test can see it.
 
 #include <gtest/gtest.h>
 

@@ -113,7 +113,8 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     }
 }
 
-// Seen to fail (with one ray, on the command line) with hierarchical methods, whose preparation took more rays than there were.
+// Seen to fail (with one ray, on the command line) with hierarchical methods, whose preparation took more rays than
+// there were.
 TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
     const Scene scene = colourful_box();
     for (const char* method : {"srr", "hsrr", "ihsrr"})
