@@ -148,7 +148,7 @@ void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
         box.extend(e.box);
         centres.extend({e.centre(), e.centre()});
     }
-    const auto finish = [&](Cone cone, float power) {
+    const auto finish = [&](const Cone& cone, float power) {
         Node& node = nodes_[index];
         node.centre = 0.5f * (box.low + box.high);
         node.half = 0.5f * (box.high - box.low);

@@ -62,7 +62,7 @@ class LightTree {
     static Cone bounding_cone(const Cone& a, const Cone& b);
     static float importance(const Node& node, const V3f& x, const V3f& n);
     static Split best_split(std::span<const Emitter> emitters, const Box& centres);
-    void build(std::uint32_t node, std::span<Emitter> emitters);
+    void build(std::uint32_t index, std::span<Emitter> emitters);
 
     std::vector<Node> nodes_;          // [0] is the root; empty without emitting patches
     std::vector<std::uint32_t> leaf_;  // of each patch; none where it does not emit

@@ -176,7 +176,8 @@ class Wavefront {
             keys_.push_back(key);
             fill_points(PointSet::sobol, key, 0, size, points);
             const auto width = static_cast<std::uint32_t>(s_.width);
-            const auto left = static_cast<float>(b.pixel % width), top = static_cast<float>(b.pixel / width);
+            const std::uint32_t column = b.pixel % width, row = b.pixel / width;
+            const auto left = static_cast<float>(column), top = static_cast<float>(row);
             for (std::size_t i = 0; i < size; ++i) {
                 rays_.push_back(s_.camera.ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
                 paths_.push_back({Rgb(1, 1, 1), static_cast<std::uint32_t>(paths_.size()), V3f(0, 0, 0)});

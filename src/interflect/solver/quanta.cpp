@@ -8,7 +8,7 @@ namespace interflect {
 void Quanta::add(double power, std::int64_t rays) {
     if (!(power > 0) || rays == 0) return;
     if (rays_.empty()) rays_.resize(bins, 0);
-    const double bin = std::floor(bins_per_octave * std::log2(power)) + bins / 2;
+    const double bin = std::floor(bins_per_octave * std::log2(power)) + middle_bin;
     rays_[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1.0))] += rays;
     power_ += power * static_cast<double>(rays);
     largest_ = std::max(largest_, power);
@@ -34,7 +34,7 @@ double Quanta::quantile_over_mean(double share) const {
     std::size_t bin = rays_.size();
     while (bin > 0 && above + static_cast<double>(rays_[bin - 1]) <= exceeding)
         above += static_cast<double>(rays_[--bin]);
-    const double upper_end = std::exp2((static_cast<double>(bin) - bins / 2) / bins_per_octave);
+    const double upper_end = std::exp2((static_cast<double>(bin) - middle_bin) / bins_per_octave);
     return std::min(upper_end, largest_) / power_ * static_cast<double>(count_);
 }
 

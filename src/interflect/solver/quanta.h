@@ -17,7 +17,7 @@ class Quanta {
     double quantile_over_mean(double share) const;
 
   private:
-    static constexpr int bins_per_octave = 4, bins = 1024;
+    static constexpr int bins_per_octave = 4, middle_bin = 512, bins = 2 * middle_bin;
     std::vector<std::int64_t> rays_;  // of each bin; empty as long as there are none
     double power_ = 0, largest_ = 0;
     std::int64_t count_ = 0;
