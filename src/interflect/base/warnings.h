@@ -6,7 +6,7 @@
 
 namespace interflect {
 
-/// What is legal but not carried, counted once a kind, so that ten thousand of them make one line.
+/// What is valid but unsupported: one counted entry per kind, so that ten thousand of them make one line.
 class Warnings {
   public:
     struct Entry {

@@ -12,8 +12,8 @@ namespace interflect {
 
 /// What the rays of a step bring to elements, as integers in units of the step's, so that the order of arrival does not
 /// matter: three channels of power, the square of its luminance, then importance. Every thread collects arrivals in a
-/// Sorter of its own, which hands them on by the hundred and by region of the forest: no addition is atomic, and those
-/// of one lot are close together.
+/// Sorter of its own, a scatter buffer binned by region of the forest: a full bin is flushed at once, so no addition is
+/// atomic, and those of one bin are close together.
 class Arrivals {
   public:
     static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
