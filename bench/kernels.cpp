@@ -45,9 +45,9 @@ struct SolvedMaze {
         return o;
     }
     TransportStep step(std::int64_t rays, bool refines) {
-        TransportStep step =
-            power_step(surfaces, solution, Light(surfaces, solution.irradiance), power_driver(solution), true, rays)
-                .step;
+        TransportStep step = power_step(surfaces, solution, Light(surfaces, solution.irradiance),
+                                        power_driver(solution, Neighbourhoods(forest)), true, rays)
+                                 .step;
         if (refines) step.oracle = make_oracle(solution, solution.options.rays, 1e-6);
         step.oracle.most_elements = forest.size();
         return step;

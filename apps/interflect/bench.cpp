@@ -68,7 +68,8 @@ struct Workload {
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Light light(surfaces, solution.irradiance);
-        step = power_step(surfaces, solution, light, power_driver(solution), combined, options.rays).step;
+        const PowerDriver driver = power_driver(solution, Neighbourhoods(*forest));
+        step = power_step(surfaces, solution, light, driver, combined, options.rays).step;
         if (options.method.refines && !refines_by_variance(options))
             step.oracle = make_oracle(solution, options.rays, options.smallest_area);
         step.oracle.most_elements = forest->size();

@@ -58,21 +58,23 @@ struct Setting {
     }
 
     /// An iteration of so many rays. Siblings differ from their parent by the signal and by noise that has, before the
-    /// siblings' mean is taken off, factor[level] times `variance` / rays; the model is told `variance` / rays.
+    /// siblings' mean is taken off, factor[level] times `variance` / rays on a patch and four times as much from level
+    /// to level; the model is told the same without the factor.
     template <class Signal>
     FreshEstimate iteration(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
         const ElementForest& forest = *run.forest;
-        FreshEstimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)),
-                            std::vector<float>(forest.size(), variance / rays)};
+        FreshEstimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)), std::vector<float>(forest.size(), 0.0f)};
+        const auto independent = [&](int level) { return variance / rays * std::pow(4.0f, static_cast<float>(level)); };
+        for (std::uint32_t e = 0; e < forest.size(); ++e) fresh.variance[e] = independent(forest.level(e));
         std::normal_distribution<float> normal;
-        const auto noise = [&](std::size_t level) {
-            return std::sqrt(factor[level] * variance / rays) * normal(random);
+        const auto noise = [&](int level) {
+            return std::sqrt(factor[static_cast<std::size_t>(level)] * independent(level)) * normal(random);
         };
         for (std::uint32_t e = 0; e < forest.patch_count(); ++e) fresh.irradiance[e] = Rgb(1 + noise(0));
         for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
             std::array<float, 4> difference;
             float mean = 0;
-            for (float& d : difference) mean += (d = noise(static_cast<std::size_t>(forest.level(first)))) / 4;
+            for (float& d : difference) mean += (d = noise(forest.level(first))) / 4;
             for (std::uint32_t k = 0; k < 4; ++k)
                 fresh.irradiance[first + k] =
                     fresh.irradiance[forest.parent(first)] + Rgb(difference[k] - mean + signal(first, k));
@@ -91,24 +93,39 @@ struct Setting {
 
 constexpr auto no_signal = [](std::uint32_t, std::uint32_t) { return 0.0f; };
 
-TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseEachLevelHas) {
-    Setting s(10, 2);  // 600 patches, 2400 and 9600 elements below
+TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
+    Setting s(10, 2);  // 600 patches, 2400 and 9600 elements below, which one ray in 2, 8 and 32 meets
     const std::vector<float> factor{3, 1, 0.1f};
-    constexpr float variance = 2;  // of one ray
+    constexpr float variance = 3;  // of one ray, on a patch
     for (int k = 0; k < 12; ++k) {
         EXPECT_EQ(s.run.noise.is_known(), k > 1) << k;
-        s.iterate(100.0f * static_cast<float>(1 + k), factor, variance, no_signal);
+        s.iterate(1e5f * static_cast<float>(1 + k), factor, variance, no_signal);
     }
     const std::array<std::uint32_t, 3> first{0, 600, 3000};
     for (std::size_t level = 0; level < 3; ++level) {
         // Three of four siblings are independent; four iterations count, by the model's memory.
-        const double expected = variance * factor[level] * (level == 0 ? 1 : 0.75);
+        const double expected = variance * std::pow(4.0, level) * factor[level] * (level == 0 ? 1 : 0.75);
         const double freedom = 4.0 * (level == 0 ? 600 : 0.75 * (level == 1 ? 2400 : 9600));
-        const double found = s.run.noise.variance(*s.run.forest, first[level], 1);
+        const double found = s.run.noise.variance(*s.run.forest, s.run.solution.irradiance, first[level], 1);
         EXPECT_NEAR(found / expected, 1, sure * std::sqrt(2 / freedom)) << "level " << level;
         EXPECT_GT(std::abs(found / (1.5 * expected) - 1), sure * std::sqrt(2 / freedom)) << "would notice a half more";
-        EXPECT_NEAR(s.run.noise.variance(*s.run.forest, first[level], 10) / found, 0.1, 1e-5) << "falls with the rays";
+        const double with_ten = s.run.noise.variance(*s.run.forest, s.run.solution.irradiance, first[level], 10);
+        EXPECT_NEAR(with_ten / found, 0.1, 1e-5) << "falls with the rays";
     }
+}
+
+TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
+    const Rgb rho(0.8f, 0.1f, 0.4f);
+    const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", rho, Rgb(1)}});
+    const RayCaster ray_caster(scene);
+    SolveOptions options = Setting::hierarchical();
+    options.views.push_back({{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}});
+    const Monitor monitor;
+    interflect::Run run(scene, ray_caster, options, monitor);
+    run.solution.view_importance.assign(run.forest->size(), 1.0f);
+    run.solution.irradiance[0] = {3, -0.89f, 0.2f};  // of luminance 0.02, but what is reflected has 0.4
+    EXPECT_LE(error_weight(run, 0), 0.8 * 0.8);
+    EXPECT_GE(error_weight(run, 0), 0.1 * 0.1);
 }
 
 class Risk : public testing::TestWithParam<double> {};

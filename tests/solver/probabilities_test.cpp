@@ -34,7 +34,7 @@ class Weights : public testing::Test {
         return scene;
     }
     Sampled sampled() const {
-        return {surfaces_, forest_, Light(surfaces_, irradiance_), Importance(importance_), importance_};
+        return {surfaces_, forest_, Light(surfaces_, irradiance_), Importance(importance_), importance_, nearby_};
     }
     template <class Weight>
     std::vector<double> of_leaves(const Weight& weight) const {
@@ -49,6 +49,7 @@ class Weights : public testing::Test {
     // By element: the divided square, the black one, the parts of the first.
     std::vector<Rgb> irradiance_{Rgb(9), Rgb(2), Rgb(4, 4, 4), Rgb(0), Rgb(0, 0, 4), Rgb(4)};
     std::vector<float> importance_{9, 1, 3, 3, 0, 0.75f};
+    std::vector<float> nearby_{2, 5};  // of the two squares
 };
 
 TEST_F(Weights, OfPowerAreTheSumOfTheChannelsTimesTheArea) {
@@ -77,6 +78,14 @@ TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
     EXPECT_THAT(
         q, ElementsAre(0, FloatNear(0.06f + 0.06f, 1e-7f), FloatNear(0.06f + 0.18f + 0.15f, 1e-7f),
                        FloatNear(0.15f, 1e-7f), FloatNear(0.03f, 1e-7f), FloatNear(0.06f + 0.045f + 0.0375f, 1e-7f)));
+}
+
+TEST_F(Weights, AreDrivenByTheImportanceNearbyOfWholePatches) {
+    using testing::FloatNear;
+    EXPECT_THAT(of_leaves(&Sampled::power_nearby), ElementsAre(30, 12, 0, 6, 12));
+    EXPECT_THAT(mixture(sampled(), {.power = 0.21, .power_nearby = 0.6}).q,
+                ElementsAre(0, FloatNear(0.06f + 0.3f, 1e-7f), FloatNear(0.06f + 0.12f, 1e-7f), 0,
+                            FloatNear(0.03f + 0.06f, 1e-7f), FloatNear(0.06f + 0.12f, 1e-7f)));
 }
 
 TEST_F(Weights, ThatAre0EverywhereLeaveTheirShareToTheOthers) {

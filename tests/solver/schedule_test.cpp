@@ -87,6 +87,17 @@ TEST(Schedule, HasNoTinyLastIteration) {
     EXPECT_EQ(all_plans(schedule).back().rays, 1300);
 }
 
+TEST(Schedule, EndsWithTheFinalIterationEvenIfLightRanOutBeforeTheRaysDid) {
+    SolveOptions options;
+    options.rays = 1000;
+    Schedule schedule(options, patches);
+    for (IterationPlan plan = schedule.next(0); plan.rays > 0; plan = schedule.next(0)) {
+        if (plan.is_final) plan.rays -= 2;
+        schedule.done(plan);
+    }
+    EXPECT_EQ(schedule.rays(), 998);
+}
+
 TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
     SolveOptions options;
     EXPECT_EQ(Schedule(options, patches).start_rays(), 50'000);

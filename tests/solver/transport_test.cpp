@@ -199,6 +199,24 @@ TEST(Transport, BringsImportanceToTheLeavesWhereverPowerEnds) {
     EXPECT_NE(at_patches.irradiance, at_leaves.irradiance);
 }
 
+TEST(Transport, FindsTheImportanceOfASourceByTheRaysThatLeaveIt) {
+    // Importance 1 everywhere: one bounce of it brings rho psi, and every ray that leaves a patch finds just that.
+    Room room(closed_box({1, 2, 3}, 4, {{"wall", Rgb(0.5f), Rgb(1)}}));
+    const std::vector<float> importance(room.forest.size(), 1.0f);
+    TransportStep step = room.step();
+    step.importance = Importance(importance);
+    step.rays = 300;  // three a patch, and as many arrive
+    step.q.assign(step.q.size(), 1.0f);
+    step.q[7] = 200;
+    SampleStreams streams = streams_of(1);
+    const std::vector<float> found = room.receive(streams, step).importance;
+    EXPECT_NEAR(found[7], 0.5, 0.03) << "two thirds of the rays leave it, a few arrive";
+    float least = 1, most = 0;
+    for (std::size_t i = 8; i < found.size(); ++i) least = std::min(least, found[i]), most = std::max(most, found[i]);
+    EXPECT_LT(least, 0.3) << "one ray leaves it, or none: known from what arrives alone";
+    EXPECT_GT(most, 0.7);
+}
+
 TEST(Transport, AdvancesTheStreamsByWhatItShot) {
     Room room(colourful_box());
     SampleStreams streams = streams_of(1);

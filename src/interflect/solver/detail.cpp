@@ -28,11 +28,15 @@ struct AddedError {
     float noise = 0, bias = 0;
 };
 
-AddedError added_error(const Run& run, const Detail& detail) {
+AddedError added_error(const Run& run, std::uint32_t first) {
+    const Detail detail = detail_of(run, first);
     if (detail.noise == unknown) return {};  // they are what their parent is
     if (!shrinks(run)) return {detail.noise, 0};
     const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
-    return {noise, detail.risk() - noise};
+    // Four numbers of this mean, none below 0, differ by no more, however noisy they are: else a few elements that one
+    // heavy ray met would outweigh all others.
+    const float mean = luminance(run.solution.irradiance[run.forest->parent(first)]);
+    return {noise, std::max(detail.risk() - noise, -3 * mean * mean)};
 }
 
 /// Pixels are averages: what is left of the mean square of a quantity that is constant over squares of one area and
@@ -58,9 +62,10 @@ ElementErrors element_errors(const Run& run, bool of_pixels) {
         return of_pixels ? left_by_pixels(forest.area(e), pixel_area(run, e)) : 1.0f;
     };
     for (std::uint32_t root = 0; root < forest.patch_count(); ++root)
-        errors.noise[root] = run.noise.variance(forest, root, std::max(run.history[root], 1.0f)) * left(root);
+        errors.noise[root] =
+            run.noise.variance(forest, run.solution.irradiance, root, std::max(run.history[root], 1.0f)) * left(root);
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const auto [noise, bias] = added_error(run, detail_of(run, first));
+        const auto [noise, bias] = added_error(run, first);
         const std::uint32_t parent = forest.parent(first);
         const float share = left(first);
         for (std::uint32_t e = first; e < first + 4; ++e) {
@@ -153,7 +158,7 @@ Detail detail_of(const Run& run, std::uint32_t first) {
         const float difference = luminance(irradiance[e]) - mean, a = forest.area(e);
         area += a;
         spread += a * difference * difference;
-        variance += a * run.noise.variance(forest, e, run.history[first]);
+        variance += a * run.noise.variance(forest, irradiance, e, run.history[first]);
     }
     return {spread / area, variance / area};
 }
@@ -194,7 +199,8 @@ double error_reference(const Run& run) {
 double error_weight(const Run& run, std::uint32_t element) {
     if (run.view.empty()) return 1;
     const Rgb& rho = run.surfaces.reflectance(run.forest->patch(element));
-    const Rgb& h = run.solution.irradiance[element];
+    Rgb h = run.solution.irradiance[element];
+    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences may be less than none
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
     return static_cast<double>(run.solution.view_importance[element]) * factor * factor;

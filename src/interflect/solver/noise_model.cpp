@@ -10,15 +10,15 @@ namespace {
 
 /// What is known from earlier iterations counts so much less with each: mesh and sampling weights change.
 constexpr double memory = 0.75;
-/// A level's scale is taken to lie within this factor of 1.
+/// The scale is taken to lie within this factor of 1.
 constexpr double largest_scale = 100;
 
 }  // namespace
 
 NoiseModel::Spread& NoiseModel::Spread::operator+=(const Spread& other) {
-    for (std::size_t l = 0; l < levels; ++l) {
-        observed[l] += other.observed[l];
-        independent[l] += other.independent[l];
+    for (std::size_t n = 0; n < rarities; ++n) {
+        observed[n] += other.observed[n];
+        independent[n] += other.independent[n];
     }
     return *this;
 }
@@ -35,27 +35,33 @@ void NoiseModel::add(const ElementForest& forest, const FreshEstimate& fresh, st
             Spread sum;
             for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
                 const float m = history[e];
-                per_ray_[e] += rays / (rays + std::max(m, rays)) * (rays * fresh.variance[e] - per_ray_[e]);
-                if (iterations_ == 0) per_ray_[e] = rays * fresh.variance[e];
                 if (!(m > 0)) continue;
                 float difference = luminance(fresh.irradiance[e]) - luminance(mean[e]);
                 if (const std::uint32_t parent = forest.parent(e); parent != none)
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
-                const auto level = static_cast<std::size_t>(forest.level(e));
-                sum.observed[level] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
-                sum.independent[level] += w * static_cast<double>(independent_variance(forest, e));
+                const std::size_t n = rarity(forest, mean, e);
+                // What either of the two told by itself.
+                const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
+                sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
+                sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);
             }
             return sum;
         });
+    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e) {
+            const float share = iterations_ == 0 ? 1 : rays / (rays + std::max(history[e], rays));
+            per_ray_[e] += share * (rays * fresh.variance[e] - per_ray_[e]);
+        }
+    });
     ++iterations_;
     if (!is_known()) return;
-    for (std::size_t l = 0; l < levels; ++l) {
-        spread_.observed[l] = memory * spread_.observed[l] + spread.observed[l];
-        spread_.independent[l] = memory * spread_.independent[l] + spread.independent[l];
-        if (!(spread_.independent[l] > 0)) continue;
-        const double scale = spread_.observed[l] / spread_.independent[l];
-        scale_[l] = static_cast<float>(std::clamp(scale, 1 / largest_scale, largest_scale));
+    for (std::size_t n = 0; n < rarities; ++n) {
+        spread_.observed[n] = memory * spread_.observed[n] + spread.observed[n];
+        spread_.independent[n] = memory * spread_.independent[n] + spread.independent[n];
+        if (!(spread_.independent[n] > 0)) continue;
+        const double scale = spread_.observed[n] / spread_.independent[n];
+        scale_[n] = static_cast<float>(std::clamp(scale, 1 / largest_scale, largest_scale));
     }
 }
 

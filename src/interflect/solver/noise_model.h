@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -19,16 +20,17 @@ struct FreshEstimate {
 
 /// How noisy the running mean of irradiance is. Of every element it keeps the variance that one ray would cause if rays
 /// arrived independently: that is known from few rays. How much less it is thanks to low-discrepancy points, or more
-/// since noise is reflected on, is told by how much independent iterations differ, for the elements of a level
-/// together.
+/// since noise is reflected on, is told by how much independent iterations differ, for all elements together that about
+/// as many rays meet: points are the better distributed the more there are of them, and no element that a single heavy
+/// ray met counts for those that thousands do.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
     /// Variance of the luminance of an element's irradiance where that is the mean of so many rays: of a root; of
-    /// others, of their difference from their parent.
-    float variance(const ElementForest& forest, std::uint32_t e, float rays) const {
-        return scale_[static_cast<std::size_t>(forest.level(e))] * independent_variance(forest, e) / rays;
+    /// others, of their difference from their parent. @param mean  The running mean, of every element.
+    float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
+        return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     /// Whether two iterations have been compared.
     bool is_known() const { return iterations_ > 1; }
@@ -45,20 +47,31 @@ class NoiseModel {
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
   private:
-    static constexpr std::size_t levels = ElementForest::deepest_level + 1;
-    /// Squares of differences between an iteration and the mean, summed over the elements of each level.
+    static constexpr std::size_t rarities = 48;
+    /// Squares of differences between an iteration and the mean, summed over the elements of each rarity.
     struct Spread {
-        std::array<double, levels> observed{}, independent{};
+        std::array<double, rarities> observed{}, independent{};
         Spread& operator+=(const Spread& other);
     };
 
+    /// How few of all rays meet an element: one in about 2^n. Siblings, of which one was met by luck, have the same n.
+    std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
+        const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
+        const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
+        if (!(rays_per_arrival < 0x1p45f)) return rarities - 1;
+        const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
+        return static_cast<std::size_t>(n + (parent == none ? 0 : 2));
+    }
     /// Of siblings' independent variance three quarters are left of that of their differences from their mean.
+    static float share_of_own(const ElementForest& forest, std::uint32_t e) {
+        return e < forest.patch_count() ? 1.0f : 0.75f;
+    }
     float independent_variance(const ElementForest& forest, std::uint32_t e) const {
-        return (e < forest.patch_count() ? 1.0f : 0.75f) * per_ray_[e];
+        return share_of_own(forest, e) * per_ray_[e];
     }
 
     std::vector<float> per_ray_;  // [irradiance^2]
-    std::array<float, levels> scale_;
+    std::array<float, rarities> scale_;
     Spread spread_;  // of all iterations, later ones counting more
     int iterations_ = 0;
 };

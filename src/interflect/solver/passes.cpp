@@ -135,7 +135,7 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
     BounceBudget budget(rays, state.bounces, state.is_final);
     FreshEstimate fresh{std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
     std::vector<Rgb> unshot = handed_on(state, run.forest->size(), rays);
-    std::vector<float> driver = power_driver(solution);
+    PowerDriver driver = power_driver(solution, run.neighbourhoods);
     PowerStep first;
     run.quanta = {};
     for (bool emits = true; !budget.is_last(); emits = false) {
@@ -151,7 +151,8 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
         if (oracle_refines)
             bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
         unshot = trace_bounce(run, std::move(bounce.step), fresh, escaped_power);
-        if (!driver.empty()) inherit(*run.forest, static_cast<std::uint32_t>(driver.size()), driver);
+        if (!driver.elements.empty())
+            inherit(*run.forest, static_cast<std::uint32_t>(driver.elements.size()), driver.elements);
     }
     state.bounces = budget.bounces();
     state.unshot = std::move(unshot);

@@ -15,12 +15,13 @@ struct Weights {
     double power = 0, importance = 0;
 };
 struct WeightSums {
-    double power = 0, driven_power = 0, importance = 0;
+    double power = 0, driven_power = 0, power_nearby = 0, importance = 0;
     std::int64_t lost = 0;
 
     WeightSums& operator+=(const WeightSums& other) {
         power += other.power;
         driven_power += other.driven_power;
+        power_nearby += other.power_nearby;
         importance += other.importance;
         lost += other.lost;
         return *this;
@@ -29,7 +30,7 @@ struct WeightSums {
 
 /// Weighs every leaf, and adds up in double precision and always in the same order.
 WeightSums weigh_leaves(const Sampled& s, const Shares& shares, StableArray<Weights>& weights) {
-    const bool by_power = shares.power > 0 || shares.driven_power > 0;
+    const bool by_power = shares.power > 0 || shares.driven_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
         WeightSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
@@ -43,6 +44,7 @@ WeightSums weigh_leaves(const Sampled& s, const Shares& shares, StableArray<Weig
             sums.power += w.power;
             sums.importance += w.importance;
             if (shares.driven_power > 0) sums.driven_power += w.power * s.driver[e];
+            if (shares.power_nearby > 0) sums.power_nearby += w.power * s.nearby[s.forest.patch(e)];
             weights[e] = w;
         }
         return sums;
@@ -67,13 +69,16 @@ Mixture mixture(const Sampled& sampled, const Shares& shares) {
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
     const double for_power = factor(shares.power, sums.power),
                  for_driven = factor(shares.driven_power, sums.driven_power),
+                 for_nearby = factor(shares.power_nearby, sums.power_nearby),
                  for_importance = factor(shares.importance, sums.importance);
     std::vector<float> q(forest.size());
     parallel_for_ranges(q.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t e = begin; e < end; ++e) {
-            const double driver = for_driven > 0 ? sampled.driver[e] : 0;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            double by_power = for_power;
+            if (for_driven > 0) by_power += for_driven * sampled.driver[e];
+            if (for_nearby > 0) by_power += for_nearby * sampled.nearby[forest.patch(e)];
             const Weights& w = weights[e];
-            q[e] = static_cast<float>((for_power + for_driven * driver) * w.power + for_importance * w.importance);
+            q[e] = static_cast<float>(by_power * w.power + for_importance * w.importance);
         }
     });
     return {std::move(q), sums.lost, sums.power, sums.driven_power};

@@ -16,11 +16,13 @@ struct Sampled {
     Light light;                      ///< B [lm/m^2 or W/m^2].
     Importance reflected_importance;  ///< psi of Eq. 8 [1/m^2].
     std::span<const float> driver;    ///< psi of Eq. 9 or 10, total or indirect importance, of every element [1/m^2].
+    std::span<const float> nearby = {};  ///< The same of every patch, as it is in its neighbourhood.
 
     /// Eq. 3: P_s, all channels together.
     double power(std::uint32_t s) const {
         return channel_sum(RgbD(light.radiosity(forest, s))) * static_cast<double>(forest.area(s));
     }
+    double power_nearby(std::uint32_t s) const { return power(s) * nearby[forest.patch(s)]; }
     /// Eq. 9 and 10: P_s psi_s.
     double driven_power(std::uint32_t s) const { return power(s) * driver[s]; }
     /// Eq. 8: rho_s I_s.
@@ -34,6 +36,7 @@ struct Sampled {
 /// others.
 struct Shares {
     double power = 0, driven_power = 0, importance = 0;
+    double power_nearby = 0;  ///< By power times the importance nearby.
 };
 
 /// Who gets rays.

@@ -9,6 +9,8 @@ namespace interflect {
 void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
                     std::span<const Parameters> origins, std::span<const Hit> hits) {
     const std::uint32_t source = sorter_.add_source(load);
+    left_.push_back({leaf, 0});
+    const auto left = static_cast<std::uint32_t>(left_.size() - 1);
     bool way_is_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
@@ -16,10 +18,11 @@ void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<co
             ++escaped_.rays;
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
             sorter_.add(hits[r].patch, source, true, true);
+            if (gathered_) gather(left, hits[r].patch, hits[r].patch);
         } else {
             while (open_count_ == lanes) advance();
             if (!std::exchange(way_is_known, true)) find_way_to_leaf(leaf);
-            set_out(source, rays[r], origins[r], hits[r]);
+            set_out(source, left, rays[r], origins[r], hits[r]);
         }
     }
 }
@@ -37,6 +40,9 @@ void Receiver::finish_batch() {
     while (open_count_ > 0) advance();
     ways_.clear();
     sorter_.forget_sources();
+    if (gathered_)
+        for (const auto& [leaf, found] : left_) gathered_->add(leaf, found);
+    left_.clear();
 }
 
 Escaped Receiver::finish() {
@@ -66,12 +72,13 @@ void Receiver::find_way_to_leaf(std::uint32_t leaf) {
 }
 
 /// Begins at the patches of both ends.
-void Receiver::set_out(std::uint32_t source, const Ray& ray, const Parameters& start, const Hit& hit) {
+void Receiver::set_out(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start,
+                       const Hit& hit) {
     const std::size_t i = open_[open_count_++];
     const PatchGeometry& geometry = forest_.geometry(hit.patch);
     const PatchGeometry::Shape& shape = geometry.shape();
     const Parameters p = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
-    rays_[i] = {source, hit.patch, start};
+    rays_[i] = {source, hit.patch, left, start};
     pairs_.origin.set(i, shape.origin);
     pairs_.edge_u.set(i, shape.edge_u);
     pairs_.edge_v.set(i, shape.edge_v);
@@ -254,7 +261,7 @@ void Receiver::go_down() {
 
 /// Sends power to the receiver that was accepted, importance to the leaf or the patch that was hit.
 void Receiver::send(std::size_t i) {
-    const auto& [source, patch, start, reflectance] = rays_[i];
+    const auto& [source, patch, left, start, reflectance] = rays_[i];
     std::uint32_t leaf = pairs_.receiver[i];
     while (leaf >= old_size_) leaf = forest_.parent(leaf);
     const std::uint32_t of_power = refines_ ? pairs_.of_power[i] : leaf;
@@ -262,6 +269,11 @@ void Receiver::send(std::size_t i) {
     const bool together = of_power == of_importance || !step_.carries_importance();
     if (step_.carries_power()) sorter_.add(of_power, source, true, together);
     if (!step_.carries_power() || !together) sorter_.add(of_importance, source, false, true);
+    if (gathered_) gather(left, patch, leaf);
+}
+
+inline void Receiver::gather(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {
+    left_[left].found += static_cast<double>(surfaces_.mean_reflectance(patch) * step_.importance[leaf]);
 }
 
 }  // namespace interflect

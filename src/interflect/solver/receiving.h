@@ -10,6 +10,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/arrivals.h"
+#include "interflect/solver/gathering.h"
 #include "interflect/solver/surfaces.h"
 #include "interflect/solver/transport.h"
 
@@ -27,15 +28,17 @@ struct Escaped {
 class Receiver {
   public:
     /// @param old_size  Elements of the forest when the step began. All other arguments must outlive this.
+    /// @param gathered  Receives the importance that rays find; null: they look for none.
     Receiver(const Surfaces& surfaces, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
-             Arrivals& arrivals)
+             Arrivals& arrivals, GatheredImportance* gathered)
         : surfaces_(surfaces),
           forest_(forest),
           step_(step),
           old_size_(old_size),
           refines_(step.oracle.refines && step.carries_power()),
           needs_leaf_(!refines_ || (step.carries_importance() && !step.importance_at_patches)),
-          sorter_(arrivals) {
+          sorter_(arrivals),
+          gathered_(gathered) {
         std::iota(open_.begin(), open_.end(), 0u);
         pairs_.next.fill(none);
     }
@@ -85,6 +88,7 @@ class Receiver {
     /// What else must be known of a ray under way.
     struct UnderWay {
         std::uint32_t source, patch;  // patch: that was hit
+        std::uint32_t left;           // the leaf that the ray left, among left_
         Parameters start;             // on the patch that the ray left
         Rgb reflectance{0, 0, 0};     // rho_i
     };
@@ -102,7 +106,7 @@ class Receiver {
     template <class Condition>
     std::span<const std::uint32_t> open_lanes_if(Lanes& found, const Condition& condition) const;
     void find_way_to_leaf(std::uint32_t leaf);
-    void set_out(std::uint32_t source, const Ray& ray, const Parameters& start, const Hit& hit);
+    void set_out(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start, const Hit& hit);
     void advance();
     void look_up_receiver(std::size_t i);
     bool shooter_is_too_large(std::size_t i) const;
@@ -115,6 +119,7 @@ class Receiver {
     std::uint32_t children_of(std::uint32_t element);
     void go_down();
     void send(std::size_t i);
+    void gather(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf);
 
     const Surfaces& surfaces_;
     ElementForest& forest_;
@@ -123,6 +128,12 @@ class Receiver {
     bool refines_, needs_leaf_;
     Arrivals::Sorter sorter_;
     Escaped escaped_;
+    GatheredImportance* gathered_;
+    struct Left {
+        std::uint32_t leaf;
+        double found;  // importance, by its rays so far
+    };
+    std::vector<Left> left_;  // leaves whose rays the task has taken
     Pairs pairs_{};
     std::array<UnderWay, lanes> rays_;
     Lanes open_;  // lanes in use come first, then the others

@@ -47,6 +47,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
     solution.emitted_power = radiated_power(*forest, Light(surfaces, solution.irradiance));
     view.look(*forest, caster, o.eye_rays);
     if (view.empty()) return;
+    neighbourhoods = Neighbourhoods(*forest);
     solution.view_importance = view.per_area(*forest, !o.importance_at_elements);
     solution.indirect_importance.assign(forest->size(), 0.0f);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interflect/solver/element_floor.h"
+#include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/noise_model.h"
 #include "interflect/solver/schedule.h"
 #include "interflect/solver/solve.h"
@@ -28,6 +29,7 @@ struct Run {
     const std::shared_ptr<ElementForest> forest;
     ViewImportance view;
     const ElementFloor floor;
+    Neighbourhoods neighbourhoods;  // none without a view
     SampleStreams streams;
     Schedule schedule;
     Solution solution;

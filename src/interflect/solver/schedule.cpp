@@ -36,6 +36,7 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
 
 IterationPlan Schedule::next(double seconds) const {
     const bool warming_up = finished_ < options_.warm_up;
+    if (is_over_) return {};
     if (options_.iterations > 0 && finished_ >= options_.warm_up + options_.iterations) return {};
     const std::int64_t left = options_.rays - rays_;
     std::int64_t rays = smallest_;
@@ -58,6 +59,7 @@ IterationPlan Schedule::next(double seconds) const {
 
 void Schedule::done(const IterationPlan& plan) {
     rays_ += plan.rays;
+    is_over_ = plan.is_final;
     const bool warming_up = finished_++ < options_.warm_up;
     averaged_rays_ = warming_up ? 0 : averaged_rays_ + plan.rays;
 }

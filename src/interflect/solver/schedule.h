@@ -10,7 +10,7 @@ namespace interflect {
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
     bool warms_up = false;  ///< It is not averaged: the next one takes its place.
-    bool is_final = false;  ///< It has all rays that are left.
+    bool is_final = false;  ///< It has all rays that are left, and the run ends with it, even if light runs out first.
 };
 
 /// How many rays the next iteration gets. Iterations are averaged by their ray counts, tau = N_m / (N_1 + ... + N_m) in
@@ -37,6 +37,7 @@ class Schedule {
     std::int64_t rays_ = 0;           // traced so far
     std::int64_t averaged_rays_ = 0;  // of them in the running mean
     int finished_ = 0;                // iterations
+    bool is_over_ = false;            // the final one is done
 };
 
 }  // namespace interflect

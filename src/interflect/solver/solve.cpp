@@ -72,7 +72,8 @@ RgbD iterate(Run& run, IterationPlan& plan) {
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         const Light light(run.surfaces, solution.irradiance);
-        TransportStep step = power_step(run.surfaces, solution, light, power_driver(solution), combined, rays).step;
+        const PowerDriver driver = power_driver(solution, run.neighbourhoods);
+        TransportStep step = power_step(run.surfaces, solution, light, driver, combined, rays).step;
         const bool deferred = run.options.defer_refinement && plan.warms_up;
         if (run.options.method.refines && !deferred)
             step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());

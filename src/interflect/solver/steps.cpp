@@ -11,14 +11,21 @@ namespace {
 
 /// SolveOptions::epsilon is the threshold after so many rays.
 constexpr double rays_at_epsilon = 20e6;
+/// Of the rays that importance drives these go by that of the neighbourhood.
+constexpr double share_of_nearby = 0.2;
+/// So much of its neighbourhood's importance a patch has there, and that of the next larger one.
+constexpr float taken_over = 0.3f;
 
 /// How the rays of a step that carries power are shared: Eq. 3, 9, 10, and 11 where it carries importance too.
-Shares power_step_shares(const Solution& so_far, bool combined) {
+Shares power_step_shares(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
-    const double for_power = combined ? 1 - o.alpha : 1;
-    return {
-        .power = for_power * o.beta, .driven_power = for_power * (1 - o.beta), .importance = combined ? o.alpha : 0};
+    const double for_power = combined ? 1 - o.alpha : 1, driven = for_power * (1 - o.beta);
+    const double by_nearby = nearby ? share_of_nearby * driven : 0;
+    return {.power = for_power * o.beta,
+            .driven_power = driven - by_nearby,
+            .importance = combined ? o.alpha : 0,
+            .power_nearby = by_nearby};
 }
 
 }  // namespace
@@ -42,23 +49,29 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-std::vector<float> power_driver(const Solution& so_far) {
+PowerDriver power_driver(const Solution& so_far, const Neighbourhoods& neighbourhoods) {
     const SolveOptions& o = so_far.options;
-    if (power_step_shares(so_far, false).driven_power == 0) return {};
+    const ElementForest& forest = *so_far.forest;
+    if (power_step_shares(so_far, false, false).driven_power == 0) return {};
     const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
                            : o.total_importance                            ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
-    return driving_importance(*so_far.forest, psi, o.importance_smoothing, o.importance_exponent);
+    PowerDriver driver{driving_importance(forest, psi, o.importance_smoothing, o.importance_exponent), {}};
+    if (neighbourhoods.empty() || o.importance_smoothing == 0) return driver;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) driver.nearby.push_back(psi[i]);
+    neighbourhoods.smooth(forest, driver.nearby, taken_over);
+    for (float& x : driver.nearby) x = std::pow(x, static_cast<float>(o.importance_exponent));
+    return driver;
 }
 
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, std::span<const float> driver,
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, const PowerDriver& driver,
                      bool combined, std::int64_t rays) {
     TransportStep step;
-    const Shares shares = power_step_shares(so_far, combined);
+    const Shares shares = power_step_shares(so_far, combined, !driver.nearby.empty());
     step.light = step.known_light = light;
     if (combined) step.importance = importance_of(so_far);
     auto [q, lost_leaves, power, driven_power] =
-        mixture({surfaces, *so_far.forest, light, step.importance, driver}, shares);
+        mixture({surfaces, *so_far.forest, light, step.importance, driver.elements, driver.nearby}, shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/solve.h"
 #include "interflect/solver/surfaces.h"
 #include "interflect/solver/transport.h"
@@ -21,9 +22,12 @@ Importance importance_of(const Solution& so_far);
 /// The same, added up.
 std::vector<float> total_importance(const Solution& so_far);
 
-/// The importance that drives the rays of power, of every element, as the method and the options ask for; empty where
-/// none does.
-std::vector<float> power_driver(const Solution& so_far);
+/// The importance that drives the rays of power, as the method and the options ask for; empty where none does.
+struct PowerDriver {
+    std::vector<float> elements;
+    std::vector<float> nearby;  ///< Of patches, as it is in their neighbourhoods; empty where it is taken as it is.
+};
+PowerDriver power_driver(const Solution& so_far, const Neighbourhoods& neighbourhoods);
 
 /// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
 /// drives rays (Eq. 9, 10; 0 where none does).
@@ -34,11 +38,12 @@ struct PowerStep {
 
 /// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
 /// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
-/// alone. No oracle is set.
+/// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
+/// taken for unimportant the few rays that start there carry much. No oracle is set.
 /// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
 /// @param driver  power_driver(so_far).
 /// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, std::span<const float> driver,
+PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, const PowerDriver& driver,
                      bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to

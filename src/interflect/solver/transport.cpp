@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/solver/arrivals.h"
+#include "interflect/solver/gathering.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/receiving.h"
@@ -117,12 +119,14 @@ struct Totals {
     RgbD power{0, 0, 0};  ///< [lm or W]
     double square = 0;    ///< Of the luminance of each ray's power, summed.
     double importance = 0;
+    double importance_square = 0;  ///< Of each ray's importance, summed.
     Quanta quanta;
 
     Totals& operator+=(const Totals& other) {
         power += other.power;
         square += other.square;
         importance += other.importance;
+        importance_square += other.importance_square;
         quanta += other.quanta;
         return *this;
     }
@@ -142,7 +146,11 @@ Totals all_carried(const TransportStep& step, const RayAllocation& allocation, c
                     sum.square += std::pow(luminance(power), 2) * count;
                     sum.quanta.add(channel_sum(power), next - first);
                 }
-                if (step.carries_importance()) sum.importance += carried.importance(leaf) * count;
+                if (step.carries_importance()) {
+                    const double importance = carried.importance(leaf);
+                    sum.importance += importance * count;
+                    sum.importance_square += importance * importance * count;
+                }
                 return true;
             });
         return sum;
@@ -217,7 +225,39 @@ void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_eleme
     }
 }
 
-/// Turns sums of arrivals into what each element receives, per unit of area, from its own and its ancestors' arrivals.
+/// Nothing where a step carries no importance, or none that leaves are told apart by.
+std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Surfaces& surfaces,
+                                              const ElementForest& forest) {
+    if (!step.carries_importance() || step.importance_at_patches) return {};
+    std::vector<double> largest((forest.size() + elements_at_once - 1) / elements_at_once, 0.0);
+    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        double& most = largest[begin / elements_at_once];
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+            most = std::max<double>(most, surfaces.mean_reflectance(forest.patch(e)) * step.importance[e]);
+    });
+    return std::optional<GatheredImportance>(std::in_place, *std::max_element(largest.begin(), largest.end()),
+                                             step.rays, forest.size());
+}
+
+/// Replaces the importance that a leaf received by its mean with what the leaf's own rays found. Each of these counts
+/// as one ray, and as many are expected to have brought it as if all that do carried alike: weights that do not depend
+/// on what is found leave the mean where it is.
+void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
+           const GatheredImportance& gathered, double importance_per_ray, std::vector<float>& received) {
+    constexpr std::size_t blocks_at_once = 16;
+    parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
+                const auto leaf = static_cast<std::uint32_t>(s);
+                const auto left = static_cast<double>(next - first);
+                const double arrived = step.importance[leaf] * forest.area(leaf) / importance_per_ray;
+                received[leaf] = static_cast<float>((arrived * received[leaf] + gathered.sum(leaf)) / (arrived + left));
+                return true;
+            });
+    });
+}
+
+/// Turns sums of arrivals into what each element receives, per unit of area.
 void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
     constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums fill a large page of 2 MiB
@@ -236,6 +276,10 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
         }
         arrived.release(begin, end);
     });
+}
+
+/// Adds what ancestors received, and lets inner elements have the mean of their children.
+void balance(const ElementForest& forest, const TransportStep& step, Received& received) {
     if (step.carries_power() && !step.leaves_only) {
         push(forest, received.irradiance), pull(forest, received.irradiance);
         push(forest, received.variance), pull_variance(forest, received.variance);
@@ -263,7 +307,10 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     const Units units(all);
     Arrivals arrivals(forest.size(), forest.capacity());
     const std::uint32_t old_size = forest.size();
-    tbb::enumerable_thread_specific<Batch> batches([&] { return Batch({surfaces, forest, step, old_size, arrivals}); });
+    std::optional<GatheredImportance> gathered = gathered_by(step, surfaces, forest);
+    tbb::enumerable_thread_specific<Batch> batches([&] {
+        return Batch({surfaces, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
+    });
     parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, [&](std::size_t begin, std::size_t end) {
         auto& [shot, hits, receiver] = batches.local();
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), shot);
@@ -289,9 +336,12 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     advance(streams, allocation, old_size);
     Arrived arrived(arrivals, old_size, forest.put_in_order(old_size));
     drop_excess(forest, arrived, step.oracle.most_elements, old_size);
-    step.q = std::vector<float>();  // what has served makes room for what is received
-    step.oracle.importance = std::vector<float>();
+    step.oracle.importance = std::vector<float>();  // what has served makes room for what is received
+    if (!gathered) step.q = std::vector<float>();
     collect(forest, step, units, arrived, received);
+    if (gathered)
+        blend(forest, step, allocation, *gathered, all.importance_square / all.importance, received.importance);
+    balance(forest, step, received);
     received.shot_power = all.power;
     received.quanta = all.quanta;
     received.escaped_power = units.power.to_colour(escaped);

@@ -41,7 +41,7 @@ class VarianceOracle {
         if (leaf < forest_.patch_count()) {
             const float h = luminance(run_.solution.irradiance[leaf]);
             signal = assumed_square * h * h;
-            noise = 3 * run_.noise.variance(forest_, leaf, run_.history[leaf]);
+            noise = 3 * run_.noise.variance(forest_, run_.solution.irradiance, leaf, run_.history[leaf]);
         } else {
             const Detail detail = detail_of(run_, forest_.first_child(forest_.parent(leaf)));
             signal = expected_decay * detail.signal();
