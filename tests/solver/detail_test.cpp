@@ -2,10 +2,10 @@
 // finds, Stein's estimate of the error after shrinkage, means that are merged, and where elements are split.
 // Statistical tests have fixed seeds; correct code fails each with a chance of 0.001 (statistics.h).
 //
-// Meant to fail, faults of scripts/plant-faults not yet seen: noise that forgets how few rays the iteration has, scale
-// of one level for all, inner elements without the factor 3/4; risk without its last term; differences merged with the
-// tau of the patches, siblings scaled to their parent's mean as by merge() (negative control below); new elements that
-// trust in full what they inherit; a split criterion without noise, or without signal.
+// Seen to fail (scripts/plant-faults): noise that forgets how few rays the iteration has, one scale for all elements,
+// inner elements without the factor 3/4; risk without its last term, or checked by the mean itself instead of the next
+// iteration; differences merged with the tau of the patches; new elements that trust in full what they inherit; a split
+// criterion without noise, or without signal.
 
 #include "interflect/solver/detail.h"
 
@@ -112,6 +112,37 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
         const double with_ten = s.run.noise.variance(*s.run.forest, s.run.solution.irradiance, first[level], 10);
         EXPECT_NEAR(with_ten / found, 0.1, 1e-5) << "falls with the rays";
     }
+}
+
+/// What reduced differences are off by in the mean over all siblings, if they should be `signal`.
+template <class Signal>
+double true_risk(const Setting& s, const Signal& signal) {
+    const ElementForest& forest = *s.run.forest;
+    double sum = 0, groups = 0;
+    for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4, ++groups)
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            const float y = luminance(s.run.solution.irradiance[first + k]) -
+                            luminance(s.run.solution.irradiance[forest.parent(first)]);
+            sum += std::pow(detail_of(s.run, first).shrinkage() * y - signal(first, k), 2) / 4;
+        }
+    return sum / groups;
+}
+
+TEST(RiskCheck, MeasuresTheErrorOfReducedDifferences) {
+    Setting s(20, 1);  // 2400 patches, each divided once
+    const auto signal = [](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.02f : -0.02f; };
+    for (int k = 0; k < 4; ++k) s.iterate(1000, {0, 1}, 0.1f, signal);
+    double measured = 0, expected = 0;
+    for (int k = 0; k < 8; ++k) {
+        const double risk = 6 * true_risk(s, signal);  // times the area of the walls [m^2]
+        s.run.risk_check = {};
+        s.iterate(1000, {0, 1}, 0.1f, signal);
+        measured += s.run.risk_check.measured / risk / 8;
+        expected += s.run.risk_check.expected / risk / 8;
+    }
+    // 2400 products with a noise of four times the risk, in eight iterations of which each shares most with the next.
+    EXPECT_NEAR(measured, 1, 0.1);
+    EXPECT_NEAR(expected, 1, 0.1);
 }
 
 TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {

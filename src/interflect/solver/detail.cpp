@@ -35,16 +35,34 @@ AddedError added_error(const Run& run, std::uint32_t first) {
     const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
     // Four numbers of this mean, none below 0, differ by no more, however noisy they are: else a few elements that one
     // heavy ray met would outweigh all others.
-    const float mean = luminance(run.solution.irradiance[run.forest->parent(first)]);
-    return {noise, std::max(detail.risk() - noise, -3 * mean * mean)};
+    const float mean = luminance(run.solution.irradiance[run.forest->parent(first)]), most = 3 * mean * mean;
+    return {noise, std::clamp(detail.risk() - noise, -most, most)};
 }
 
-/// Pixels are averages: what is left of the mean square of a quantity that is constant over squares of one area and
-/// independent from one to the next, averaged over squares of another, placed anywhere.
-float left_by_pixels(float area, float pixel_area) {
-    const float r = std::sqrt(area / pixel_area);
-    const float along_one_side = r > 1 ? 1 - 1 / (3 * r) : r * (1 - r / 3);
-    return along_one_side * along_one_side;
+/// Pixels are averages. What is left of the mean square of a quantity along a line, averaged over lengths of 1 placed
+/// anywhere: of one that is constant over lengths a and independent from one to the next; and of one that has opposite
+/// values in the halves of lengths 2 a, likewise.
+float left_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
+float left_of_pairs(float a) {
+    if (a > 1) return 1 - 1 / (2 * a);
+    if (a < 0.5f) return 2 * a * a / 3;
+    const float beyond = 2 * a * (1 - a) - (1 + 2 * a) * (1 - a * a) / 2 + (1 - a * a * a) / 3;
+    return a / 2 - beyond / a;
+}
+
+/// The same of patches, and of four siblings' differences from their mean: these are opposite along one side, along the
+/// other, or along both.
+float left_of_patches_by_pixels(float area, float pixel_area) {
+    return std::pow(left_of_steps(std::sqrt(area / pixel_area)), 2.0f);
+}
+float left_of_siblings_by_pixels(float area, float pixel_area) {
+    const float a = std::sqrt(area / pixel_area), opposite = left_of_pairs(a);
+    return opposite * (2 * left_of_steps(2 * a) + opposite) / 3;
+}
+
+/// What is left of the squared error of siblings' differences where it counts.
+float left_of_siblings(const Run& run, std::uint32_t first) {
+    return run.view.empty() ? 1 : left_of_siblings_by_pixels(run.forest->area(first), pixel_area(run, first));
 }
 
 /// Mean square errors of every element; bias may be negative.
@@ -58,19 +76,18 @@ ElementErrors element_errors(const Run& run, bool of_pixels) {
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
-    const auto left = [&](std::uint32_t e) {
-        return of_pixels ? left_by_pixels(forest.area(e), pixel_area(run, e)) : 1.0f;
-    };
-    for (std::uint32_t root = 0; root < forest.patch_count(); ++root)
-        errors.noise[root] =
-            run.noise.variance(forest, run.solution.irradiance, root, std::max(run.history[root], 1.0f)) * left(root);
+    for (std::uint32_t root = 0; root < forest.patch_count(); ++root) {
+        const float left = of_pixels ? left_of_patches_by_pixels(forest.area(root), pixel_area(run, root)) : 1;
+        const float rays = std::max(run.history[root], 1.0f);
+        errors.noise[root] = left * run.noise.variance(forest, run.solution.irradiance, root, rays);
+    }
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const auto [noise, bias] = added_error(run, first);
         const std::uint32_t parent = forest.parent(first);
-        const float share = left(first);
+        const float left = of_pixels ? left_of_siblings(run, first) : 1;
         for (std::uint32_t e = first; e < first + 4; ++e) {
-            errors.noise[e] = errors.noise[parent] + share * noise;
-            errors.bias[e] = errors.bias[parent] + share * bias;
+            errors.noise[e] = errors.noise[parent] + left * noise;
+            errors.bias[e] = errors.bias[parent] + left * bias;
         }
     });
     return errors;
@@ -90,18 +107,52 @@ float signal_beside(const Run& run, std::uint32_t e) {
 
 /// What is added up over the leaves, weighted by what counts.
 struct Sums {
-    double weight = 0, mean = 0, noise = 0, bias = 0;
+    double weight = 0, noise = 0, bias = 0;
+    double noise_of_patches = 0;              // as a whole; part of the noise
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
     double assumed = 0;                       // within leaves without siblings
     double within = 0;                        // of the leaves' siblings, where pixels resolve what is within a leaf
 
     Sums& operator+=(const Sums& o) {
-        weight += o.weight, mean += o.mean, noise += o.noise, bias += o.bias;
+        weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
         signal += o.signal, signal_of_parent += o.signal_of_parent;
         assumed += o.assumed, within += o.within;
         return *this;
     }
 };
+
+/// How far what is left after reduction is from the truth, by the next iteration, which knows nothing of how it came
+/// about: for an estimate y of a difference d, of which the share k is kept, |k y - d|^2 is in the mean
+/// k^2 |y|^2 + (1 - 2 k) y z with another estimate z that is independent of y. Unlike Stein's estimate it needs no
+/// model of the noise, but it is known of earlier iterations alone.
+RiskCheck check_risk(const Run& run, const FreshEstimate& fresh) {
+    const ElementForest& forest = *run.forest;
+    const std::uint32_t roots = forest.patch_count();
+    const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
+        return luminance(irradiance[e]) - luminance(irradiance[forest.parent(e)]);
+    };
+    return parallel_sum(
+        (forest.size() - roots) / 4, elements_at_once, RiskCheck(), [&](std::size_t begin, std::size_t end) {
+            RiskCheck sum;
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint32_t first = roots + 4 * static_cast<std::uint32_t>(i);
+                const Detail detail = detail_of(run, first);
+                if (detail.noise == unknown) continue;
+                const std::uint32_t parent = forest.parent(first);
+                const double w = left_of_siblings(run, first) * error_weight(run, parent);
+                if (!(w > 0)) continue;
+                double product = 0;
+                for (std::uint32_t e = first; e < first + 4; ++e)
+                    product += static_cast<double>(forest.area(e) * difference(run.solution.irradiance, e) *
+                                                   difference(fresh.irradiance, e));
+                const double k = detail.shrinkage(), area = forest.area(parent);
+                const AddedError expected = added_error(run, first);
+                sum.measured += w * (k * k * detail.spread * area + (1 - 2 * k) * product);
+                sum.expected += w * area * static_cast<double>(expected.noise + expected.bias);
+            }
+            return sum;
+        });
+}
 
 double decay_of(const Sums& sums) {
     if (!(sums.signal > 0) || !(sums.signal_of_parent > 0)) return least_decay;
@@ -120,6 +171,7 @@ Sums sum_errors(const Run& run, const ElementErrors& errors) {
             sums.weight += w;
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
+            sums.noise_of_patches += w * errors.noise[forest.patch(e)];
             // What varies within a pixel is no error of the picture.
             const double resolved = run.view.empty() ? 1 : std::max(0.0f, 1 - pixel_area(run, e) / forest.area(e));
             if (e < forest.patch_count()) {
@@ -165,6 +217,7 @@ Detail detail_of(const Run& run, std::uint32_t first) {
 
 void estimate_noise(Run& run, const FreshEstimate& fresh, std::int64_t rays) {
     const auto weight = [&](std::uint32_t e) { return error_weight(run, e) * run.forest->area(e); };
+    if (shrinks(run) && run.noise.is_known()) run.risk_check.add(check_risk(run, fresh));
     run.noise.add(*run.forest, fresh, run.solution.irradiance, run.history, static_cast<float>(rays), weight);
 }
 
@@ -179,7 +232,9 @@ SolutionError solution_error(const Run& run) {
     const double total_weight = run.view.empty() ? sums.weight : 1;
     const double decay = decay_of(sums);
     const double within_leaves = std::max(0.0, sums.within) * decay / (1 - decay) + sums.assumed;
-    const double discretisation = run.options.method.refines ? std::max(0.0, sums.bias + within_leaves) : 0;
+    const double of_details = run.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
+    const double all = sums.noise_of_patches + of_details + within_leaves;
+    const double discretisation = run.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
     return {std::sqrt(sums.noise / total_weight) / mean, std::sqrt(discretisation / total_weight) / mean};
 }
 

@@ -8,6 +8,7 @@
 #include "interflect/solver/element_floor.h"
 #include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/noise_model.h"
+#include "interflect/solver/risk_check.h"
 #include "interflect/solver/schedule.h"
 #include "interflect/solver/solve.h"
 #include "interflect/solver/surfaces.h"
@@ -35,6 +36,7 @@ struct Run {
     Solution solution;
     std::vector<float> history;  // of each element: rays that its mean stands for
     NoiseModel noise;
+    RiskCheck risk_check;
     Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     Clock::time_point start = Clock::now();
