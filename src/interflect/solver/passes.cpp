@@ -17,7 +17,7 @@ namespace {
 /// A pass ends when the next bounce would get fewer rays; what is left to shoot is handed on to the next pass.
 constexpr double fewest_rays_of_bounce = 16;
 /// Or less than this share of the pass's rays, since every bounce takes time for every element.
-constexpr double least_share_of_bounce = 1e-3;
+constexpr double least_share_of_bounce = 0.02;
 /// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
 constexpr double assumed_bounces = 2;
 /// What is left to shoot is expected to fall at least to this share from one bounce to the next, on the whole.
