@@ -109,7 +109,8 @@ BENCHMARK(trace_the_solvers_rays);
 
 void add_arrivals(benchmark::State& state) {
     const auto elements = static_cast<std::uint32_t>(state.range(0));
-    Arrivals arrivals(elements, elements);
+    Arrivals arrivals(elements);
+    arrivals.begin(elements);
     Arrivals::Sorter sorter(arrivals);
     std::uint32_t random = 1;
     for (auto _ : state) {

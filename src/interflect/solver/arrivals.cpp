@@ -4,8 +4,10 @@
 
 namespace interflect {
 
-Arrivals::Arrivals(std::size_t elements, std::size_t capacity)
-    : sums_(capacity), region_shift_(static_cast<int>(std::bit_width(elements / regions))) {}
+void Arrivals::begin(std::size_t elements) {
+    elements_ = elements;
+    region_shift_ = static_cast<int>(std::bit_width(elements / regions));
+}
 
 void Arrivals::Sorter::hand_on(std::size_t region) {
     Lot& lot = lots_[region];

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "interflect/base/stable_array.h"
@@ -19,12 +20,21 @@ class Arrivals {
     static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
     using Load = std::array<std::int64_t, 5>;
 
-    /// @param elements  Of the forest so far. @param capacity  Most elements ever.
-    Arrivals(std::size_t elements, std::size_t capacity);
+    /// @param capacity  Most elements ever.
+    explicit Arrivals(std::size_t capacity) : sums_(capacity) {}
 
-    Load& operator[](std::size_t element) { return sums_[element]; }
-    /// To be called for elements whose sums are not needed any more.
-    void release(std::size_t begin, std::size_t end) { sums_.release(begin, end); }
+    /// To be called before a step. @param elements  Of the forest so far.
+    void begin(std::size_t elements);
+    /// What arrived at an element; nothing has from then on.
+    Load take(std::size_t element) { return std::exchange(sums_[element], {}); }
+    void add(std::size_t element, const Load& load) {
+        for (std::size_t c = 0; c < load.size(); ++c) sums_[element][c] += load[c];
+    }
+    /// To be called for elements that were taken. Few keep their memory for the next step, since clearing it anew takes
+    /// longer than adding to it.
+    void release(std::size_t begin, std::size_t end) {
+        if (elements_ > most_kept) sums_.release(begin, end);
+    }
 
     class Sorter {
       public:
@@ -75,7 +85,10 @@ class Arrivals {
     static constexpr std::uint32_t most_sources = 1u << 30;  // an Arrival has as many bits for them
     static constexpr std::size_t enough_sources = 8192;      // their loads fill a quarter of a second-level cache
 
+    static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
+
     StableArray<Load> sums_;
+    std::size_t elements_ = 0;
     int region_shift_ = 0;
     std::array<std::mutex, regions> at_work_;
 };

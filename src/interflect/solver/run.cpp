@@ -38,6 +38,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
       view(o.views, o.seed),
       floor(scene, o),
       streams(o.points, o.seed),
+      arrivals(forest_capacity(scene, o)),
       schedule(o, scene.patches.size()),
       noise(scene.patches.size()) {
     solution.forest = forest;
@@ -54,7 +55,8 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
 
 Received run_step(Run& run, TransportStep step) {
     const std::uint32_t before = run.forest->size();
-    Received received = transport(run.surfaces, *run.forest, run.ray_caster, std::move(step), run.streams);
+    Received received =
+        transport(run.surfaces, *run.forest, run.ray_caster, std::move(step), run.streams, run.arrivals);
     run.escaped_rays += received.escaped_rays;
     if (run.forest->size() > before) grow_with_forest(run, before);
     return received;

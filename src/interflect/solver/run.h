@@ -32,6 +32,7 @@ struct Run {
     const ElementFloor floor;
     Neighbourhoods neighbourhoods;  // none without a view
     SampleStreams streams;
+    Arrivals arrivals;
     Schedule schedule;
     Solution solution;
     std::vector<float> history;  // of each element: rays that its mean stands for

@@ -205,12 +205,15 @@ class Arrived {
     Arrived(Arrivals& arrivals, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
         : arrivals_(arrivals), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
 
-    Arrivals::Load& operator[](std::uint32_t e) { return arrivals_[e < old_size_ ? e : old_numbers_[e - old_size_]]; }
+    Arrivals::Load take(std::uint32_t e) { return arrivals_.take(number(e)); }
+    void add(std::uint32_t e, const Arrivals::Load& load) { arrivals_.add(number(e), load); }
     void release(std::size_t begin, std::size_t end) {
         if (end <= old_size_) arrivals_.release(begin, end);
     }
 
   private:
+    std::uint32_t number(std::uint32_t e) const { return e < old_size_ ? e : old_numbers_[e - old_size_]; }
+
     Arrivals& arrivals_;
     std::uint32_t old_size_;
     std::vector<std::uint32_t> old_numbers_;
@@ -220,8 +223,7 @@ class Arrived {
 void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(most_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
-        for (std::uint32_t e = first; e < first + 4; ++e)
-            for (std::size_t c = 0; c < arrived[e].size(); ++c) arrived[parent][c] += arrived[e][c];
+        for (std::uint32_t e = first; e < first + 4; ++e) arrived.add(parent, arrived.take(e));
     }
 }
 
@@ -265,7 +267,7 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
     if (step.carries_importance()) received.importance.resize(forest.size());
     parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const auto& [red, green, blue, square, importance] = arrived[e];
+            const auto [red, green, blue, square, importance] = arrived.take(e);
             const float area = forest.area(e);
             if (step.carries_power()) {
                 received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
@@ -290,7 +292,7 @@ void balance(const ElementForest& forest, const TransportStep& step, Received& r
 }  // namespace
 
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
-                   SampleStreams& streams) {
+                   SampleStreams& streams, Arrivals& arrivals) {
     assert(step.q.size() == forest.size() && step.rays > 0);
     Received received;
     const RayMaker maker(forest, ray_caster, step, streams);
@@ -305,7 +307,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     const Carried carried(surfaces, forest, step, allocation.q_sum());
     const Totals all = all_carried(step, allocation, carried);
     const Units units(all);
-    Arrivals arrivals(forest.size(), forest.capacity());
+    arrivals.begin(forest.size());
     const std::uint32_t old_size = forest.size();
     std::optional<GatheredImportance> gathered = gathered_by(step, surfaces, forest);
     tbb::enumerable_thread_specific<Batch> batches([&] {
@@ -346,6 +348,12 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     received.quanta = all.quanta;
     received.escaped_power = units.power.to_colour(escaped);
     return received;
+}
+
+Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+                   SampleStreams& streams) {
+    Arrivals arrivals(forest.capacity());
+    return transport(surfaces, forest, ray_caster, std::move(step), streams, arrivals);
 }
 
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,

@@ -7,6 +7,7 @@
 #include "interflect/base/points.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
+#include "interflect/solver/arrivals.h"
 #include "interflect/solver/light.h"
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/quanta.h"
@@ -66,9 +67,13 @@ struct Received {
 /// energy wherever B varies over j together with what j sees, 0.4% in a closed box, while B_s keeps shot = received +
 /// escaped exactly. Unbiased on a fixed mesh for every q that is positive wherever what is carried is.
 /// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
+/// @param arrivals  Nothing has arrived yet, and nothing has afterwards: for as many elements as the forest may have.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
 /// Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
 /// received.
+Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+                   SampleStreams& streams, Arrivals& arrivals);
+/// The same with arrivals of its own.
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 
