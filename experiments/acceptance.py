@@ -185,7 +185,7 @@ def measure_c(bench: Bench) -> None:
         for name, scene, view in HONEST:
             if scene == "two-rooms":
                 scene = made(bench, scene)
-            reference, noise = bench.reference(scene, view, "160x90", 1024)
+            reference, noise = bench.reference(scene, view, "1280x720", 16)  # the pixels that the solver assumes
             wanted = luminance(read_exr(reference))
             kept = ~is_near_lamp(wanted)
             for seed in (1, 2):
@@ -193,7 +193,7 @@ def measure_c(bench: Bench) -> None:
 
                 def errors():
                     stats = bench.solve(scene, options)
-                    picture = luminance(read_exr(bench.picture(view, "--size 160x90 --shading flat --samples 256")))
+                    picture = luminance(read_exr(bench.picture(view, "--size 1280x720 --shading flat --samples 4")))
                     square = np.mean((picture - wanted)[kept] ** 2 - noise[kept] ** 2)
                     true = math.sqrt(max(square, 0.0)) / wanted[kept].mean()
                     return {
@@ -345,59 +345,98 @@ def table_h(bench: Bench):
         yield f"fireflies, 16 rooms with tiny lamps, {method}, 20 M rays", "< 1e-5" if method == "ihsrr" else "-", figure, len(values)
 
 
-WORLDS = {1: "room-0", 4: "room-0", 16: "room-5", 64: "room-27", 256: "room-55"}
+LARGEST_WORLD, CENTRE = 256, 55  # rooms, 16 in a row; the room of the view
+WITHIN = {1: 9, 2: 25, 4: 72, 16: 256}  # rooms away from it in either direction: rooms of that world
+
+
+def cut_world(source: Path, target: Path, within: int) -> None:
+    """The rooms near CENTRE alone; so worlds of any size have the same room in the middle, and the same doors."""
+    rooms_in_row = math.isqrt(LARGEST_WORLD)
+    kept, lines = True, []
+    for line in source.read_text().splitlines(keepends=True):
+        words = line.split()
+        if words[:1] == ["o"] and words[1:] and words[1].startswith("room-"):
+            row, column = divmod(int(words[1].removeprefix("room-")), rooms_in_row)
+            kept = max(abs(row - CENTRE // rooms_in_row), abs(column - CENTRE % rooms_in_row)) <= within
+        if kept or words[:1] != ["f"]:
+            lines.append(line)
+    target.write_text("".join(lines))
+
+
+COMPARED = {1: "room-0", 16: "room-5", 64: "room-27"}  # worlds in which both methods are measured
 LADDERS = {  # million rays, by rooms
-    "ihsrr": {rooms: (0.5, 1, 2, 4, 8) for rooms in WORLDS},
-    "hsrr": {1: (0.5, 1, 2, 4, 8), 4: (1, 4, 16), 16: (4, 16, 64), 64: (16, 64, 192)},
+    "ihsrr": {rooms: (0.5, 1, 2, 4) for rooms in COMPARED},
+    "hsrr": {1: (0.5, 1, 2, 4), 16: (4, 16, 48), 64: (32, 96, 192)},
 }
-SAME_ERROR = 0.003  # relative MSE, flat
+SAME_ERROR = 0.003  # relative MSE, flat, away from lamps
 
 
 def measure_f(bench: Bench) -> None:
-    for furniture in ("", ":furniture"):
+    for furniture in ("", " --furniture"):
+        whole = Path(made(bench, f"maze --rooms {LARGEST_WORLD}{furniture}"))
+        for within, rooms in WITHIN.items():
+            scene = WORK / f"{whole.stem}-within-{within}.mgf"
+            cut_world(whole, scene, within)
+            scene.with_suffix(".views.json").write_text(whole.with_suffix(".views.json").read_text())
+            ladder = (1, 2, 4) if not furniture else (2, 8)
+            case = f"{rooms} rooms{furniture}"
+            measure_errors(bench, case, str(scene), f"room-{CENTRE}", "ihsrr", {rays: (1, 2, 3) for rays in ladder})
         for method, worlds in LADDERS.items():
             for rooms, ladder in worlds.items():
-                scene, view = f"maze:{rooms}{furniture}", f"--view {WORLDS[rooms]}"
-                reference, noise = bench.reference(scene, view, "160x90", 256)
-                for rays in ladder:
-                    for seed in (1, 2) if rays <= 4 else (1,):
-                        options = f"{view} --method {method} --rays {int(rays * 1e6)} --seed {seed}"
+                if furniture and rooms == 64:
+                    continue  # hours
+                scene = f"maze:{rooms}{':furniture' if furniture else ''}"
+                seeds = {rays * (4 if furniture else 1): (1, 2, 3) if rays <= 4 else (1,) for rays in ladder}
+                measure_errors(bench, scene, scene, COMPARED[rooms], method, seeds)
 
-                        def errors():
-                            stats = bench.solve(scene, options)
-                            picture = bench.picture(view, "--size 160x90 --samples 64 --shading flat")
-                            error = bench.relative_mse(picture, reference, noise)
-                            return {"relative MSE": error, "elements": stats["elements"], "seconds": stats["seconds"]}
 
-                        bench.measure("f", f"{scene} {method} {rays}", seed, f"solve {scene} {options}", errors)
+def measure_errors(bench: Bench, case: str, scene: str, view: str, method: str, seeds: dict[float, tuple]) -> None:
+    """@param seeds  By million rays."""
+    reference, noise = bench.reference(scene, f"--view {view}", "160x90", 256)
+    wanted = luminance(read_exr(reference))
+    kept, scale = ~is_near_lamp(wanted), wanted**2 + (0.01 * wanted.mean()) ** 2
+    for rays, numbers in seeds.items():
+        for seed in numbers:
+            options = f"--view {view} --method {method} --rays {int(rays * 1e6)} --seed {seed}"
+
+            def errors():
+                stats = bench.solve(scene, options)
+                picture = luminance(read_exr(bench.picture(f"--view {view}", "--size 160x90 --samples 64 --shading flat")))
+                error = np.mean((((picture - wanted) ** 2 - noise**2) / scale)[kept])
+                return {"relative MSE": error, "elements": stats["elements"], "seconds": stats["seconds"]}
+
+            bench.measure("f", f"{case} {method} {rays:g}", seed, f"solve {scene} {options}", errors)
+
+
+def needed(bench: Bench, case: str, method: str):
+    """Million rays and elements for SAME_ERROR, and whether that was extrapolated; None where too little was measured."""
+    errors, elements = bench.values("f", "relative MSE"), bench.values("f", "elements")
+    prefix = f"{case} {method} "
+    cases = sorted((float(c.removeprefix(prefix)), c) for c in errors if c.startswith(prefix) and np.mean(errors[c]) > 0)
+    if len(cases) < 2:
+        return None
+    x = np.array([rays for rays, _ in cases])
+    rays, extrapolated = crossing(x, np.array([np.mean(errors[c]) for _, c in cases]), SAME_ERROR)
+    count = math.exp(np.interp(math.log(rays), np.log(x), [math.log(np.mean(elements[c])) for _, c in cases]))
+    return rays, count, " (extrapolated)" if extrapolated else ""
 
 
 def table_f(bench: Bench):
-    errors, elements = bench.values("f", "relative MSE"), bench.values("f", "elements")
-    for furniture in ("", ":furniture"):
-        needs = {}
-        for method, worlds in LADDERS.items():
-            for rooms, ladder in worlds.items():
-                cases = [(rays, f"maze:{rooms}{furniture} {method} {rays}") for rays in ladder]
-                cases = [(rays, case) for rays, case in cases if np.mean(errors.get(case, [0])) > 0]
-                if len(cases) < 2:
-                    continue
-                x = np.array([rays for rays, _ in cases])
-                rays, extrapolated = crossing(x, np.array([np.mean(errors[case]) for _, case in cases]), SAME_ERROR)
-                count = math.exp(np.interp(math.log(rays), np.log(x), [math.log(np.mean(elements[c])) for _, c in cases]))
-                needs[method, rooms] = rays, count, extrapolated
-        for (method, rooms), (rays, count, extrapolated) in needs.items():
-            name = f"maze:{rooms}{furniture}"
-            mark = " (extrapolated)" if extrapolated else ""
-            if method == "ihsrr" and rooms != 1 and ("ihsrr", 1) in needs:
-                figure = f"{rays / needs['ihsrr', 1][0]:.2f} ({rays:.2g} M rays, {count:,.0f} elements{mark})"
-                yield f"rays for one error over those of one room, ihsrr: {name}", "1.2 at most", figure, "1 to 2"
-            if method == "hsrr" and ("ihsrr", rooms) in needs:
-                few = needs["ihsrr", rooms]
-                mark = " (extrapolated)" if extrapolated or few[2] else ""
-                figure = f"{few[0] / rays:.3f} of the rays, {few[1] / count:.3f} of the elements{mark}"
-                target = {1: "1.05", 16: "0.15", 64: "0.04"}.get(rooms, "-")
-                yield f"ihsrr over hsrr at one error: {name}", target, figure, "1 to 2"
+    for furniture in ("", " --furniture"):
+        smallest = needed(bench, f"9 rooms{furniture}", "ihsrr")
+        for rooms in list(WITHIN.values())[1:]:
+            found = needed(bench, f"{rooms} rooms{furniture}", "ihsrr")
+            if smallest and found:
+                figure = f"{found[0] / smallest[0]:.2f} ({found[0]:.2g} M rays, {found[1]:,.0f} elements){found[2]}"
+                name = f"{rooms} rooms{', furnished' if furniture else ''}"
+                yield f"rays for one error over those with 9 rooms around the same view, ihsrr: {name}", "1.2 at most", figure, 3
+        for rooms in COMPARED:
+            scene = f"maze:{rooms}{':furniture' if furniture else ''}"
+            few, many = needed(bench, scene, "ihsrr"), needed(bench, scene, "hsrr")
+            if few and many:
+                figure = f"{few[0] / many[0]:.3f} of the rays, {few[1] / many[1]:.3f} of the elements{few[2] or many[2]}"
+                target = {1: "1.05", 16: "0.15", 64: "0.04"}[rooms]
+                yield f"ihsrr over hsrr at one error: {scene}", target, figure, "1 to 3"
 
 
 ROWS = {
@@ -410,7 +449,7 @@ ROWS = {
     "g": (measure_g, table_g),
     "h": (measure_h, table_h),
 }
-ORDER = "edabghcf"  # cheap ones first
+ORDER = "edgbhcfa"  # cheap ones first
 
 
 def main(rows: str = ORDER, only_draw: bool = False) -> None:

@@ -72,7 +72,11 @@ double unshot_weight(const PowerStep& bounce, const PowerStep& first, double bet
     return beta * power + (1 - beta) * relative(bounce.driven_power, first.driven_power);
 }
 
-void add(FreshEstimate& sum, const Received& received) {
+void add(FreshEstimate& sum, Received& received) {
+    if (sum.irradiance.empty()) {
+        sum = {received.irradiance, std::move(received.variance)};
+        return;
+    }
     parallel_for_ranges(sum.irradiance.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {
             sum.irradiance[e] += received.irradiance[e];
@@ -108,7 +112,8 @@ std::vector<Rgb> handed_on(PassState& state, std::size_t elements, std::int64_t 
     return unshot;
 }
 
-/// Traces one bounce and adds it to the pass. @return What is to be shot next: what it brought.
+/// Traces one bounce and adds it to the pass; a pass that is empty becomes it. @return What is to be shot next: what it
+/// brought.
 std::vector<Rgb> trace_bounce(Run& run, TransportStep step, FreshEstimate& pass, RgbD& escaped_power) {
     const bool carries_importance = step.carries_importance();
     const IterationPlan plan{.rays = step.rays};
@@ -120,8 +125,10 @@ std::vector<Rgb> trace_bounce(Run& run, TransportStep step, FreshEstimate& pass,
     Received received = run_step(run, std::move(step));
     escaped_power += received.escaped_power;
     run.quanta += received.quanta;
-    inherit(*run.forest, before, pass.irradiance);
-    inherit(*run.forest, before, pass.variance);
+    if (!pass.irradiance.empty()) {
+        inherit(*run.forest, before, pass.irradiance);
+        inherit(*run.forest, before, pass.variance);
+    }
     add(pass, received);
     if (carries_importance) merge(run, run.solution.indirect_importance, received.importance, plan);
     return std::move(received.irradiance);
@@ -133,7 +140,7 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
     Solution& solution = run.solution;
     const bool carries_importance = importance_use(solution) == ImportanceUse::full && !run.options.separate_iterations;
     BounceBudget budget(rays, state.bounces, state.is_final);
-    FreshEstimate fresh{std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
+    FreshEstimate fresh;
     std::vector<Rgb> unshot = handed_on(state, run.forest->size(), rays);
     PowerDriver driver = power_driver(solution, run.neighbourhoods);
     PowerStep first;
@@ -150,10 +157,13 @@ FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool ora
         bounce.step.leaves_only = !oracle_refines;
         if (oracle_refines)
             bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
+        bounce.step.spent = std::move(unshot);
         unshot = trace_bounce(run, std::move(bounce.step), fresh, escaped_power);
         if (!driver.elements.empty())
             inherit(*run.forest, static_cast<std::uint32_t>(driver.elements.size()), driver.elements);
     }
+    if (fresh.irradiance.empty())  // nothing could be shot
+        fresh = {std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
     state.bounces = budget.bounces();
     state.unshot = std::move(unshot);
     state.unshot_rays = static_cast<double>(rays);

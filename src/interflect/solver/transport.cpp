@@ -340,6 +340,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     drop_excess(forest, arrived, step.oracle.most_elements, old_size);
     step.oracle.importance = std::vector<float>();  // what has served makes room for what is received
     if (!gathered) step.q = std::vector<float>();
+    received.irradiance = std::move(step.spent);
     collect(forest, step, units, arrived, received);
     if (gathered)
         blend(forest, step, allocation, *gathered, all.importance_square / all.importance, received.importance);

@@ -42,6 +42,8 @@ struct TransportStep {
     const Light& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
+    /// Storage for what is received: it may be what `light` refers to, which has been shot by then.
+    std::vector<Rgb> spent;
     /// What inner elements receive is of no interest: it stays 0. Not with an oracle that refines.
     bool leaves_only = false;
 };
