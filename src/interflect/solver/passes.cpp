@@ -16,12 +16,14 @@ namespace {
 
 /// A pass ends when the next bounce would get fewer rays; what is left to shoot is handed on to the next pass.
 constexpr double fewest_rays_of_bounce = 16;
-/// Or less than this share of the pass's rays, since every bounce takes time for every element.
-constexpr double least_share_of_bounce = 0.02;
+/// Or when what is left, with all its bounces, is less than this share of the pass: every bounce takes time for every
+/// element.
+constexpr double least_share_left = 0.05;
 /// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
 constexpr double assumed_bounces = 2;
-/// What is left to shoot is expected to fall at least to this share from one bounce to the next, on the whole.
-constexpr double most_decay = 0.9;
+/// What is left to shoot is expected to fall by such factors from one bounce to the next: before it is known; where it
+/// has just grown, as it may while light spreads towards the view; and at most.
+constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, most_decay = 0.99;
 /// With fewer rays in all there is none to spare before the first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 /// Importance is followed at first until this share of it is left.
@@ -35,18 +37,20 @@ class BounceBudget {
     BounceBudget(std::int64_t rays, double bounces, bool is_final)
         : rays_(rays),
           left_(rays),
-          bounces_(bounces),
-          fewest_(is_final ? 1 : std::max(fewest_rays_of_bounce, least_share_of_bounce * static_cast<double>(rays))) {}
+          bounces_(bounces > 0 ? bounces : assumed_bounces),
+          fewest_(is_final ? 1 : fewest_rays_of_bounce),
+          least_left_(is_final ? 0 : least_share_left * bounces_) {}
 
     /// @param unshot  What is left to shoot, relative to the first bounce.
     /// @return        The rays of the next bounce; all that are left if it is the last; 0 if there are none.
     std::int64_t next(double unshot) {
         const double left = static_cast<double>(left_), all = static_cast<double>(rays_);
         // If all bounces to come decay alike, they must do with what is left.
-        decay_ = last_unshot_ > 0 ? std::min(most_decay, unshot / last_unshot_) : 1 - most_decay;
+        const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
+        decay_ = fall < 1 ? std::min(most_decay, fall) : decay_while_it_grows;
         last_unshot_ = unshot;
-        const double share = all * unshot / (bounces_ > 0 ? bounces_ : assumed_bounces);
-        is_last_ = share < fewest_ || left < fewest_;
+        const double share = all * unshot / bounces_;
+        is_last_ = share < fewest_ || left < fewest_ || unshot < (1 - fall) * least_left_;
         const double rays = is_last_ ? left : std::min(share, std::max(1.0, (1 - decay_) * left));
         const std::int64_t taken = std::min<std::int64_t>(left_, std::llround(rays));
         left_ -= taken;
@@ -59,7 +63,7 @@ class BounceBudget {
 
   private:
     std::int64_t rays_, left_;
-    double bounces_, fewest_;
+    double bounces_, fewest_, least_left_;
     double last_unshot_ = 0, unshot_sum_ = 0, decay_ = 0;
     bool is_last_ = false;
 };
