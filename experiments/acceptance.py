@@ -449,7 +449,7 @@ ROWS = {
     "g": (measure_g, table_g),
     "h": (measure_h, table_h),
 }
-ORDER = "edgbhcfa"  # cheap ones first
+ORDER = "edgbhfac"  # cheap ones first
 
 
 def main(rows: str = ORDER, only_draw: bool = False) -> None:

@@ -189,7 +189,8 @@ void SolverOptions::add_refinement(CLI::App& app) {
             ->capture_default_str()
             ->check(number_between(0, 1)));
     group(
-        app.add_option("--min-area", solve_.smallest_area, "No element smaller than this [m2]; 0: by the scene's size")
+        app.add_option("--min-area", solve_.smallest_area,
+                       "No element smaller than this [m2]; 0: what a pixel shows of what is seen, else (5 mm)2 or less")
             ->type_name("AREA")
             ->capture_default_str()
             ->check(number_between(0, 1e9)));

@@ -60,7 +60,7 @@ class NoiseModel {
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
         if (!(rays_per_arrival < 0x1p45f)) return rarities - 1;
         const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
-        return static_cast<std::size_t>(n + (parent == none ? 0 : 2));
+        return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
     /// Of siblings' independent variance three quarters are left of that of their differences from their mean.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
