@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <optional>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
@@ -85,6 +87,9 @@ bool is_tone_mapped(const std::filesystem::path& path) { return needs_tone_mappi
 void run(const CompareArguments& options) {
     std::optional<PendingFile> difference_file;
     if (options.difference) {
+        for (const auto& [name, path] :
+             {std::pair("the image", options.image), std::pair("the reference", options.reference)})
+            require_distinct_files(std::array<NamedFile, 2>{{{name, path}, {"--difference", *options.difference}}});
         if (!is_tone_mapped(*options.difference))
             throw InputError(*options.difference, 0, "the difference is drawn to be looked at: expected .png or .jpg");
         difference_file.emplace(*options.difference);

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <memory>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
@@ -160,6 +162,10 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         refuse_solver_options(command);
     else
         refuse_path_options(command);
+    require_distinct_files(std::array<NamedFile, 4>{{{"the scene", options.scene.path},
+                                                     {"--output", options.output},
+                                                     {"--stats", options.solver.stats},
+                                                     {"--error-image", options.path.error_image}}});
     PendingFile output(options.output);
     if (options.shading == PictureShading::path)
         run_paths(options, output, exit_code);

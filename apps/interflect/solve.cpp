@@ -1,6 +1,8 @@
+#include <array>
 #include <memory>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/distinct_files.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/error.h"
@@ -36,6 +38,8 @@ void add_solve(CLI::App& app, int& exit_code) {
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
         require_solution_name(options->output);
+        require_distinct_files(std::array<NamedFile, 3>{
+            {{"the scene", options->scene.path}, {"--output", options->output}, {"--stats", options->solver.stats}}});
         PendingFile output(options->output);
         Scene scene = options->scene.load();
         const std::vector<View> views = options->view.views(scene);

@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "interflect/base/error.h"
@@ -74,6 +77,74 @@ TEST(PendingFile, KeepsTheOldFileUntilCommitted) {
     write(file.temporary_path(), "new");
     file.commit();
     EXPECT_EQ(contents(path), "new");
+}
+
+TEST(PendingFile, ReplacesWhatALinkLeadsToAndNotTheLink) {
+    const TemporaryFolder folder;
+    const fs::path target = folder.write("target.h5", "old"), link = folder.path() / "link.h5";
+    fs::create_directory(folder.path() / "links");
+    fs::create_symlink("target.h5", link);
+    fs::create_symlink("../link.h5", folder.path() / "links/to-link.h5");
+    PendingFile file(folder.path() / "links/to-link.h5");
+    EXPECT_EQ(file.temporary_path().extension(), ".h5");
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "links/to-link.h5"));
+    EXPECT_EQ(contents(target), "new");
+}
+
+TEST(PendingFile, MakesTheFileThatALinkLeadsTo) {
+    const TemporaryFolder folder;
+    fs::create_symlink("made.h5", folder.path() / "link.h5");
+    PendingFile file(folder.path() / "link.h5");
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link.h5"));
+    EXPECT_EQ(contents(folder.path() / "made.h5"), "new");
+}
+
+TEST(PendingFile, RefusesALoopOfLinks) {
+    const TemporaryFolder folder;
+    fs::create_symlink("b.h5", folder.path() / "a.h5");
+    fs::create_symlink("a.h5", folder.path() / "b.h5");
+    EXPECT_THAT(error_for(folder.path() / "a.h5"), HasSubstr("loop"));
+}
+
+TEST(PendingFile, WritesDevicesInPlace) {
+    ASSERT_TRUE(fs::is_character_file("/dev/null"));
+    PendingFile file("/dev/null");
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_FALSE(fs::exists(file.temporary_path()));
+
+    ASSERT_TRUE(fs::is_character_file("/dev/full"));
+    PendingFile full("/dev/full");
+    write(full.temporary_path(), "new");
+    EXPECT_THROW(full.commit(), std::runtime_error);
+    EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(PendingFile, WritesIntoPipes) {
+    const TemporaryFolder folder;
+    const fs::path pipe = folder.path() / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string sent(200'000, 'x');  // more than a pipe holds
+    std::string received;
+    std::thread reader([&] { received = contents(pipe); });
+    PendingFile file(pipe);
+    write(file.temporary_path(), sent);
+    file.commit();
+    reader.join();
+    EXPECT_EQ(received, sent);
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(PendingFile, MayBeTwoOfOneStem) {
+    const TemporaryFolder folder;
+    const PendingFile a(folder.path() / "out.h5"), b(folder.path() / "out.h5");
+    EXPECT_NE(a.temporary_path(), b.temporary_path());
 }
 
 TEST(PendingFile, MayBeMoved) {

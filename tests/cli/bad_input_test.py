@@ -1,6 +1,7 @@
 """Bad input: exit code 3 at once, a message that names file and line, nothing written."""
 
 import json
+import pathlib
 import unittest
 
 from command import BAD_INPUT, DONE, LAMP, PAINT, CommandTest, room, vertices
@@ -82,6 +83,37 @@ class BadScene(BadInput):
     def test_no_usable_face_is_left(self):
         self.assert_bad_scene("", "bad.mgf: no usable face is left")
         self.assert_bad_scene(vertices((0, 0, 0), (1, 0, 0), (2, 0, 0)) + "f v0 v1 v2\n", "no usable face is left")
+
+
+class SameFiles(CommandTest):
+    def assert_refused(self, *arguments):
+        before = {name: self.bytes(name) for name in self.files()}
+        result = self.interflect(*arguments, exit_code=BAD_INPUT)
+        self.assertIn("are the same file", result.stderr)
+        self.assertEqual({name: self.bytes(name) for name in self.files()}, before)
+
+    def test_outputs_and_inputs(self):
+        self.write("room.mgf", room())
+        (self.folder / "link.mgf").symlink_to("room.mgf")
+        self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--stats", "room.mgf")
+        self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--stats", "./out.h5")
+        self.assert_refused("solve", "link.mgf", "-o", "out.h5", "--stats", "room.mgf")
+
+    def test_but_not_the_same_device(self):
+        self.write("room.mgf", room())
+        self.interflect("solve", "room.mgf", "-o", "out.h5", "--rays", "1k", "--stats", "/dev/null")
+        self.assertTrue(pathlib.Path("/dev/null").is_char_device())
+
+
+class TextFiles(CommandTest):
+    def test_may_begin_with_a_byte_order_mark(self):
+        self.write("room.mgf", "\ufeff" + room())
+        self.interflect("info", "room.mgf")
+
+    def test_behind_a_loop_of_links(self):
+        (self.folder / "a.mgf").symlink_to("b.mgf")
+        (self.folder / "b.mgf").symlink_to("a.mgf")
+        self.assertIn("in a circle", self.interflect("info", "a.mgf", exit_code=BAD_INPUT).stderr)
 
 
 class Limits(CommandTest):

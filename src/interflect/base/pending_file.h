@@ -6,11 +6,12 @@ namespace interflect {
 
 /// An output file that appears under its name only when it is complete: written beside, then renamed. Made before long
 /// work begins, so that a path that cannot be written is an error at once, not after an hour. Nothing is left where the
-/// process is killed before it begins to write.
+/// process is killed before it begins to write. Of a symbolic link the file that it leads to is replaced, not the link;
+/// a device, a pipe or a socket is never replaced: what was written elsewhere is copied into it.
 class PendingFile {
   public:
-    /// Finds out whether it can create a temporary file beside `final_path`, and removes it.
-    /// @throws InputError when `final_path` is a folder or its folder is missing or cannot be written.
+    /// Finds out whether it can create the temporary file, and removes it.
+    /// @throws InputError when `final_path` is a folder, its folder is missing, or it cannot be written.
     explicit PendingFile(std::filesystem::path final_path);
     /// Removes the temporary file if commit() was not reached.
     ~PendingFile();
@@ -20,13 +21,15 @@ class PendingFile {
     PendingFile& operator=(PendingFile&&) = delete;
 
     const std::filesystem::path& final_path() const { return final_path_; }
-    /// Where to write; same folder and same extension as final_path().
+    /// Where to write; same extension as final_path(), and the same folder as the file that will be replaced.
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
-    /// Gives the finished temporary file its final name, replacing what was there. @throws std::runtime_error
+    /// Gives the finished temporary file its final name, replacing what was there, or copies it into a device.
+    /// @throws std::runtime_error
     void commit();
 
   private:
     std::filesystem::path final_path_, temporary_path_;
+    std::filesystem::path replaced_path_;  // empty: the final path is no regular file, to be written in place
 };
 
 }  // namespace interflect

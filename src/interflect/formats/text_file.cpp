@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <system_error>
 
 #include "interflect/base/error.h"
 
@@ -32,6 +33,8 @@ void require_text(std::string_view text, const fs::path& path) {
 void require_regular_file(const fs::path& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
+    if (error == std::errc::too_many_symbolic_link_levels)
+        throw InputError(path, 0, "its symbolic links lead in a circle");
     if (!fs::exists(status)) throw InputError(path, 0, "there is no such file");
     if (fs::is_directory(status)) throw InputError(path, 0, "this is a folder, not a file");
     if (!fs::is_regular_file(status)) throw InputError(path, 0, "this is not a regular file");
@@ -47,6 +50,8 @@ std::string read_text_file(const fs::path& path) {
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
     if (file.gcount() != static_cast<std::streamsize>(text.size()))
         throw InputError(path, 0, fmt::format("only {} of {} bytes could be read", file.gcount(), text.size()));
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // of UTF-8, as some editors write it
+    if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     require_text(text, path);
     return text;
 }
