@@ -217,6 +217,15 @@ TEST(Transport, FindsTheImportanceOfASourceByTheRaysThatLeaveIt) {
     EXPECT_GT(most, 0.7);
 }
 
+TEST(Transport, FindsNoImportanceWhereNoneIsReflected) {
+    Room room(closed_box({1, 2, 3}, 2, {{"wall", Rgb(0), Rgb(1)}}));
+    const std::vector<float> importance(room.forest.size(), 1.0f);
+    TransportStep step = room.step();
+    step.importance = Importance(importance);
+    SampleStreams streams = streams_of(1);
+    EXPECT_EQ(room.receive(streams, step).importance, std::vector<float>(room.forest.size(), 0.0f));
+}
+
 TEST(Transport, AdvancesTheStreamsByWhatItShot) {
     Room room(colourful_box());
     SampleStreams streams = streams_of(1);

@@ -245,14 +245,16 @@ std::optional<GatheredImportance> gathered_by(const TransportStep& step, const S
 /// as one ray, and as many are expected to have brought it as if all that do carried alike: weights that do not depend
 /// on what is found leave the mean where it is.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
-           const GatheredImportance& gathered, double importance_per_ray, std::vector<float>& received) {
+           const GatheredImportance& gathered, const Totals& carried, std::vector<float>& received) {
+    // Where none is carried, none is known from what arrives.
+    const double rays_per_importance = carried.importance > 0 ? carried.importance / carried.importance_square : 0;
     constexpr std::size_t blocks_at_once = 16;
     parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
                 const auto leaf = static_cast<std::uint32_t>(s);
                 const auto left = static_cast<double>(next - first);
-                const double arrived = step.importance[leaf] * forest.area(leaf) / importance_per_ray;
+                const double arrived = step.importance[leaf] * forest.area(leaf) * rays_per_importance;
                 received[leaf] = static_cast<float>((arrived * received[leaf] + gathered.sum(leaf)) / (arrived + left));
                 return true;
             });
@@ -342,8 +344,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     if (!gathered) step.q = std::vector<float>();
     received.irradiance = std::move(step.spent);
     collect(forest, step, units, arrived, received);
-    if (gathered)
-        blend(forest, step, allocation, *gathered, all.importance_square / all.importance, received.importance);
+    if (gathered) blend(forest, step, allocation, *gathered, all, received.importance);
     balance(forest, step, received);
     received.shot_power = all.power;
     received.quanta = all.quanta;
