@@ -25,7 +25,8 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 void require_distinct_files(std::span<const NamedFile> files) {
     for (std::size_t i = 0; i < files.size(); ++i)
         for (std::size_t j = i + 1; j < files.size(); ++j) {
-            const auto& [first, a] = files[i], &[ second, b ] = files[j];
+            const auto& [first, a] = files[i];
+            const auto& [second, b] = files[j];
             if (!a.empty() && !b.empty() && is_same_file(a, b))
                 throw InputError(fmt::format("{} and {} are the same file, '{}': one would overwrite the other", first,
                                              second, b.string()));

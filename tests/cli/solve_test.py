@@ -122,7 +122,7 @@ class BlackView(CommandTest):
         self.assertEqual(result.stderr.count("the error is not known"), 1, result.stderr)
         _, *iterations = map(json.loads, (self.folder / "stats").read_text().splitlines())
         self.assertEqual({line["error_estimate"] for line in iterations}, {None})
-        self.assertEqual(iterations[-1]["rays"], 100_000)
+        self.assertGreater(iterations[-1]["rays"], 90_000)  # the light may be absorbed before the rays are spent
         inside = ("--eye", "1,2.5,1.5", "--look-at", "1,0,1.2")  # of the room
         self.assertNotIn("the error is not known", self.interflect("solve", "dark.mgf", *inside, *run).stderr)
 

@@ -64,12 +64,12 @@ void copy_into(const fs::path& from, const fs::path& device) {
 }  // namespace
 
 PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path)) {
-    if (final_path_.filename().empty() || fs::is_directory(final_path_))
-        throw_cannot_write(final_path_, "it names a folder, expected a file name");
-    fs::path folder;
     std::error_code loop;  // of symbolic links: target_of() says so
     const fs::file_status status = fs::status(final_path_, loop);
-    if (!fs::exists(status) || fs::is_regular_file(status)) {
+    if (final_path_.filename().empty() || fs::is_directory(status))
+        throw_cannot_write(final_path_, "it names a folder, expected a file name");
+    fs::path folder;
+    if (loop || !fs::exists(status) || fs::is_regular_file(status)) {
         try {
             replaced_path_ = target_of(final_path_);
         } catch (const std::exception& e) {
