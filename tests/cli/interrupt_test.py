@@ -1,6 +1,7 @@
 """Ctrl-C: the first ends the iteration and keeps what there is, the second ends at once and keeps nothing."""
 
 import json
+import os
 import re
 import signal
 import subprocess
@@ -36,6 +37,14 @@ class Interrupt(CommandTest):
         while not int(re.search(r"SigCgt:\s*(\w+)", status.read_text())[1], 16) >> (awaited - 1) & 1:
             self.assertLess(time.monotonic(), deadline, "no handler of signals was set")
             time.sleep(0.01)
+
+    def wait_until_it_has_worked(self, process, seconds):
+        """@param seconds  Of processor time: more than anything takes before the first iteration, however slow."""
+        status = Path(f"/proc/{process.pid}/stat")
+        deadline = time.monotonic() + SOON
+        while sum(map(int, status.read_text().split()[13:15])) < seconds * os.sysconf("SC_CLK_TCK"):
+            self.assertLess(time.monotonic(), deadline, "it does nothing")
+            time.sleep(0.05)
 
     def interrupt_after_first_progress(self, *arguments, by=signal.SIGINT):
         process = self.start(*arguments)
@@ -84,6 +93,7 @@ class Interrupt(CommandTest):
         # The iteration under way would take hours, so that only the second signal can have ended it.
         process = self.start("solve", "room.mgf", "-o", "out.h5", "--stats", "stats", *ENDLESS, *ONE_LONG_ITERATION)
         self.wait_until_it_heeds(process, signal.SIGINT)
+        self.wait_until_it_has_worked(process, 4)
         process.send_signal(signal.SIGINT)
         self.assertIn("stopping after this iteration", process.stderr.readline())
         process.send_signal(signal.SIGINT)
