@@ -20,9 +20,9 @@ namespace {
 
 /// Light has settled enough to refine by, and for good, when a sweep changes no more than this share of it.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
-/// Where all lines of sight were blocked, what a link would carry if nothing were hidden is in doubt to this share: of
+/// Where all lines of sight were blocked, the error bound is this share of what the link would carry unoccluded: of
 /// as many as were tried, the next may be free.
-constexpr double doubt_if_blocked = 1.0 / 16;
+constexpr double bound_if_blocked = 1.0 / 16;
 /// Most rays for the four links that replace one.
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
 /// Of one task.
@@ -41,8 +41,8 @@ struct Prospect {
     Effort effort;
 };
 
-/// A link on which too much power may go astray, and which of its elements is to be divided.
-struct Overload {
+/// A link whose error bound exceeds the threshold, and which of its elements is to be subdivided.
+struct RefinementCandidate {
     std::size_t link;
     std::uint32_t divided;
     double factor;  // over the threshold
@@ -125,7 +125,7 @@ class LinkedElements {
     void gather_importance();
     /// Of the last bounce.
     double change() const { return std::max(light_change_, importance_change_); }
-    /// Divides links on which too much may go astray. @return whether any was.
+    /// Subdivides links whose error bound exceeds the threshold. @return whether any was.
     bool refine();
 
     std::int64_t rays() const { return rays_; }
@@ -133,9 +133,9 @@ class LinkedElements {
   private:
     void require_room_for(std::size_t more) const;
     void link(const std::vector<Prospect>& prospects);
-    std::vector<Overload> overloaded_links() const;
+    std::vector<RefinementCandidate> refinement_candidates() const;
     bool may_divide(std::uint32_t element) const;
-    void keep_what_rays_allow(std::vector<Overload>& overloads) const;
+    void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
     void describe_new_elements(std::uint32_t first);
 
     const Scene& scene_;
@@ -249,9 +249,9 @@ struct RadiosityRange {
     }
 };
 
-/// How much of what a link carries is in doubt [m^2]: what the form factor varies by; all of it where part is hidden.
-double doubt(const Exchange& exchange, float spread) {
-    if (exchange.visibility == 0) return exchange.area * doubt_if_blocked;
+/// Bound on the error of what a link carries [m^2]: the variation of the form factor; all of it where partly occluded.
+double error_bound(const Exchange& exchange, float spread) {
+    if (exchange.visibility == 0) return exchange.area * bound_if_blocked;
     return exchange.visibility < 1 ? exchange.area : spread;
 }
 
@@ -259,7 +259,7 @@ double doubt(const Exchange& exchange, float spread) {
 /// all over i, where the form factor varies by its spread over i times B_j, and by its spread over j times the
 /// difference between the brightest and the darkest parts of j. Each counts against the element that, divided, amends
 /// it; both directions are looked at, the worse counts.
-std::vector<Overload> LinkedElements::overloaded_links() const {
+std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = run_.solution;
     const std::vector<Rgb> b = radiosity(run_.surfaces, forest_, solution.irradiance);
     const RadiosityRange range(forest_, b);
@@ -268,8 +268,8 @@ std::vector<Overload> LinkedElements::overloaded_links() const {
         use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
     const double threshold = solution.options.epsilon * reference_power(solution) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi));
-    std::vector<Overload> overloads;
-    if (!(threshold > 0)) return overloads;
+    std::vector<RefinementCandidate> candidates;
+    if (!(threshold > 0)) return candidates;
     const auto weight = [&](std::uint32_t divided, std::uint32_t other) {
         const Rgb &rho = run_.surfaces.reflectance(forest_.patch(divided)),
                   &rho_other = run_.surfaces.reflectance(forest_.patch(other));
@@ -279,12 +279,12 @@ std::vector<Overload> LinkedElements::overloaded_links() const {
     };
     for (std::size_t i = 0; i < links_.size(); ++i) {
         const auto& [ends, exchange] = links_[i];
-        const double over_a = weight(ends.a, ends.b) * doubt(exchange, exchange.spread_over_a);
-        const double over_b = weight(ends.b, ends.a) * doubt(exchange, exchange.spread_over_b);
+        const double over_a = weight(ends.a, ends.b) * error_bound(exchange, exchange.spread_over_a);
+        const double over_b = weight(ends.b, ends.a) * error_bound(exchange, exchange.spread_over_b);
         if (std::max(over_a, over_b) > threshold)
-            overloads.push_back({i, over_a > over_b ? ends.a : ends.b, std::max(over_a, over_b) / threshold});
+            candidates.push_back({i, over_a > over_b ? ends.a : ends.b, std::max(over_a, over_b) / threshold});
     }
-    return overloads;
+    return candidates;
 }
 
 bool LinkedElements::may_divide(std::uint32_t element) const {
@@ -292,15 +292,15 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
 }
 
 /// Where not all can be divided, keeps the worst.
-void LinkedElements::keep_what_rays_allow(std::vector<Overload>& overloads) const {
+void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, run_.options.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
-    if (overloads.size() <= affordable) return;
-    const auto comes_first = [](const Overload& x, const Overload& y) {
+    if (candidates.size() <= affordable) return;
+    const auto comes_first = [](const RefinementCandidate& x, const RefinementCandidate& y) {
         return x.factor != y.factor ? x.factor > y.factor : x.link < y.link;
     };
-    std::sort(overloads.begin(), overloads.end(), comes_first);
-    overloads.resize(affordable);
+    std::sort(candidates.begin(), candidates.end(), comes_first);
+    candidates.resize(affordable);
 }
 
 /// The elements that came last are their parents' parts: until the next sweep they are as bright.
@@ -313,13 +313,13 @@ void LinkedElements::describe_new_elements(std::uint32_t first) {
 }
 
 bool LinkedElements::refine() {
-    std::vector<Overload> overloads = overloaded_links();
-    keep_what_rays_allow(overloads);
+    std::vector<RefinementCandidate> candidates = refinement_candidates();
+    keep_affordable(candidates);
     const std::uint32_t before = forest_.size();
     std::vector<Prospect> prospects;
-    for (const Overload& overload : overloads) {
-        Link& link = links_[overload.link];
-        const std::uint32_t divided = overload.divided;
+    for (const RefinementCandidate& candidate : candidates) {
+        Link& link = links_[candidate.link];
+        const std::uint32_t divided = candidate.divided;
         const std::uint32_t other = link.ends.a == divided ? link.ends.b : link.ends.a;
         const std::uint32_t child =
             forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);

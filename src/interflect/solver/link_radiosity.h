@@ -12,17 +12,17 @@ inline constexpr std::size_t most_links = std::size_t{1} << 27;
 /// Solves Eq. 1 of Prikryl et al. 2000 without chance: hierarchical radiosity, Hanrahan, Salzman and Aupperle 1991.
 /// Pairs of elements that face each other are linked, and each gathers light over its links; form factors are
 /// integrals (exchange.h), only visibility is sampled. A link is replaced by four, to the children of one of its
-/// elements, where more power may go astray than epsilon times the reference power of steps.h. That is rho_i B_j A_i
-/// times the doubt about F_ij: Hanrahan's 'BF refinement' takes all of F_ij for doubtful; here, after Smits, Arvo and
-/// Salesin 1992, only as much as it varies over an element, and all of it where something stands between. Each sweep
-/// gathers one bounce over all links and ends with push-pull; whenever light has settled the links are refined, so that
-/// no mesh is made for light that is yet to come.
+/// elements, where the bound on its error exceeds epsilon times the reference power of steps.h. The bound is
+/// rho_i B_j A_i times that on the error of F_ij: all of F_ij in Hanrahan's 'BF refinement'; here, after Smits, Arvo
+/// and Salesin 1992, its variation over an element, and all of it where the pair is partly occluded. Each sweep gathers
+/// one bounce over all links and ends with push-pull; whenever light has settled the links are refined, so that no mesh
+/// is made for light that is yet to come.
 ///
 /// With importance (Smits et al.), psi travels the same links backwards, so that sum v P = sum psi W holds on any mesh,
-/// and the power astray is weighted by psi_i / psi_max as in Eq. 15.
+/// and the error bound is weighted by psi_i / psi_max as in Eq. 15.
 ///
-/// The independent check of the methods that cast dice: its error is no noise, but what the mesh smooths away and the
-/// lines of sight miss. It goes with the mesh: largest in the smallest elements, along edges where surfaces meet, where
+/// An independent check of the Monte Carlo methods: it has discretisation error and, from its sampled visibility,
+/// little noise. Its error follows the mesh: largest in the smallest elements, along edges where surfaces meet, where
 /// many links that each are good enough err the same way. Meant for some thousands of patches: all pairs are looked at.
 ///
 /// The run ends when a sweep changes nearly nothing and no link asks for refinement. Refinement stays within
