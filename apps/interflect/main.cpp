@@ -6,6 +6,8 @@
 #include <string>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/signals.h"
+#include "apps/interflect/standard_streams.h"
 #include "interflect/base/error.h"
 
 namespace {
@@ -48,8 +50,9 @@ int run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? done : wrong_usage;
+        if (app.exit(e) != 0) return wrong_usage;
     }
+    flush_stdout();
     return exit_code;
 }
 
@@ -63,6 +66,9 @@ void return_large_arrays() {
 }  // namespace
 
 int main(int argc, char** argv) try {
+    using namespace interflect::command;
+    open_missing_standard_streams();
+    handle_signals();
     return_large_arrays();
     spdlog::set_default_logger(spdlog::stderr_color_st("interflect"));
     spdlog::set_pattern("%^%l%$: %v");

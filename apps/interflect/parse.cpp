@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "interflect/solver/solve.h"
+
 namespace interflect::command {
 
 namespace {
@@ -55,6 +57,12 @@ std::size_t parse_element_count(const std::string& text) {
     const std::int64_t count = parse_count(text);
     if (count > 4'000'000'000) refuse(text, "a number of at most 4G");
     return static_cast<std::size_t>(count);
+}
+
+std::int64_t parse_iteration_size(const std::string& text) {
+    const std::int64_t count = parse_count(text);
+    if (count > most_rays_per_iteration) refuse(text, "a number of at most 100G");
+    return count;
 }
 
 std::uint64_t parse_seed(const std::string& text) {

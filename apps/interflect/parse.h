@@ -18,6 +18,8 @@ namespace interflect::command {
 std::int64_t parse_count(const std::string& text);
 /// The same, of what a machine can hold.
 std::size_t parse_element_count(const std::string& text);
+/// The same, of the rays that one iteration may have.
+std::int64_t parse_iteration_size(const std::string& text);
 /// "1.5G" -> 1.5 * 2^30 [bytes]: with k, M, G or T for powers of 1024.
 std::size_t parse_memory(const std::string& text);
 /// "42" -> 42: a whole number of 64 bits, >= 0.

@@ -4,11 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <string_view>
 
 namespace interflect::command {
 
@@ -17,38 +14,15 @@ namespace {
 constexpr int bar_width = 24;
 constexpr double seconds_between_lines = 2;  // where stderr is no terminal
 
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
-
-constexpr std::string_view below_bar_stop_notice =
-    "\nstopping after this iteration, keeping what there is; once more ends at once, keeping nothing\n";
-std::string_view stop_notice;  // set before the signal handler is
-
-extern "C" void request_stop(int signal) {
-    stop_requested = true;
-    std::signal(signal, SIG_DFL);  // a second one ends the process
-    const int errno_before = errno;
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, stop_notice.data(), stop_notice.size());
-    errno = errno_before;
-}
-
 bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
 
+/// Progress is worth no exception where nobody can see it.
+void print(const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+}
+
 }  // namespace
-
-StopOnInterrupt::StopOnInterrupt() {
-    stop_requested = false;
-    stop_notice = below_bar_stop_notice.substr(stderr_is_terminal() ? 0 : 1);
-    std::signal(SIGINT, request_stop);
-    std::signal(SIGTERM, request_stop);
-}
-
-StopOnInterrupt::~StopOnInterrupt() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-}
-
-const std::atomic<bool>& StopOnInterrupt::flag() { return stop_requested; }
 
 std::string duration(double seconds) {
     if (seconds < 60) return fmt::format("{:.1f} s", seconds);
@@ -75,7 +49,7 @@ double fraction_done(const SolveOptions& options, const IterationReport& report)
 ProgressBar::ProgressBar() : terminal_(stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() {
-    if (terminal_) fmt::print(stderr, "\n");
+    if (terminal_) print("\n");
 }
 
 void ProgressBar::show(const WorkDone& work) {
@@ -88,12 +62,11 @@ void ProgressBar::show(const WorkDone& work) {
         "{:3.0f}%  {} rays, {}/s, error {}, {} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
         magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
     if (!terminal_) {
-        fmt::print(stderr, "{}\n", text);
+        print(text + "\n");
         return;
     }
     const auto filled = static_cast<std::size_t>(std::lround(bar_width * fraction));
-    fmt::print(stderr, "\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text);
-    std::fflush(stderr);
+    print(fmt::format("\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text));
 }
 
 }  // namespace interflect::command

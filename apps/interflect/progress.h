@@ -1,22 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <string>
 
 #include "interflect/solver/solve.h"
 
 namespace interflect::command {
-
-/// Until the end of its scope, the first Ctrl-C (or SIGTERM) sets a flag, and says so, instead of ending the process;
-/// the second ends it.
-class StopOnInterrupt {
-  public:
-    StopOnInterrupt();
-    ~StopOnInterrupt();
-    StopOnInterrupt(const StopOnInterrupt&) = delete;
-    StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-    static const std::atomic<bool>& flag();
-};
 
 /// How far long work is.
 struct WorkDone {

@@ -10,6 +10,7 @@
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/show.h"
+#include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
@@ -109,7 +110,7 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
 }
 
 /// Draws the light of a solution; solves a scene first.
-void run_solution(RenderArguments& options, PendingFile& output, int& exit_code) {
+void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved;
     if (solved_before)
@@ -134,11 +135,10 @@ void run_solution(RenderArguments& options, PendingFile& output, int& exit_code)
     const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
                                                        : draw_light(solved, ray_caster, view, options);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
-    if (!solved_before && solved.solution.interrupted) exit_code = interrupted;
 }
 
 /// Draws the light that path tracing finds; of a solution file the scene alone counts.
-void run_paths(const RenderArguments& options, PendingFile& output, int& exit_code) {
+void run_paths(const RenderArguments& options, PendingFile& output) {
     const Scene scene =
         is_solution_file(options.scene.path) ? read_solution(options.scene.path).scene : options.scene.load();
     const View view = view_to_draw(scene, options.view);
@@ -151,7 +151,6 @@ void run_paths(const RenderArguments& options, PendingFile& output, int& exit_co
     const PathTracing traced = run_path_tracer(scene, RayCaster(scene), view, path_options, options.path);
     const Picture picture = picture_of_light(traced.image, traced.non_finite_pixels, options);
     write_picture(output, picture, view, scene, path_options.seed, options);
-    if (traced.interrupted) exit_code = interrupted;
 }
 
 /// Everything that can be refused is refused before the first ray.
@@ -168,9 +167,10 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
                                                      {"--error-image", options.path.error_image}}});
     PendingFile output(options.output);
     if (options.shading == PictureShading::path)
-        run_paths(options, output, exit_code);
+        run_paths(options, output);
     else
-        run_solution(options, output, exit_code);
+        run_solution(options, output);
+    if (is_stop_requested()) exit_code = interrupted;
 }
 
 }  // namespace

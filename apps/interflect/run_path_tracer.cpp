@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "apps/interflect/progress.h"
+#include "apps/interflect/signals.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/image/image_files.h"
@@ -83,10 +84,9 @@ PathTracing run_path_tracer(const Scene& scene, const RayCaster& ray_caster, con
     };
     PathTracing traced;
     {
-        const StopOnInterrupt stop_on_interrupt;
         ProgressBar bar;
         const auto show = [&](const PathProgress& p) { bar.show({p.fraction, seconds(), p.rays, p.relative_error}); };
-        traced = trace_paths(scene, ray_caster, view, options, {show, &StopOnInterrupt::flag()});
+        traced = trace_paths(scene, ray_caster, view, options, {show, &stop_on_signal()});
     }
     log_outcome(traced, seconds());
     if (error_image) {

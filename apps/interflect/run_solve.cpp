@@ -12,6 +12,7 @@
 
 #include "apps/interflect/leaks.h"
 #include "apps/interflect/progress.h"
+#include "apps/interflect/signals.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/memory.h"
@@ -157,12 +158,11 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
         std::min(options.most_elements, elements_within(memory_need(scene, ray_caster), bytes, scene));
     Solution solution;
     {
-        const StopOnInterrupt stop_on_interrupt;
         ProgressBar bar;
         const auto show = [&](const IterationReport& report) {
             bar.show({fraction_done(options, report), report.seconds, report.rays, report.error_estimate});
         };
-        const Monitor monitor{show, &StopOnInterrupt::flag()};
+        const Monitor monitor{show, &stop_on_signal()};
         solution = solve(scene, ray_caster, options, monitor);
     }
     log_outcome(solution);

@@ -159,7 +159,7 @@ void SolverOptions::add_sampling(CLI::App& app) {
     group(app.add_option("--iterations", solve_.iterations, "Averaged iterations; 0: as many as the limits allow")
               ->capture_default_str()
               ->check(CLI::Range(0, 1'000'000'000)));
-    group(add_parsed(app, "--rays-per-iteration", solve_.rays_per_iteration, parse_count,
+    group(add_parsed(app, "--rays-per-iteration", solve_.rays_per_iteration, parse_iteration_size,
                      "Rays of each iteration; default: small at first, then growing")
               ->type_name("COUNT"));
     group(app.add_flag(
@@ -248,7 +248,7 @@ void SolverOptions::add_importance(CLI::App& app) {
     group(app.add_option("--eye-rays", solve_.eye_rays,
                          "Rays that find what a view shows at first, per view; more follow as rays are averaged")
               ->capture_default_str()
-              ->check(CLI::Range(1, 1 << 28)));
+              ->check(CLI::Range(1, most_eye_rays)));
 }
 
 SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {

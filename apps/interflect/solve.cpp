@@ -4,6 +4,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/run_solve.h"
+#include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
@@ -51,7 +52,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         write_solution(output.temporary_path(), scene, solution);
         output.commit();
-        if (solution.interrupted) exit_code = interrupted;
+        if (is_stop_requested()) exit_code = interrupted;
     });
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
@@ -145,6 +147,48 @@ TEST(PendingFile, MayBeTwoOfOneStem) {
     const TemporaryFolder folder;
     const PendingFile a(folder.path() / "out.h5"), b(folder.path() / "out.h5");
     EXPECT_NE(a.temporary_path(), b.temporary_path());
+}
+
+TEST(PendingFile, RemovesWhatKilledProcessesLeft) {
+    const TemporaryFolder folder;
+    const auto left_by = [&](pid_t process) {
+        fs::path path = PendingFile(folder.path() / "out.h5").temporary_path();
+        std::string name = path.filename().string();
+        const std::string own = "-" + std::to_string(::getpid()) + "-";
+        name.replace(name.find(own), own.size(), "-" + std::to_string(process) + "-");
+        path.replace_filename(name);
+        write(path, "half");
+        return path;
+    };
+    const pid_t ended = ::fork();
+    if (ended == 0) ::_exit(0);
+    ASSERT_EQ(::waitpid(ended, nullptr, 0), ended);
+    const fs::path of_ended = left_by(ended), of_parent = left_by(::getppid());
+    const fs::path other = folder.write(".interflect-elsewhere-1-0.part.h5", "of another host"),
+                   unlike = folder.write(".interflect-notes", "no temporary file");
+    const PendingFile next(folder.path() / "other.png");
+    EXPECT_FALSE(fs::exists(of_ended));
+    for (const fs::path& kept : {of_parent, other, unlike}) EXPECT_TRUE(fs::exists(kept)) << kept;
+}
+
+TEST(PendingFile, IsRemovedFromASignalHandler) {
+    const TemporaryFolder folder;
+    PendingFile first(folder.path() / "out.h5");
+    const PendingFile moved = std::move(first), second(folder.path() / "out.png");
+    write(moved.temporary_path(), "half");
+    write(second.temporary_path(), "half");
+    remove_temporary_files();
+    EXPECT_EQ(entries(folder.path()), 0);
+}
+
+TEST(PendingFile, TakesTheLongestNamesThereAre) {
+    const TemporaryFolder folder;
+    for (const std::string& name : {std::string(255, 'n'), std::string(200, 'n') + "." + std::string(54, 'e')}) {
+        PendingFile file(folder.path() / name);
+        write(file.temporary_path(), "new");
+        file.commit();
+        EXPECT_EQ(contents(folder.path() / name), "new");
+    }
 }
 
 TEST(PendingFile, MayBeMoved) {

@@ -116,10 +116,28 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
     options.seconds = 10;
     Schedule schedule(options, patches);
     schedule.began_with(1'000'000, 0);
-    EXPECT_EQ(schedule.next(1).rays, 500'000) << "there is time enough";
-    EXPECT_EQ(schedule.next(9).rays, 111'111) << "a million took nine seconds, one is left";
+    IterationPlan plan = schedule.next(1);
+    EXPECT_EQ(plan.rays, 500'000) << "there is time enough";
+    schedule.done(plan);
+    plan = schedule.next(9);
+    EXPECT_EQ(plan.rays, 53'125) << "half a million took eight seconds, one is left, and a margin is kept";
+    schedule.done(plan);
+    EXPECT_EQ(schedule.next(9.9).rays, 0) << "what fits into the rest is not worth an iteration";
     EXPECT_EQ(schedule.next(10).rays, 0);
     EXPECT_EQ(schedule.next(11).rays, 0);
+}
+
+TEST(Schedule, FindsOutHowFastItIsBeforeALongIterationUnderALimitOfTime) {
+    SolveOptions options;
+    options.rays = options.rays_per_iteration = most_rays_per_iteration;
+    options.seconds = 10;
+    Schedule schedule(options, patches);
+    EXPECT_EQ(schedule.start_rays(), 1 << 18);
+    IterationPlan plan = schedule.next(1);
+    EXPECT_EQ(plan.rays, 50'000);
+    schedule.done(plan);
+    plan = schedule.next(2);
+    EXPECT_EQ(plan.rays, 340'000) << "50,000 a second, 8 seconds, 0.85 of them";
 }
 
 }  // namespace

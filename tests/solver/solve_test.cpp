@@ -8,7 +8,9 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "interflect/base/error.h"
 #include "tests/solver/reference_rooms.h"
@@ -20,6 +22,7 @@ namespace {
 
 using namespace testing_support;
 using testing::HasSubstr;
+using namespace std::chrono_literals;
 
 Solution solve(const Scene& scene, const SolveOptions& options, const Monitor& monitor = {}) {
     return interflect::solve(scene, RayCaster(scene), options, monitor);
@@ -150,15 +153,32 @@ TEST(Solve, ReportsEveryIterationInOrder) {
     }
 }
 
-TEST(Solve, EndsAfterTheIterationUnderWayWhenTold) {
-    constexpr int last = 3;
-    std::atomic<bool> stop{false};
-    const Monitor monitor{[&](const IterationReport& report) { stop = report.iteration == last; }, &stop};
-    const Solution solution = solve(colourful_box(), with_rays(std::numeric_limits<std::int64_t>::max()), monitor);
-    EXPECT_TRUE(solution.interrupted);
-    EXPECT_EQ(solution.iterations.back().iteration, last);
-    EXPECT_TRUE(all_finite(solution.irradiance));
-    EXPECT_GT(solution.irradiance[0].x, 0);
+// Whatever an iteration that was cut short has done is lost, and nothing else: the result is that of a run that ends
+// before it. Seen to fail when the elements that a step made are kept, and when no batch looks at the request.
+TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
+    const Scene scene = furnished_room();
+    for (const char* name : {"ihsrr", "hsrr", "hwdrs", "isrr", "random-walk"})
+        for (const bool complete_passes : {true, false}) {
+            SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
+            options.method = find_method(name);
+            options.complete_passes = complete_passes;
+            if (options.method.importance != ImportanceUse::off) options.views = {{into_the_corner}};
+            options.rays_per_iteration = 100'000;
+            std::atomic<bool> stop{false};
+            std::jthread timer;
+            const auto stop_soon = [&](const IterationReport& report) {
+                if (report.iteration == 1)
+                    timer = std::jthread([&] { std::this_thread::sleep_for(30ms), stop = true; });
+            };
+            const Solution cut_short = solve(scene, options, {stop_soon, &stop});
+            EXPECT_TRUE(cut_short.interrupted) << name;
+
+            options.iterations = cut_short.iterations.back().iteration;
+            const Solution expected = solve(scene, options);
+            EXPECT_FALSE(expected.interrupted);
+            EXPECT_EQ(cut_short.forest->size(), expected.forest->size()) << name << ' ' << complete_passes;
+            EXPECT_EQ(cut_short.irradiance, expected.irradiance) << name << ' ' << complete_passes;
+        }
 }
 
 TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
@@ -174,10 +194,10 @@ TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
 
 TEST(Solve, KeepsToTheTimeLimit) {
     SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
-    options.seconds = 0.3;
+    options.seconds = 0.6;
     const IterationReport last = solve(colourful_box(), options).iterations.back();
-    EXPECT_GT(last.seconds, 0.2);
-    EXPECT_LT(last.seconds, 2) << "one iteration later at most, on a busy machine";
+    EXPECT_GT(last.seconds, 0.2) << "an iteration that would end too late may be lost";
+    EXPECT_LT(last.seconds, 1.2) << "a bounce later at most, on a busy machine";
 }
 
 TEST(Solve, StopsOnceTheErrorIsSmallEnough) {

@@ -7,9 +7,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "interflect/base/error.h"
@@ -34,12 +37,15 @@ fs::path target_of(fs::path path) {
     throw InputError("cannot write '" + path.string() + "': " + reason);
 }
 
+bool is_standard_output(const fs::path& path) { return path == "-"; }
+
 /// Copies a file into something that is already there. @throws std::runtime_error
 void copy_into(const fs::path& from, const fs::path& device) {
     const auto fail = [&] {
         throw std::runtime_error("cannot write '" + device.string() + "': " + std::strerror(errno));
     };
-    const int descriptor = ::open(device.c_str(), O_WRONLY | O_CLOEXEC);
+    const int descriptor = is_standard_output(device) ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                                      : ::open(device.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) fail();
     std::ifstream file(from, std::ios::binary);
     std::array<char, 1 << 16> block;
@@ -61,15 +67,70 @@ void copy_into(const fs::path& from, const fs::path& device) {
     if (::close(descriptor) != 0) fail();
 }
 
+constexpr std::string_view temporary_mark = ".part";
+
+/// What the names of this host's temporary files begin with.
+std::string temporary_prefix() {
+    std::array<char, 256> host{};
+    ::gethostname(host.data(), host.size() - 1);
+    return ".interflect-" + std::string(host.data()) + "-";
+}
+
+/// Short, whatever the final name is: a file's name has at most 255 bytes.
+std::string temporary_name(const fs::path& final_path) {
+    static std::atomic<int> made = 0;
+    constexpr std::size_t longest_extension = 16;
+    const std::string extension = final_path.extension().string();
+    return temporary_prefix() + std::to_string(::getpid()) + "-" + std::to_string(made++) +
+           std::string(temporary_mark) + (extension.size() <= longest_extension ? extension : "");
+}
+
+/// Whether a file name is that of a temporary file whose process has ended.
+bool is_stale(std::string_view name, std::string_view prefix) {
+    if (!name.starts_with(prefix) || name.find(temporary_mark) == std::string_view::npos) return false;
+    pid_t process = 0;
+    const char* const digits = name.data() + prefix.size();
+    const auto [end, error] = std::from_chars(digits, name.data() + name.size(), process);
+    return error == std::errc() && process > 0 && end != name.data() + name.size() && *end == '-' &&
+           ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+/// Removes what killed processes of this host have left in a folder, as far as that is allowed.
+void remove_stale_files(const fs::path& folder) {
+    const std::string prefix = temporary_prefix();
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored))
+        if (is_stale(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
+}
+
+/// The temporary files that there are, in plain memory for a signal handler. A slot is free while its path is null.
+constexpr std::size_t slot_count = 16;
+std::array<std::atomic<const char*>, slot_count> listed_paths{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+std::size_t list(const char* path) {
+    for (std::size_t slot = 0; slot < slot_count; ++slot) {
+        const char* is_free = nullptr;
+        if (listed_paths[slot].compare_exchange_strong(is_free, path)) return slot;
+    }
+    return slot_count;
+}
+
+void unlist(std::size_t slot) {
+    if (slot < slot_count) listed_paths[slot] = nullptr;
+}
+
 }  // namespace
 
-PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path)) {
+PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path)), slot_(slot_count) {
     std::error_code loop;  // of symbolic links: target_of() says so
     const fs::file_status status = fs::status(final_path_, loop);
     if (final_path_.filename().empty() || fs::is_directory(status))
         throw_cannot_write(final_path_, "it names a folder, expected a file name");
     fs::path folder;
-    if (loop || !fs::exists(status) || fs::is_regular_file(status)) {
+    if (is_standard_output(final_path_)) {
+        folder = fs::temp_directory_path();
+    } else if (loop || !fs::exists(status) || fs::is_regular_file(status)) {
         try {
             replaced_path_ = target_of(final_path_);
         } catch (const std::exception& e) {
@@ -82,9 +143,8 @@ PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path
         folder = fs::temp_directory_path();
     }
 
-    static std::atomic<int> made = 0;  // two of the same stem may be under way
-    temporary_path_ = folder / ("." + final_path_.stem().string() + ".part" + std::to_string(::getpid()) + "-" +
-                                std::to_string(made++) + final_path_.extension().string());
+    remove_stale_files(folder);
+    temporary_path_ = folder / temporary_name(final_path_);
     const int descriptor = ::open(temporary_path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor < 0) {
         const std::string reason = std::strerror(errno);
@@ -93,14 +153,19 @@ PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path
     }
     ::close(descriptor);
     ::unlink(temporary_path_.c_str());
+    slot_ = list(temporary_path_.c_str());
 }
 
 PendingFile::PendingFile(PendingFile&& other) noexcept
     : final_path_(std::move(other.final_path_)),
       temporary_path_(std::exchange(other.temporary_path_, fs::path())),
-      replaced_path_(std::move(other.replaced_path_)) {}
+      replaced_path_(std::move(other.replaced_path_)),
+      slot_(std::exchange(other.slot_, slot_count)) {
+    if (slot_ < slot_count) listed_paths[slot_] = temporary_path_.c_str();
+}
 
 PendingFile::~PendingFile() {
+    unlist(slot_);
     std::error_code ignored;  // nothing useful can be done about a temporary file that will not go
     if (!temporary_path_.empty()) fs::remove(temporary_path_, ignored);
 }
@@ -112,7 +177,13 @@ void PendingFile::commit() {
     } else {
         fs::rename(temporary_path_, replaced_path_);
     }
+    unlist(std::exchange(slot_, slot_count));
     temporary_path_.clear();
+}
+
+void remove_temporary_files() noexcept {
+    for (const std::atomic<const char*>& path : listed_paths)
+        if (const char* const listed = path.load()) ::unlink(listed);
 }
 
 }  // namespace interflect

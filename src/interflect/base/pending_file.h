@@ -5,9 +5,12 @@
 namespace interflect {
 
 /// An output file that appears under its name only when it is complete: written beside, then renamed. Made before long
-/// work begins, so that a path that cannot be written is an error at once, not after an hour. Nothing is left where the
-/// process is killed before it begins to write. Of a symbolic link the file that it leads to is replaced, not the link;
-/// a device, a pipe or a socket is never replaced: what was written elsewhere is copied into it.
+/// work begins, so that a path that cannot be written is an error at once, not after an hour. Of a symbolic link the
+/// file that it leads to is replaced, not the link; a device, a pipe or a socket is never replaced: what was written
+/// elsewhere is copied into it. The path '-' is standard output.
+///
+/// A process that is killed while it writes leaves its temporary file, .interflect-HOST-PID-N.part.EXTENSION; the next
+/// one on the same host that writes into the folder removes it.
 class PendingFile {
   public:
     /// Finds out whether it can create the temporary file, and removes it.
@@ -30,6 +33,11 @@ class PendingFile {
   private:
     std::filesystem::path final_path_, temporary_path_;
     std::filesystem::path replaced_path_;  // empty: the final path is no regular file, to be written in place
+    std::size_t slot_;                     // of the list of temporary files; past its end: not listed
 };
+
+/// Removes the temporary files of all PendingFiles, of the first 16 that there are. May be called in a signal handler;
+/// the process must end then.
+void remove_temporary_files() noexcept;
 
 }  // namespace interflect

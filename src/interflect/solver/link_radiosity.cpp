@@ -172,7 +172,7 @@ void LinkedElements::link_patches() {
 
     std::vector<std::vector<Prospect>> of_patch(forest_.patch_count());
     std::atomic<std::size_t> count{0};
-    parallel_for_ranges(of_patch.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(of_patch.size(), patches_per_task, run_.stop, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && count <= link_limit_; ++i) {
             const auto a = static_cast<std::uint32_t>(i);
             for (std::uint32_t b = a + 1; b < forest_.patch_count(); ++b)
@@ -194,7 +194,7 @@ void LinkedElements::link(const std::vector<Prospect>& prospects) {
     const std::size_t first = links_.size();
     links_.resize(first + prospects.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(prospects.size(), pairs_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(prospects.size(), pairs_per_task, run_.stop, [&](std::size_t begin, std::size_t end) {
         std::int64_t used = 0;
         for (std::size_t i = begin; i < end; ++i)
             links_[first + i] = {prospects[i].ends, estimator_.estimate(prospects[i].ends, prospects[i].effort, used)};
@@ -333,11 +333,23 @@ bool LinkedElements::refine() {
     return !prospects.empty();
 }
 
-/// @return whether the run is to go on; notes where the caller ended it.
-bool goes_on(Run& run, int iteration) {
-    run.solution.interrupted = run.stop_is_asked_for();
-    return !run.solution.interrupted && !run.is_out_of_time() &&
-           (run.options.iterations == 0 || iteration < run.options.iterations);
+/// Sweeps until light and links have settled, or a limit is reached. @throws Interrupted in the middle of a sweep
+void sweep(Run& run, LinkedElements& elements) {
+    elements.link_patches();
+    bool refines = run.options.method.refines;
+    for (int iteration = 1;; ++iteration) {
+        const RgbD escaped_power = elements.gather_light();
+        if (importance_use(run.solution) == ImportanceUse::full) elements.gather_importance();
+        run.schedule.done({elements.rays() - run.power_rays, false});
+        run.power_rays = elements.rays();
+        report(run, iteration, escaped_power);
+        if (run.options.iterations > 0 && iteration >= run.options.iterations) return;
+        if (run.stop.is_due()) throw Interrupted();
+        if (refines && elements.change() <= settled)
+            refines = elements.refine();
+        else if (!refines && elements.change() <= negligible_change)
+            return;
+    }
 }
 
 }  // namespace
@@ -345,21 +357,13 @@ bool goes_on(Run& run, int iteration) {
 Solution solve_by_links(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
                         const Monitor& monitor, std::size_t link_limit) {
     Run run(scene, ray_caster, options, monitor);
+    run.stop.limit_time(run.start, options.seconds);
     LinkedElements elements(scene, run, link_limit);
     const bool is_lit = channel_sum(run.solution.emitted_power) > 0;  // else it is dark, and exactly so
-    if (is_lit) elements.link_patches();
-    bool refines = options.method.refines;
-    for (int iteration = 1; is_lit; ++iteration) {
-        const RgbD escaped_power = elements.gather_light();
-        if (importance_use(run.solution) == ImportanceUse::full) elements.gather_importance();
-        run.schedule.done({elements.rays() - run.power_rays, false});
-        run.power_rays = elements.rays();
-        report(run, iteration, escaped_power);
-        if (!goes_on(run, iteration)) break;
-        if (refines && elements.change() <= settled)
-            refines = elements.refine();
-        else if (!refines && elements.change() <= negligible_change)
-            break;
+    try {
+        if (is_lit) sweep(run, elements);
+    } catch (const Interrupted&) {
+        run.solution.interrupted = run.stop.is_asked_for();
     }
     run.solution.standard_error.assign(run.forest->size(), 0.0f);
     run.solution.discretisation_error.assign(run.forest->size(), 0.0f);

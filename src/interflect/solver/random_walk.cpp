@@ -99,6 +99,7 @@ class PathBatch {
     PathBatch(const Run& run, const Cargo& cargo, std::int64_t paths, std::uint64_t key)
         : forest_(*run.forest),
           ray_caster_(run.ray_caster),
+          stop_(run.stop),
           first_points_(run.options.points),
           cargo_(cargo),
           paths_(paths),
@@ -118,9 +119,10 @@ class PathBatch {
     const Sums& follow() {
         if (!(quantum_ > 0)) return sums_;
         tbb::enumerable_thread_specific<Wavefront> wavefronts;
-        parallel_for_ranges(static_cast<std::size_t>(paths_), paths_per_task, [&](std::size_t begin, std::size_t end) {
+        const auto follow_some = [&](std::size_t begin, std::size_t end) {
             follow(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), wavefronts.local());
-        });
+        };
+        parallel_for_ranges(static_cast<std::size_t>(paths_), paths_per_task, stop_, follow_some);
         return sums_;
     }
 
@@ -202,6 +204,7 @@ class PathBatch {
 
     const ElementForest& forest_;
     const RayCaster& ray_caster_;
+    const StopRequest& stop_;
     PointSet first_points_;
     const Cargo& cargo_;
     std::int64_t paths_;

@@ -40,7 +40,8 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
       streams(o.points, o.seed),
       arrivals(forest_capacity(scene, o)),
       schedule(o, scene.patches.size()),
-      noise(scene.patches.size()) {
+      noise(scene.patches.size()),
+      stop(m.stop) {
     solution.forest = forest;
     solution.options = o;
     solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
@@ -56,7 +57,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
 Received run_step(Run& run, TransportStep step) {
     const std::uint32_t before = run.forest->size();
     Received received =
-        transport(run.surfaces, *run.forest, run.ray_caster, std::move(step), run.streams, run.arrivals);
+        transport(run.surfaces, *run.forest, run.ray_caster, std::move(step), run.streams, run.arrivals, run.stop);
     run.escaped_rays += received.escaped_rays;
     if (run.forest->size() > before) grow_with_forest(run, before);
     return received;
@@ -83,9 +84,9 @@ void grow_with_forest(Run& run, std::uint32_t first) {
 }
 
 void look_closer(Run& run) {
-    constexpr std::int64_t rays_per_eye_ray = 64, most_eye_rays = 1 << 22;
+    constexpr std::int64_t rays_per_eye_ray = 64, enough_eye_rays = 1 << 22;
     if (run.view.empty()) return;
-    const std::int64_t wanted = std::min(run.schedule.averaged_rays() / rays_per_eye_ray, most_eye_rays);
+    const std::int64_t wanted = std::min(run.schedule.averaged_rays() / rays_per_eye_ray, enough_eye_rays);
     if (wanted < 2 * run.view.rays()) return;
     run.view.look(*run.forest, run.ray_caster, static_cast<int>((wanted - run.view.rays()) / run.view.views()));
     run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);

@@ -11,6 +11,7 @@
 #include "interflect/solver/risk_check.h"
 #include "interflect/solver/schedule.h"
 #include "interflect/solver/solve.h"
+#include "interflect/solver/stop_request.h"
 #include "interflect/solver/surfaces.h"
 #include "interflect/solver/transport.h"
 #include "interflect/solver/view_importance.h"
@@ -19,8 +20,6 @@ namespace interflect {
 
 /// The state of a run: everything that one iteration hands to the next.
 struct Run {
-    using Clock = std::chrono::steady_clock;
-
     Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m);
 
     const Surfaces surfaces;
@@ -38,16 +37,15 @@ struct Run {
     std::vector<float> history;  // of each element: rays that its mean stands for
     NoiseModel noise;
     RiskCheck risk_check;
-    Quanta quanta;  // of the last iteration
+    Quanta quanta;     // of the last iteration
+    StopRequest stop;  // by the caller; once there is a first estimate, by the limit of time too
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    Clock::time_point start = Clock::now();
+    StopRequest::Clock::time_point start = StopRequest::Clock::now();
 
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
-    bool stop_is_asked_for() const { return monitor.stop && monitor.stop->load(); }
-    bool is_out_of_time() const { return seconds() >= options.seconds; }
+    double seconds() const { return std::chrono::duration<double>(StopRequest::Clock::now() - start).count(); }
 };
 
-/// Traces a step's rays; afterwards everything kept by element has grown with the forest.
+/// Traces a step's rays; afterwards everything kept by element has grown with the forest. @throws Interrupted
 Received run_step(Run& run, TransportStep step);
 
 /// The smallest area that an element's parts may have, and the area that a pixel shows there: see ElementFloor [m^2].

@@ -18,15 +18,15 @@ constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, bud
 }  // namespace
 
 Schedule::Schedule(const SolveOptions& options, std::size_t patches) : options_(options) {
-    smallest_ = options.rays_per_iteration;
-    if (smallest_ > 0) return;
-    smallest_ = std::max(fewest_first_rays, first_rays_per_patch * static_cast<std::int64_t>(patches));
-    smallest_ =
-        std::min({smallest_, largest_iteration, std::max<std::int64_t>(1, options.rays / budget_over_first_rays)});
+    const std::int64_t rays = std::max(fewest_first_rays, first_rays_per_patch * static_cast<std::int64_t>(patches));
+    first_rays_ = std::min({rays, largest_iteration, std::max<std::int64_t>(1, options.rays / budget_over_first_rays)});
+    smallest_ = options.rays_per_iteration > 0 ? options.rays_per_iteration : first_rays_;
 }
 
 std::int64_t Schedule::start_rays() const {
-    return std::min(smallest_, std::max<std::int64_t>(1, options_.rays / budget_over_first_rays));
+    constexpr std::int64_t rays_of_a_moment = 1 << 18;
+    return std::min({smallest_, std::max(first_rays_, rays_of_a_moment),
+                     std::max<std::int64_t>(1, options_.rays / budget_over_first_rays)});
 }
 
 void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
@@ -34,7 +34,21 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     averaged_rays_ = power_rays;
 }
 
-IterationPlan Schedule::next(double seconds) const {
+/// How many rays the time that is left allows, as fast as the last iteration was; 0: too few to be worth while.
+std::int64_t Schedule::affordable_rays(double seconds) {
+    constexpr double share_of_time = 0.85;    // of what is left: no two iterations are equally fast
+    constexpr double least_share = 1.0 / 32;  // of what was averaged before
+    const double time_left = options_.seconds - seconds, took = seconds - planned_at_;
+    const std::int64_t traced = rays_ - planned_after_;
+    planned_at_ = seconds, planned_after_ = rays_;
+    if (time_left <= 0) return 0;
+    if (traced == 0) return first_rays_;
+    const double rays = share_of_time * time_left / took * static_cast<double>(traced);
+    const bool is_worth_while = rays >= least_share * static_cast<double>(averaged_rays_);
+    return is_worth_while ? std::llround(std::clamp(rays, 1.0, static_cast<double>(options_.rays))) : 0;
+}
+
+IterationPlan Schedule::next(double seconds) {
     const bool warming_up = finished_ < options_.warm_up;
     if (is_over_) return {};
     if (options_.iterations > 0 && finished_ >= options_.warm_up + options_.iterations) return {};
@@ -43,16 +57,9 @@ IterationPlan Schedule::next(double seconds) const {
     if (options_.rays_per_iteration == 0 && !warming_up)
         rays = std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_)), smallest_,
                           largest_iteration);
-    if (std::isfinite(options_.seconds)) {
-        const double time_left = options_.seconds - seconds;
-        if (time_left <= 0) return {};
-        if (rays_ > 0) {
-            const double affordable = time_left / seconds * static_cast<double>(rays_);
-            rays = std::min(rays, std::max<std::int64_t>(1, static_cast<std::int64_t>(affordable)));
-        }
-    }
     // What would remain for a last iteration of less than half the size goes into this one.
     if (left < rays + rays / 2) rays = left;
+    if (std::isfinite(options_.seconds)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};
     return {rays, warming_up, rays == left};
 }

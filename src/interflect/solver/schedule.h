@@ -20,24 +20,31 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays of each pass before the first iteration: no more than an eighth of all, but one.
+    /// Rays of each pass before the first iteration: no more than an eighth of all, but one; nor more than take a
+    /// moment, whatever the size of an iteration.
     std::int64_t start_rays() const;
     /// Enters the rays of those passes; those that carried power are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
+    /// With a limit of time an iteration is planned to end before it, since one that does not is lost.
     /// @param seconds  Since the run began.
-    IterationPlan next(double seconds) const;
+    IterationPlan next(double seconds);
     void done(const IterationPlan& plan);
 
     std::int64_t rays() const { return rays_; }
     std::int64_t averaged_rays() const { return averaged_rays_; }
 
   private:
+    std::int64_t affordable_rays(double seconds);
+
     SolveOptions options_;
-    std::int64_t smallest_;           // rays of the first iteration
+    std::int64_t first_rays_;         // of the first iteration, unless its size was asked for
+    std::int64_t smallest_;           // iteration [rays]
     std::int64_t rays_ = 0;           // traced so far
     std::int64_t averaged_rays_ = 0;  // of them in the running mean
     int finished_ = 0;                // iterations
     bool is_over_ = false;            // the final one is done
+    double planned_at_ = 0;           // when the last iteration was planned [s],
+    std::int64_t planned_after_ = 0;  // and after how many rays
 };
 
 }  // namespace interflect

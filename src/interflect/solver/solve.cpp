@@ -32,7 +32,8 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require(o.until >= 0 && o.until < 1, "until: expected a relative error from 0 to below 1");
     require(o.warm_up >= 0, "warm_up: expected 0 or more");
     require(o.iterations >= 0, "iterations: expected 0 or more");
-    require(o.rays_per_iteration >= 0, "rays_per_iteration: expected 0 or more");
+    require(o.rays_per_iteration >= 0 && o.rays_per_iteration <= most_rays_per_iteration,
+            "rays_per_iteration: expected 0 to 100 thousand million");
     require(o.epsilon > 0, "epsilon: expected more than 0");
     require(o.epsilon_decay >= 0 && o.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
     require(o.smallest_area >= 0, "smallest_area: expected 0 or more");
@@ -43,7 +44,7 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require(o.inherited_trust >= 0 && o.inherited_trust <= 1, "inherited_trust: expected 0 to 1");
     require(o.importance_smoothing >= 0 && o.importance_smoothing <= 1, "importance_smoothing: expected 0 to 1");
     require(o.importance_exponent >= 0 && o.importance_exponent <= 1, "importance_exponent: expected 0 to 1");
-    require(o.eye_rays > 0, "eye_rays: expected more than 0");
+    require(o.eye_rays > 0 && o.eye_rays <= most_eye_rays, "eye_rays: expected 1 to 2^24");
     require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
             "importance: a method that keeps every ray needs rays of equal power, which importance does not give");
     if (faults.empty()) return;
@@ -115,21 +116,28 @@ Iteration begin_iterations(Run& run) {
     }
 }
 
-Solution iterate_until_done(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
-                            const Monitor& monitor) {
+/// @throws Interrupted in the middle of an iteration.
+void iterate_until_done(Run& run) {
+    const Iteration iterate_once = begin_iterations(run);
+    run.stop.limit_time(run.start, run.options.seconds);
+    for (int iteration = 1; !reached(run); ++iteration) {
+        IterationPlan plan = run.schedule.next(run.seconds());
+        if (plan.rays == 0) return;
+        look_closer(run);
+        const RgbD escaped_power = iterate_once(run, plan);
+        run.schedule.done(plan);
+        report(run, iteration, escaped_power);
+    }
+}
+
+Solution solve_by_iterations(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
+                             const Monitor& monitor) {
     Run run(scene, ray_caster, options, monitor);
-    if (channel_sum(run.solution.emitted_power) > 0) {  // else it is dark, and exactly so
-        const Iteration iterate_once = begin_iterations(run);
-        for (int iteration = 1; !reached(run); ++iteration) {
-            IterationPlan plan = run.schedule.next(run.seconds());
-            if (plan.rays == 0) break;
-            run.solution.interrupted = run.stop_is_asked_for();
-            if (run.solution.interrupted) break;
-            look_closer(run);
-            const RgbD escaped_power = iterate_once(run, plan);
-            run.schedule.done(plan);
-            report(run, iteration, escaped_power);
-        }
+    const bool is_lit = channel_sum(run.solution.emitted_power) > 0;  // else it is dark, and exactly so
+    try {
+        if (is_lit) iterate_until_done(run);
+    } catch (const Interrupted&) {
+        run.solution.interrupted = run.stop.is_asked_for();
     }
     finish_solution(run);
     return std::move(run.solution);
@@ -149,7 +157,7 @@ const Method& find_method(const std::string& name) {
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     require_valid(scene, options);
     if (options.method.scheme == Scheme::links) return solve_by_links(scene, ray_caster, options, monitor);
-    return iterate_until_done(scene, ray_caster, options, monitor);
+    return solve_by_iterations(scene, ray_caster, options, monitor);
 }
 
 }  // namespace interflect

@@ -61,14 +61,18 @@ inline constexpr std::array<Method, 8> methods = {
 /// The method of that name. @throws InputError that lists the methods there are.
 const Method& find_method(const std::string& name);
 
+/// Beyond that the fixed-point sums of transport would round what single rays carry.
+inline constexpr std::int64_t most_rays_per_iteration = 100'000'000'000;
+inline constexpr int most_eye_rays = 1 << 24;
+
 /// What to compute and when to stop. The run ends at the first limit that is reached.
 struct SolveOptions {
     Method method = methods[0];
     std::vector<WeightedView> views;  ///< What is looked at; empty: there is no importance.
 
     std::int64_t rays = 20'000'000;  ///< Most rays to trace in all; > 0.
-    double seconds =
-        std::numeric_limits<double>::infinity();  ///< Most time to take [s]; > 0. Bits then depend on speed.
+    /// Most time to take [s]; > 0. An iteration that it cuts short is lost. Bits then depend on speed.
+    double seconds = std::numeric_limits<double>::infinity();
     double until = 0;  ///< Stop at this estimated relative error (see IterationReport); 0: never. In [0, 1).
     std::uint64_t seed = 1;
     PointSet points = PointSet::sobol;
@@ -79,7 +83,8 @@ struct SolveOptions {
     bool complete_passes = true;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Averaged iterations; 0: as many as the limits allow. >= 0.
-    /// Rays of each iteration; 0: begins small and grows with the rays already averaged. >= 0.
+    /// Rays of each iteration; 0: begins small and grows with the rays already averaged. At most
+    /// most_rays_per_iteration.
     std::int64_t rays_per_iteration = 0;
 
     /// Of Scheme::averaged with complete passes; all others refine by power.
@@ -109,7 +114,7 @@ struct SolveOptions {
     double importance_smoothing = 0.9, importance_exponent = 0.75;
     double alpha = 0.1;      ///< Share of the rays for importance, Eq. 11; in [0, 1].
     double beta = 0.1;       ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
-    int eye_rays = 1 << 16;  ///< Rays that find V at first, per view; > 0. More follow as the run goes on.
+    int eye_rays = 1 << 16;  ///< Rays that find V at first, per view; 1 to most_eye_rays. More follow later.
 };
 
 /// Where a run stands after an iteration; counts since its start.
@@ -154,7 +159,7 @@ struct Solution {
 /// How a caller follows a run, and ends it early.
 struct Monitor {
     std::function<void(const IterationReport&)> report;  ///< After each iteration, on the calling thread; may be empty.
-    const std::atomic<bool>* stop = nullptr;             ///< Once true, the run ends after the iteration under way.
+    const std::atomic<bool>* stop = nullptr;             ///< Once true, the run ends; the iteration under way is lost.
 };
 
 /// Solves Eq. 1 of Prikryl et al. 2000 for the irradiance of every element: each iteration shoots N rays, chosen by

@@ -227,6 +227,11 @@ void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_eleme
     }
 }
 
+void forget_new_elements(ElementForest& forest, std::uint32_t old_size) {
+    forest.put_in_order(old_size);
+    while (forest.size() > old_size) forest.drop_last_siblings();
+}
+
 /// Nothing where a step carries no importance, or none that leaves are told apart by.
 std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Surfaces& surfaces,
                                               const ElementForest& forest) {
@@ -294,7 +299,7 @@ void balance(const ElementForest& forest, const TransportStep& step, Received& r
 }  // namespace
 
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
-                   SampleStreams& streams, Arrivals& arrivals) {
+                   SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop) {
     assert(step.q.size() == forest.size() && step.rays > 0);
     Received received;
     const RayMaker maker(forest, ray_caster, step, streams);
@@ -315,7 +320,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     tbb::enumerable_thread_specific<Batch> batches([&] {
         return Batch({surfaces, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
     });
-    parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, [&](std::size_t begin, std::size_t end) {
+    const auto trace_batch = [&](std::size_t begin, std::size_t end) {
         auto& [shot, hits, receiver] = batches.local();
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), shot);
         hits.resize(shot.rays.size());
@@ -329,7 +334,13 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
                           std::span(hits).subspan(first, last - first));
         }
         receiver.finish_batch();
-    });
+    };
+    try {
+        parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop, trace_batch);
+    } catch (const Interrupted&) {
+        forget_new_elements(forest, old_size);
+        throw;
+    }
     FixedPoint::Value escaped{};
     for (Batch& batch : batches) {
         const Escaped e = batch.receiver.finish();
@@ -355,7 +366,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams) {
     Arrivals arrivals(forest.capacity());
-    return transport(surfaces, forest, ray_caster, std::move(step), streams, arrivals);
+    return transport(surfaces, forest, ray_caster, std::move(step), streams, arrivals, StopRequest());
 }
 
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,

@@ -11,6 +11,7 @@
 #include "interflect/solver/light.h"
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/quanta.h"
+#include "interflect/solver/stop_request.h"
 #include "interflect/solver/surfaces.h"
 
 namespace interflect {
@@ -71,11 +72,12 @@ struct Received {
 /// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
 /// @param arrivals  Nothing has arrived yet, and nothing has afterwards: for as many elements as the forest may have.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
-/// Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
+/// @throws Interrupted where `stop` is due before the last ray is traced; the forest and the streams are then as
+/// before. Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
 /// received.
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
-                   SampleStreams& streams, Arrivals& arrivals);
-/// The same with arrivals of its own.
+                   SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop);
+/// The same, to its end, with arrivals of its own.
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

@@ -1,0 +1,62 @@
+#include "apps/interflect/signals.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <string_view>
+
+#include "interflect/base/pending_file.h"
+
+namespace interflect::command {
+
+namespace {
+
+constexpr std::array<int, 3> stop_signals = {SIGINT, SIGTERM, SIGHUP};
+constexpr std::string_view stop_notice = "\nstopping, keeping what there is; once more ends at once, keeping nothing\n";
+
+std::atomic<bool> ends_gracefully{false}, stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may use it
+
+/// As the signal would have without a handler.
+void end_process(int signal) {
+    remove_temporary_files();
+    std::signal(signal, SIG_DFL);
+    ::raise(signal);  // delivered when the handler returns
+}
+
+extern "C" void handle_stop_signal(int signal) {
+    if (!ends_gracefully || stop_requested.exchange(true)) return end_process(signal);
+    const int errno_before = errno;
+    const std::string_view notice = stop_notice.substr(::isatty(STDERR_FILENO) == 1 ? 0 : 1);
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, notice.data(), notice.size());
+    errno = errno_before;
+}
+
+bool is_ignored(int signal) {
+    struct sigaction action {};
+    return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+void handle_signals() {
+    struct sigaction action {};
+    action.sa_handler = handle_stop_signal;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : stop_signals) ::sigaddset(&action.sa_mask, signal);
+    for (const int signal : stop_signals)
+        if (signal != SIGHUP || !is_ignored(signal)) ::sigaction(signal, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+const std::atomic<bool>& stop_on_signal() {
+    ends_gracefully = true;
+    return stop_requested;
+}
+
+bool is_stop_requested() { return stop_requested; }
+
+}  // namespace interflect::command

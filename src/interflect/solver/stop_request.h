@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <limits>
+
+#include "interflect/base/parallel.h"
+
+namespace interflect {
+
+/// Thrown where a run has to end in the middle of an iteration, the work of which is lost.
+struct Interrupted {};
+
+/// When a run has to end, whatever is under way. Asked on all threads, at every batch of rays.
+class StopRequest {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// @param flag  Set by the caller from another thread or a signal handler; may be null.
+    explicit StopRequest(const std::atomic<bool>* flag = nullptr) : flag_(flag) {}
+
+    void limit_time(Clock::time_point start, double seconds) {
+        start_ = start;
+        seconds_ = seconds;
+    }
+    bool is_asked_for() const { return flag_ && flag_->load(std::memory_order_relaxed); }
+    bool is_out_of_time() const {
+        return seconds_ < std::numeric_limits<double>::infinity() &&
+               std::chrono::duration<double>(Clock::now() - start_).count() >= seconds_;
+    }
+    bool is_due() const { return is_asked_for() || is_out_of_time(); }
+
+  private:
+    const std::atomic<bool>* flag_;
+    Clock::time_point start_;
+    double seconds_ = std::numeric_limits<double>::infinity();
+};
+
+/// As parallel_for_ranges() without it, but begins no range once the run has to end. @throws Interrupted then.
+template <class Body>
+void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
+    std::atomic<bool> is_over{false};
+    parallel_for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+        if (is_over.load(std::memory_order_relaxed)) return;
+        if (stop.is_due())
+            is_over.store(true, std::memory_order_relaxed);
+        else
+            body(begin, end);
+    });
+    if (is_over) throw Interrupted();
+}
+
+}  // namespace interflect
