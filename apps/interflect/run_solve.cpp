@@ -119,7 +119,11 @@ void log_outcome(const Solution& solution) {
     if (solution.non_finite > 0)
         spdlog::warn("{} powers were not finite and were left out: the result is not to be trusted",
                      solution.non_finite);
-    if (solution.iterations.empty()) return;
+    if (solution.iterations.empty()) {
+        if (channel_sum(solution.emitted_power) > 0)
+            spdlog::warn("the run ended before any light had arrived: all surfaces that do not emit are dark");
+        return;
+    }
     const IterationReport& last = solution.iterations.back();
     spdlog::info("{}: {} rays in {}, {} elements{}{}", solution.options.method.name,
                  magnitude(static_cast<double>(last.rays)), duration(last.seconds), last.elements,

@@ -16,7 +16,7 @@ SHORT_ITERATIONS = ("--rays-per-iteration", "20k")
 ONE_LONG_ITERATION = ("--rays-per-iteration", "100G")
 METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk")
 SOON = 30  # [s]
-A_MOMENT = 4  # [s], on a machine that is busy and under a sanitizer
+A_MOMENT = 10  # [s], on a machine that is busy and under a sanitizer
 
 
 class Interrupt(CommandTest):

@@ -338,12 +338,17 @@ TEST(LinkRadiosity, StopsWhenAskedAndAtItsLimits) {
     EXPECT_EQ(solve_scene(scene, options).iterations.size(), 3u);
     options.iterations = 0;
     options.seconds = 1e-9;
-    EXPECT_EQ(solve_scene(scene, options).iterations.size(), 1u);
+    const Solution dark = solve_scene(scene, options);
+    EXPECT_FALSE(dark.interrupted) << "a limit of time is no interruption";
+    EXPECT_TRUE(dark.iterations.empty()) << "links were not even made";
+    EXPECT_EQ(dark.irradiance, std::vector<Rgb>(dark.forest->size(), Rgb(0)));
 
-    const std::atomic<bool> stop{true};
-    const Solution s = solve_by_links(scene, RayCaster(scene), refined_to(1e-3), {{}, &stop});
+    std::atomic<bool> stop{false};
+    const Monitor monitor{[&](const IterationReport& report) { stop = report.iteration == 2; }, &stop};
+    const Solution s = solve_by_links(scene, RayCaster(scene), refined_to(1e-3), monitor);
     EXPECT_TRUE(s.interrupted);
-    EXPECT_EQ(s.iterations.size(), 1u);
+    EXPECT_EQ(s.iterations.size(), 2u);
+    EXPECT_GT(s.irradiance[0].x, 0);
 }
 
 TEST(LinkRadiosity, HasTheSameBitsForAnyNumberOfThreads) {
