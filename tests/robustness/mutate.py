@@ -1,0 +1,141 @@
+"""Damage to the bytes of a file. Everything is decided by the random generator that is passed in."""
+
+import re
+
+NUMBERS = [b"0", b"-1", b"1", b"-0", b"1e38", b"-1e38", b"1e39", b"1e400", b"-1e400", b"nan", b"inf", b"-inf", b"1e-45", b"1e-400"]
+NUMBERS += [b"0.0000001", b"90", b"1e9", b"2147483648", b"4294967296", b"18446744073709551616", b"9" * 400, b"0x10", b"1e", b"."]
+CONTROL = [b"\0", b"\x1b[31m", b"\x07", b"\r", b"\x7f", b"\xff\xfe", b"\xc3\x28", b"\xef\xbb\xbf", b"\x0b", b"\\\n", b"\t\t", b"\"", b"#"]
+NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+WORD = re.compile(rb"[^\s,]+")
+
+
+def span(rng, data, longest):
+    start = rng.randrange(len(data) + 1)
+    return start, min(len(data), start + rng.randint(1, longest))
+
+
+def splice(data, start, end, content):
+    return data[:start] + content + data[end:]
+
+
+# ---- of any file
+
+
+def flip_bits(rng, data):
+    changed = bytearray(data)
+    for _ in range(rng.choice((1, 1, 2, 8))):
+        changed[rng.randrange(len(changed))] ^= 1 << rng.randrange(8)
+    return bytes(changed)
+
+
+def flip_byte(rng, data):
+    at = rng.randrange(len(data))
+    return splice(data, at, at + 1, bytes([rng.randrange(256)]))
+
+
+def zero_range(rng, data):
+    start, end = span(rng, data, rng.choice((4, 64, 4096)))
+    return splice(data, start, end, bytes(end - start))
+
+
+def randomise_range(rng, data):
+    start, end = span(rng, data, rng.choice((4, 64, 1024)))
+    return splice(data, start, end, rng.randbytes(end - start))
+
+
+def extreme_integer(rng, data):
+    size = rng.choice((2, 4, 8))
+    at = rng.randrange(max(1, len(data) - size))
+    value = rng.choice((0, 1, (1 << 8 * size) - 1, 1 << 8 * size - 1, (1 << 8 * size - 1) - 1))
+    return splice(data, at, at + size, value.to_bytes(size, rng.choice(("little", "big"))))
+
+
+def delete_range(rng, data):
+    return splice(data, *span(rng, data, rng.choice((1, 16, 1024))), b"")
+
+
+def duplicate_range(rng, data):
+    start, end = span(rng, data, rng.choice((1, 16, 1024)))
+    return splice(data, end, end, data[start:end] * rng.choice((1, 1, 50)))
+
+
+def swap_blocks(rng, data):
+    size = rng.choice((8, 64, 512))
+    a, b = sorted(rng.randrange(max(1, len(data) - size)) for _ in range(2))
+    if b < a + size:
+        return data
+    return data[:a] + data[b : b + size] + data[a + size : b] + data[a : a + size] + data[b + size :]
+
+
+def truncate(rng, data):
+    return data[: rng.choice((0, 1, 8, len(data) - 1, rng.randrange(len(data) + 1), rng.randrange(len(data) + 1)))]
+
+
+def append(rng, data):
+    return data + rng.choice((b"\0", b"\n", bytes(4096), rng.randbytes(100), data))
+
+
+# ---- of text
+
+
+def substitute_number(rng, data):
+    numbers = list(NUMBER.finditer(data))
+    return splice(data, *rng.choice(numbers).span(), rng.choice(NUMBERS)) if numbers else data
+
+
+def swap_words(rng, data):
+    words = list(WORD.finditer(data))
+    if len(words) < 2:
+        return data
+    a, b = sorted(rng.sample(range(len(words)), 2))
+    (a_start, a_end), (b_start, b_end) = words[a].span(), words[b].span()
+    return data[:a_start] + words[b][0] + data[a_end:b_start] + words[a][0] + data[b_end:]
+
+
+def copy_word(rng, data):
+    words = list(WORD.finditer(data))
+    return splice(data, *rng.choice(words).span(), rng.choice(words)[0]) if words else data
+
+
+def lengthen_word(rng, data):
+    words = list(WORD.finditer(data))
+    return splice(data, *rng.choice(words).span(), rng.choice(words)[0] * rng.choice((2, 100, 20000))) if words else data
+
+
+def shuffle_lines(rng, data):
+    lines = data.splitlines(keepends=True)
+    start, end = span(rng, lines, 8)
+    block = lines[start:end]
+    rng.shuffle(block)
+    return b"".join(lines[:start] + block + lines[end:])
+
+
+def insert_control(rng, data):
+    at = rng.randrange(len(data) + 1)
+    return splice(data, at, at, rng.choice(CONTROL))
+
+
+def nest(rng, data):
+    """Brackets in brackets, deeper than any stack of a parser that calls itself."""
+    opening, closing = rng.choice(((b"[", b"]"), (b'{"a":', b"}")))
+    depth = rng.choice((100, 100_000))
+    at = rng.randrange(len(data) + 1)
+    return splice(data, at, at, opening * depth + closing * rng.choice((0, depth)))
+
+
+BINARY = (flip_bits, flip_byte, zero_range, randomise_range, extreme_integer, delete_range, duplicate_range, swap_blocks, truncate, append)
+TEXT = (flip_bits, delete_range, duplicate_range, truncate, substitute_number, substitute_number, substitute_number)
+TEXT += (swap_words, copy_word, copy_word, lengthen_word, shuffle_lines, insert_control)
+JSON = (*TEXT, nest)
+
+
+def mutated(rng, data, mutators, most):
+    """@return what is left of `data`, always different from it, and the names of the mutators."""
+    changed, names = data, []
+    while changed == data or len(names) < 1:
+        changed, names = data, []
+        for mutator in rng.choices(mutators, k=rng.randint(1, most)):
+            if changed:
+                changed = mutator(rng, changed)
+                names.append(mutator.__name__)
+    return changed, "+".join(names)

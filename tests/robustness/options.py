@@ -1,0 +1,174 @@
+"""Options at the limits of their types, and beyond. Which options there are is read from the help of the command."""
+
+import re
+import signal
+from dataclasses import dataclass
+
+import check
+from case import BAD_INPUT, DONE, INTERRUPTED, WRONG_USAGE, Case, Signal
+from seeds import PICTURES, SCENE, SOLUTION
+
+OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+)(?:,(--[\w-]+))?(?:\{false\})?(?: (\S+))?(?:  |$| )", re.MULTILINE)
+NOT_VARIED = {"--help", "--version", "--output", "--stats", "--view", "--view-file", "--difference", "--error-image", "--json"}
+LIMITS = {"--rays", "--time"}  # one of which every solve keeps
+TIME = 0.3  # [s] that solves are given
+TOO_LONG = 1.5  # [s] after which what has no limit on its time is ended
+
+NO_NUMBERS = ("", " ", "nan", "-nan", "inf", "-inf", "1e400", "x", "1 2", "1e", "--1", "1\x1b[31m", "\u0663", "1,5,", "0x")
+NUMBERS = ("0", "-1", "1", "2", "0.5", "-0", "+1", "007", "1e-45", "1e-400", "1e18", "1e19", "1e38", "1e39", "1e300", "-1e300")
+NUMBERS += ("127", "128", "65535", "65536", "2147483647", "2147483648", "4294967295", "4294967296", "9223372036854775807")
+NUMBERS += ("9223372036854775808", "18446744073709551615", "18446744073709551616", "9" * 400, "0x10", "50%", "100%", "1T", "1k")
+ACCEPTED_OR_REFUSED = frozenset({DONE, WRONG_USAGE, BAD_INPUT})
+REFUSED = frozenset({WRONG_USAGE, BAD_INPUT})
+
+
+@dataclass(frozen=True)
+class Option:
+    """@param type  As the help has it: INT, COUNT, X,Y,Z, a|b|c; empty for a switch."""
+
+    name: str
+    type: str
+
+
+def options_in(help_text):
+    found = []
+    for name, opposite, type_text in OPTION.findall(help_text):
+        kind = re.split("[:=]", type_text)[0] if re.match(r"[A-Z]|[\w-]+\|", type_text) else ""
+        found += [Option(each, kind) for each in (name, opposite) if each and each not in NOT_VARIED]
+    return found
+
+
+def number(rng):
+    return rng.choice(NO_NUMBERS) if rng.random() < 0.25 else rng.choice(NUMBERS)
+
+
+def value_of(rng, option):
+    if option.type == "X,Y,Z":
+        return ",".join(number(rng) for _ in range(rng.choice((3, 3, 3, 3, 2, 4))))
+    if option.type == "WxH":
+        return "x".join(number(rng) for _ in range(2))
+    words = [word for word in option.type.split("|") if word.islower() or "-" in word] if "|" in option.type else []
+    return rng.choice(words) if words and rng.random() < 0.8 else number(rng)
+
+
+def written(rng, option):
+    return f"{option.name}={value_of(rng, option)}" if option.type else option.name
+
+
+def some_choices(rng, seeds, subcommand, most, without=LIMITS):
+    """Up to `most` options of a subcommand, each with a value of its own."""
+    known = [option for option in options_in(seeds.helps[subcommand]) if option.name not in without]
+    return [written(rng, option) for option in rng.sample(known, rng.randint(1, most))]
+
+
+def names(words):
+    return {word.split("=")[0] for word in words if word.startswith("--")}
+
+
+def is_refused(words):
+    """Whether one of the options has a value that no number has."""
+    return any(word.partition("=")[2] in NO_NUMBERS for word in words if "=" in word)
+
+
+# ---- one of each subcommand, with the limits that the options leave
+
+
+def limits_besides(chosen, **limits):
+    return [word for name, value in limits.items() if f"--{name}" not in names(chosen) for word in (f"--{name}", value)]
+
+
+def looking(chosen):
+    if not {"--eye", "--look-at"} & names(chosen):
+        return ["--view", "room-0"]
+    return [word for name in ("--eye", "--look-at") if name not in names(chosen) for word in (name, "1,1.3,1.1")]
+
+
+def solve(rng, seeds):
+    varied = rng.choice(tuple(LIMITS))  # the other one holds
+    chosen = some_choices(rng, seeds, ("solve",), most=3, without=LIMITS - {varied})
+    limit = limits_besides(chosen, rays="2k") if "--time" in names(chosen) else limits_besides(chosen, time=str(TIME))
+    more = rng.choice(([], ["--rays", "2k"])) if not {"--rays", "--time"} & names(chosen) else []
+    arguments = ["solve", "room.mgf", "-o", "out.h5", "--stats", "stats", *looking(chosen), *limit, *more, *chosen]
+    checks = (check.can_be_drawn("out.h5"), check.stats_are_finite("stats"))
+    return Case("", arguments, seeds.some(*SCENE), outputs=("out.h5", "stats"), checks=checks, seconds=TIME)
+
+
+def draw(rng, seeds, inputs, *options):
+    chosen = some_choices(rng, seeds, ("render",), most=3, without=LIMITS)
+    small = limits_besides(chosen, size="8x6", samples="1")
+    arguments = ["render", inputs[0], "-o", "out.exr", *looking(chosen), *small, *options, *chosen]
+    return Case("", arguments, seeds.some(*inputs), outputs=("out.exr",), checks=(check.picture_is_finite("out.exr"),))
+
+
+def render_scene(rng, seeds):
+    return draw(rng, seeds, SCENE, "--rays", "2k", "--time", str(TIME))
+
+
+def render_solution(rng, seeds):
+    return draw(rng, seeds, SOLUTION)
+
+
+def compare(rng, seeds):
+    chosen = some_choices(rng, seeds, ("compare",), most=2)
+    return Case("", ["compare", "a.exr", "a.hdr", "--json", *chosen], seeds.some(*PICTURES))
+
+
+def info(rng, seeds):
+    chosen = some_choices(rng, seeds, ("info",), most=2)
+    return Case("", ["info", "room.mgf", "--json", *chosen], seeds.some(*SCENE))
+
+
+def bench(rng, seeds):
+    chosen = some_choices(rng, seeds, ("bench",), most=2, without=())
+    small = limits_besides(chosen, rays="1k", rounds="1")
+    return Case("", ["bench", "room.mgf", "--json", *small, *chosen], seeds.some(*SCENE))
+
+
+def make_scene(rng, seeds):
+    kind = rng.choice([words for words in seeds.helps if words[0] == "make-scene"])
+    chosen = some_choices(rng, seeds, kind, most=2)
+    outputs = ("out.mgf", "out.views.json")
+    return Case("", [*kind, "-o", "out.mgf", *chosen], outputs=outputs)
+
+
+def ended_when_too_long(case):
+    """What is asked to do much may take long, but a signal ends it, and then it leaves what is whole or nothing."""
+    case.signals = (Signal(signal.SIGTERM, TOO_LONG),)
+    case.seconds += TOO_LONG
+    case.allowed |= {INTERRUPTED, -signal.SIGTERM}
+    return case
+
+
+def options(rng, seeds, _):
+    """Of every subcommand."""
+    make = rng.choice((solve, solve, solve, render_scene, render_solution, compare, info, bench, make_scene))
+    case = make(rng, seeds)
+    case.description = " ".join(case.arguments)
+    case.memory = True
+    case.allowed = REFUSED if is_refused(case.arguments) else ACCEPTED_OR_REFUSED
+    return case if make is solve else ended_when_too_long(case)
+
+
+def camera_option(rng, name):
+    component = ("0", "1", "-1", "1.3", "1e-45", "1e-30", "1e5", "1e18", "1e30", "1e38", "-3e38", "3.4e38", "1e39", "1e300")
+    return f"{name}={','.join(rng.choice(component) for _ in range(3))}"
+
+
+def cameras(rng, seeds, _):
+    """Views from and to places that numbers can hardly name."""
+    chosen = [camera_option(rng, name) if rng.random() < 0.6 else f"{name}=1,1.3,1.1" for name in ("--eye",)]
+    chosen += [camera_option(rng, "--look-at"), *rng.choice(([], [camera_option(rng, "--up")]))]
+    chosen += rng.choice(([], ["--fov=" + rng.choice(("1e-45", "1e-5", "179.99999", "179", "1e-3"))]))
+    name = rng.choice(("out.exr", "out.hdr", "out.png", "out.h5"))
+    if name == "out.h5":
+        use = ["solve", "room.mgf", "-o", name, "--rays", "1k", "--time", str(TIME)]
+        case = Case("", use, seeds.some(*SCENE), seconds=TIME, checks=(check.can_be_drawn(name),))
+    else:
+        shading = rng.choice(([], ["--shading", "flat"], ["--shading", "path"], ["--show", "error"], ["--show", "mesh"]))
+        inputs = SCENE if "path" in shading else SOLUTION
+        use = ["render", inputs[0], "-o", name, "--size", rng.choice(("8x6", "1x1", "64x1")), "--samples", "2", *shading]
+        checks = () if name == "out.png" else (check.picture_is_finite(name),)
+        case = Case("", use, seeds.some(*inputs), checks=checks)
+    case.arguments += chosen
+    case.outputs, case.allowed, case.description = (name,), ACCEPTED_OR_REFUSED, " ".join(case.arguments)
+    return case
