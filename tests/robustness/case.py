@@ -64,9 +64,10 @@ class Case:
     clean_up: Callable[[Path], None] | None = None
     checks: tuple[Callable[["Run"], object], ...] = ()
 
-    def command_line(self, program):
-        command = shlex.join(["exec", program, *self.arguments])
-        return f"ulimit -c 0; {self.shell + '; ' if self.shell else ''}{command} {self.redirections}".rstrip()
+    def command_line(self, program, quote=shlex.quote):
+        """@param quote  How the shell is to read a word that may hold anything."""
+        command = " ".join(["exec", quote(program), *map(quote, self.arguments)])
+        return f"{self.shell + '; ' if self.shell else ''}{command} {self.redirections}".rstrip()
 
     def says_why(self):
         """Whether stderr can be read."""

@@ -2,13 +2,14 @@
 
 import check
 from case import BAD_INPUT, DONE, Case
-from mutate import BINARY, JSON, TEXT, mutated
+from mutate import BINARY, JSON, TEXT, mutated, substitute_number
 from seeds import ENTITIES, PICTURES, SCENE, TINY
 
 READ = frozenset({DONE, BAD_INPUT})
 FEW_PATCHES = ("--max-patches", "20k")
-FEW_RAYS = ("--rays", "1k", "--time", "0.5", *FEW_PATCHES)
+FEW_RAYS = ("--rays", "1k", "--time", "0.5")
 ONE_THREAD = ("--threads", "1")
+SMALL = ("--size", "8x6", "--samples", "2")
 EYE = ("--eye", "1,1,1", "--look-at", "2,2,.5")
 
 
@@ -22,24 +23,28 @@ def info_json(scene):
 
 def solve(scene, *options):
     return {
-        "arguments": ["solve", scene, "-o", "out.h5", "--stats", "stats", *FEW_RAYS, *ONE_THREAD, *options],
+        "arguments": ["solve", scene, "-o", "out.h5", "--stats", "stats", *FEW_RAYS, *FEW_PATCHES, *ONE_THREAD, *options],
         "outputs": ("out.h5", "stats"),
         "checks": (check.can_be_drawn("out.h5"), check.stats_are_finite("stats")),
         "seconds": 0.5,
     }
 
 
-def render(scene, *options):
+def draw(scene, *options):
     return {
-        "arguments": ["render", scene, "-o", "out.exr", *TINY, *FEW_RAYS, *ONE_THREAD, *options],
+        "arguments": ["render", scene, "-o", "out.exr", *SMALL, *FEW_PATCHES, *ONE_THREAD, *options],
         "outputs": ("out.exr",),
         "checks": (check.picture_is_finite("out.exr"),),
         "seconds": 0.5,
     }
 
 
+def render(scene, *options):
+    return draw(scene, *FEW_RAYS, *options)
+
+
 def path_trace(scene, *options):
-    return render(scene, "--shading", "path", *options)
+    return draw(scene, "--shading", "path", *options)
 
 
 def case_of(use, description, files, **more):
@@ -79,7 +84,8 @@ def picture(rng, seeds, _):
     """What `compare` reads."""
     files = seeds.some(*PICTURES)
     target = rng.choice(PICTURES)
-    files[target], how = mutated(rng, files[target], BINARY, rng.choice((1, 1, 4)))
+    mutators = (*BINARY, substitute_number) if target == "a.hdr" else BINARY
+    files[target], how = mutated(rng, files[target], mutators, 4)
     pair = [target, rng.choice(PICTURES)]
     rng.shuffle(pair)
     options, outputs = rng.choice((([], ()), (["--json"], ()), (["--difference", "out.png"], ("out.png",))))

@@ -3,14 +3,21 @@
 import re
 
 NUMBERS = [b"0", b"-1", b"1", b"-0", b"1e38", b"-1e38", b"1e39", b"1e400", b"-1e400", b"nan", b"inf", b"-inf", b"1e-45", b"1e-400"]
+NUMBERS += [b".5", b"2", b"0.999999", b"1000", b"-3.7", b"1e5", b"1e14", b"1e-6", b"180"]
 NUMBERS += [b"0.0000001", b"90", b"1e9", b"2147483648", b"4294967296", b"18446744073709551616", b"9" * 400, b"0x10", b"1e", b"."]
 CONTROL = [b"\0", b"\x1b[31m", b"\x07", b"\r", b"\x7f", b"\xff\xfe", b"\xc3\x28", b"\xef\xbb\xbf", b"\x0b", b"\\\n", b"\t\t", b"\"", b"#"]
+HEADER = 400  # bytes
 NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 WORD = re.compile(rb"[^\s,]+")
 
 
+def place(rng, data):
+    """Half of the time in the header, which is small and says most."""
+    return rng.randrange(rng.choice((min(len(data), HEADER), len(data))))
+
+
 def span(rng, data, longest):
-    start = rng.randrange(len(data) + 1)
+    start = place(rng, data)
     return start, min(len(data), start + rng.randint(1, longest))
 
 
@@ -24,12 +31,12 @@ def splice(data, start, end, content):
 def flip_bits(rng, data):
     changed = bytearray(data)
     for _ in range(rng.choice((1, 1, 2, 8))):
-        changed[rng.randrange(len(changed))] ^= 1 << rng.randrange(8)
+        changed[place(rng, data)] ^= 1 << rng.randrange(8)
     return bytes(changed)
 
 
 def flip_byte(rng, data):
-    at = rng.randrange(len(data))
+    at = place(rng, data)
     return splice(data, at, at + 1, bytes([rng.randrange(256)]))
 
 
@@ -45,7 +52,7 @@ def randomise_range(rng, data):
 
 def extreme_integer(rng, data):
     size = rng.choice((2, 4, 8))
-    at = rng.randrange(max(1, len(data) - size))
+    at = place(rng, data)
     value = rng.choice((0, 1, (1 << 8 * size) - 1, 1 << 8 * size - 1, (1 << 8 * size - 1) - 1))
     return splice(data, at, at + size, value.to_bytes(size, rng.choice(("little", "big"))))
 
@@ -124,18 +131,16 @@ def nest(rng, data):
 
 
 BINARY = (flip_bits, flip_byte, zero_range, randomise_range, extreme_integer, delete_range, duplicate_range, swap_blocks, truncate, append)
-TEXT = (flip_bits, delete_range, duplicate_range, truncate, substitute_number, substitute_number, substitute_number)
+TEXT = (flip_bits, delete_range, duplicate_range, truncate, *[substitute_number] * 10)
 TEXT += (swap_words, copy_word, copy_word, lengthen_word, shuffle_lines, insert_control)
 JSON = (*TEXT, nest)
 
 
 def mutated(rng, data, mutators, most):
     """@return what is left of `data`, always different from it, and the names of the mutators."""
-    changed, names = data, []
-    while changed == data or len(names) < 1:
-        changed, names = data, []
-        for mutator in rng.choices(mutators, k=rng.randint(1, most)):
-            if changed:
-                changed = mutator(rng, changed)
-                names.append(mutator.__name__)
-    return changed, "+".join(names)
+    changed = data
+    while changed == data:
+        chosen = rng.choices(mutators, k=rng.choice((1, 1, rng.randint(1, most))))
+        for mutator in chosen:
+            changed = mutator(rng, changed) if changed else changed
+    return changed, "+".join(mutator.__name__ for mutator in chosen)

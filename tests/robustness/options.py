@@ -8,7 +8,7 @@ import check
 from case import BAD_INPUT, DONE, INTERRUPTED, WRONG_USAGE, Case, Signal
 from seeds import PICTURES, SCENE, SOLUTION
 
-OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+)(?:,(--[\w-]+))?(?:\{false\})?(?: (\S+))?(?:  |$| )", re.MULTILINE)
+OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+)(?:,(--[\w-]+))?(?:\{false\})?(?: (\S+)(?: in \[(\S+) - (\S+)\])?)?", re.MULTILINE)
 NOT_VARIED = {"--help", "--version", "--output", "--stats", "--view", "--view-file", "--difference", "--error-image", "--json"}
 LIMITS = {"--rays", "--time"}  # one of which every solve keeps
 TIME = 0.3  # [s] that solves are given
@@ -18,37 +18,70 @@ NO_NUMBERS = ("", " ", "nan", "-nan", "inf", "-inf", "1e400", "x", "1 2", "1e", 
 NUMBERS = ("0", "-1", "1", "2", "0.5", "-0", "+1", "007", "1e-45", "1e-400", "1e18", "1e19", "1e38", "1e39", "1e300", "-1e300")
 NUMBERS += ("127", "128", "65535", "65536", "2147483647", "2147483648", "4294967295", "4294967296", "9223372036854775807")
 NUMBERS += ("9223372036854775808", "18446744073709551615", "18446744073709551616", "9" * 400, "0x10", "50%", "100%", "1T", "1k")
+# Of each type in the help, some values at the ends of what makes sense.
+TYPICAL = {
+    "AREA": ("0", "1e-12", "1e-300", "1e12", "1"),
+    "BYTES": ("1", "120M", "200M", "1T", "1e18"),
+    "COUNT": ("1", "2", "1k", "100k", "1e12", "1e18"),
+    "DEGREES": ("0.001", "1", "179"),
+    "EXPONENT": ("0", "1", "0.5", "1e-30"),
+    "FLOAT": ("0.001", "0.5", "1", "179"),
+    "METRES|auto|none": ("0.1", "0.3", "1e3", "1e15", "auto", "none"),
+    "NUMBER": ("0", "1", "18446744073709551615"),
+    "SECONDS": ("1e-9", "1e-300", "0.1", "1e9", "1e18", "1e300"),
+    "SHARE": ("0", "1e-15", "0.5", "1", "99%", "1e-9%", "1e15"),
+    "STOPS": ("-100", "-20", "0", "20", "100"),
+    "TEXT": ("1", "50", "1k"),
+    "UINT": ("0", "1", "4294967295", "18446744073709551615"),
+    "WxH": ("1x1", "1x16384", "16384x1", "64x3", "16384x16384"),
+}
+COORDINATES = ("0", "1", "-1", "1.3", "0.3", "1e-45", "1e-30", "1e-6", "1e3", "1e7", "-1e10", "1e14", "1e15")
+BEYOND = ("1e16", "1e18", "1e30", "1e38", "-3.4e38", "1e39", "1e300")  # for the eye of a camera
 ACCEPTED_OR_REFUSED = frozenset({DONE, WRONG_USAGE, BAD_INPUT})
 REFUSED = frozenset({WRONG_USAGE, BAD_INPUT})
 
 
 @dataclass(frozen=True)
 class Option:
-    """@param type  As the help has it: INT, COUNT, X,Y,Z, a|b|c; empty for a switch."""
+    """@param type  As the help has it: INT, COUNT, X,Y,Z, a|b|c; empty for a switch.
+    @param ends      Of its range, where the help tells it."""
 
     name: str
     type: str
+    ends: tuple[str, ...]
 
 
 def options_in(help_text):
     found = []
-    for name, opposite, type_text in OPTION.findall(help_text):
+    for name, opposite, type_text, *ends in OPTION.findall(help_text):
         kind = re.split("[:=]", type_text)[0] if re.match(r"[A-Z]|[\w-]+\|", type_text) else ""
-        found += [Option(each, kind) for each in (name, opposite) if each and each not in NOT_VARIED]
+        known_ends = tuple(filter(None, ends))
+        found += [Option(each, kind, known_ends) for each in (name, opposite) if each and each not in NOT_VARIED]
     return found
 
 
 def number(rng):
-    return rng.choice(NO_NUMBERS) if rng.random() < 0.25 else rng.choice(NUMBERS)
+    return rng.choice(NO_NUMBERS) if rng.random() < 0.3 else rng.choice(NUMBERS)
+
+
+def typical(rng, option):
+    """A value that may well be accepted."""
+    if option.type == "X,Y,Z":
+        return ",".join(rng.choice(COORDINATES) for _ in range(3))
+    if "|" in option.type and option.type not in TYPICAL:
+        return rng.choice(option.type.split("|"))
+    return rng.choice(option.ends or TYPICAL.get(option.type, NUMBERS))
+
+
+def odd(rng, option):
+    """A value that may well be refused."""
+    if option.type == "X,Y,Z":
+        return ",".join(number(rng) for _ in range(rng.choice((3, 3, 2, 4))))
+    return "x".join(number(rng) for _ in range(2)) if option.type == "WxH" else number(rng)
 
 
 def value_of(rng, option):
-    if option.type == "X,Y,Z":
-        return ",".join(number(rng) for _ in range(rng.choice((3, 3, 3, 3, 2, 4))))
-    if option.type == "WxH":
-        return "x".join(number(rng) for _ in range(2))
-    words = [word for word in option.type.split("|") if word.islower() or "-" in word] if "|" in option.type else []
-    return rng.choice(words) if words and rng.random() < 0.8 else number(rng)
+    return typical(rng, option) if rng.random() < 0.75 else odd(rng, option)
 
 
 def written(rng, option):
@@ -149,26 +182,39 @@ def options(rng, seeds, _):
     return case if make is solve else ended_when_too_long(case)
 
 
-def camera_option(rng, name):
-    component = ("0", "1", "-1", "1.3", "1e-45", "1e-30", "1e5", "1e18", "1e30", "1e38", "-3e38", "3.4e38", "1e39", "1e300")
-    return f"{name}={','.join(rng.choice(component) for _ in range(3))}"
+def far_point(rng):
+    component = BEYOND if rng.random() < 0.1 else COORDINATES
+    return ",".join(rng.choice(component) for _ in range(3))
+
+
+def camera(rng):
+    chosen = ["--eye=" + rng.choice(("1,1.3,1.1", far_point(rng))), "--look-at=" + far_point(rng)]
+    if rng.random() < 0.3:
+        chosen.append("--up=" + far_point(rng))
+    if rng.random() < 0.5:
+        chosen.append("--fov=" + rng.choice(("0.001", "0.01", "179", "178.9", "1e-5", "179.99999")))
+    return chosen
+
+
+def solve_for(chosen, seeds):
+    arguments = ["solve", "room.mgf", "-o", "out.h5", "--rays", "1k", "--time", str(TIME), *chosen]
+    checks = (check.can_be_drawn("out.h5"),)
+    return Case("", arguments, seeds.some(*SCENE), outputs=("out.h5",), seconds=TIME, checks=checks)
+
+
+def picture_of(chosen, rng, seeds):
+    name = rng.choice(("out.exr", "out.hdr", "out.png"))
+    shading = rng.choice(([], ["--shading", "flat"], ["--shading", "path"], ["--show", "error"], ["--show", "mesh"]))
+    inputs = SCENE if "path" in shading else SOLUTION
+    small = ["--size", rng.choice(("8x6", "1x1", "64x1")), "--samples", "2"]
+    checks = () if name == "out.png" else (check.picture_is_finite(name),)
+    arguments = ["render", inputs[0], "-o", name, *small, *shading, *chosen]
+    return Case("", arguments, seeds.some(*inputs), outputs=(name,), checks=checks)
 
 
 def cameras(rng, seeds, _):
     """Views from and to places that numbers can hardly name."""
-    chosen = [camera_option(rng, name) if rng.random() < 0.6 else f"{name}=1,1.3,1.1" for name in ("--eye",)]
-    chosen += [camera_option(rng, "--look-at"), *rng.choice(([], [camera_option(rng, "--up")]))]
-    chosen += rng.choice(([], ["--fov=" + rng.choice(("1e-45", "1e-5", "179.99999", "179", "1e-3"))]))
-    name = rng.choice(("out.exr", "out.hdr", "out.png", "out.h5"))
-    if name == "out.h5":
-        use = ["solve", "room.mgf", "-o", name, "--rays", "1k", "--time", str(TIME)]
-        case = Case("", use, seeds.some(*SCENE), seconds=TIME, checks=(check.can_be_drawn(name),))
-    else:
-        shading = rng.choice(([], ["--shading", "flat"], ["--shading", "path"], ["--show", "error"], ["--show", "mesh"]))
-        inputs = SCENE if "path" in shading else SOLUTION
-        use = ["render", inputs[0], "-o", name, "--size", rng.choice(("8x6", "1x1", "64x1")), "--samples", "2", *shading]
-        checks = () if name == "out.png" else (check.picture_is_finite(name),)
-        case = Case("", use, seeds.some(*inputs), checks=checks)
-    case.arguments += chosen
-    case.outputs, case.allowed, case.description = (name,), ACCEPTED_OR_REFUSED, " ".join(case.arguments)
+    chosen = camera(rng)
+    case = solve_for(chosen, seeds) if rng.random() < 0.3 else picture_of(chosen, rng, seeds)
+    case.allowed, case.description = ACCEPTED_OR_REFUSED, " ".join(case.arguments)
     return case

@@ -5,7 +5,7 @@ import signal
 import subprocess
 
 import check
-from case import BAD_INPUT, DONE, FAILED, INTERRUPTED, Case, Signal, signal_name
+from case import BAD_INPUT, DONE, FAILED, INTERRUPTED, WRONG_USAGE, Case, Signal, signal_name
 from options import some_choices
 from seeds import ROOM_RAYS, SCENE, TELLERS, WRITERS
 
@@ -44,7 +44,9 @@ def interrupted_early(case):
 def during_endless_solve(rng, seeds):
     options = some_choices(rng, seeds, ("solve",), most=2)
     sent = Signal(rng.choice(HEEDED), rng.uniform(0, 0.8))
-    return one_signal(seeds, "endless solve", solve_room(*ENDLESS, *options), sent, seconds=sent.delay)
+    case = one_signal(seeds, "endless solve", solve_room(*ENDLESS, *options), sent, seconds=sent.delay)
+    case.allowed |= {WRONG_USAGE, BAD_INPUT}  # of the options
+    return case
 
 
 def during_write(rng, seeds):
@@ -150,15 +152,14 @@ def on_full_disk(rng, seeds, key):
     return case
 
 
-def into_full_device(rng, seeds, key):
+def into_full_device(_, seeds, key):
     """The output is a device that takes nothing; it must still be one afterwards."""
     name = WRITERS[key].output()
 
     def prepare(folder):
         make_full_device(folder / name)
 
-    case = written_case(seeds, key, "full device", prepare=prepare, allowed=frozenset({FAILED}))
-    return case
+    return written_case(seeds, key, "full device", prepare=prepare, allowed=frozenset({FAILED}))
 
 
 def make_full_device(path):
