@@ -95,6 +95,10 @@ class Run:
     def kept_result(self):
         return self.exit_code in (DONE, INTERRUPTED) and not self.timed_out
 
+    def has_file(self, name):
+        """Whether it is there, and a file rather than a device, which may have no end."""
+        return self.after.get(name, "").startswith("file ")
+
     def bytes(self, name):
         return (self.folder / name).read_bytes()
 

@@ -146,14 +146,14 @@ def can_be_drawn(name):
     """What `solve` has written, `render` reads."""
 
     def check(run):
-        return succeeds(run, "render", name, "-o", "drawn.exr", *DRAW) if name in run.after and run.kept_result() else []
+        return succeeds(run, "render", name, "-o", "drawn.exr", *DRAW) if run.has_file(name) else []
 
     return check
 
 
 def scene_can_be_read(name):
     def check(run):
-        return succeeds(run, "info", name) if name in run.after and run.kept_result() else []
+        return succeeds(run, "info", name) if run.has_file(name) and run.kept_result() else []
 
     return check
 
@@ -162,7 +162,7 @@ def picture_is_finite(name):
     """Of .exr and .hdr: the others have no way to say that a number is not finite."""
 
     def check(run):
-        if name not in run.after or not run.kept_result():
+        if not run.has_file(name) or not run.kept_result():
             return
         measured = run.program("compare", name, name, "--json")
         if measured.returncode != DONE:
@@ -175,18 +175,18 @@ def picture_is_finite(name):
 
 def stats_are_finite(name):
     def check(run):
-        for line in run.bytes(name).splitlines() if name in run.after else ():
+        for line in run.bytes(name).splitlines() if run.has_file(name) else ():
             yield from faults_of_json(name, line)
 
     return check
 
 
 def same_bytes(expected):
-    """Outputs equal those of an undisturbed run. @param expected  Name to bytes."""
+    """Outputs that are there equal those of an undisturbed run. @param expected  Name to bytes."""
 
     def check(run):
         for name, content in expected.items():
-            if run.exit_code == DONE and name in run.after and run.bytes(name) != content:
+            if run.exit_code != INTERRUPTED and run.has_file(name) and run.bytes(name) != content:
                 yield Fault(RESULT, f"{name!a} differs from that of an undisturbed run")
 
     return check
@@ -196,7 +196,7 @@ def damage_is_refused(expected_picture):
     """A damaged solution is refused; that it draws the same picture is no excuse."""
 
     def check(run):
-        if run.exit_code == DONE and "out.exr" in run.after:
+        if run.exit_code == DONE and run.has_file("out.exr"):
             same = run.bytes("out.exr") == expected_picture
             yield Fault(UNNOTICED, "draws the same picture") if same else Fault(RESULT, "draws another picture in silence")
 
@@ -207,7 +207,7 @@ def interruption(output):
     """After one signal, what was solved is kept; before the solve it may end as any program does, leaving nothing."""
 
     def check(run):
-        if run.exit_code == DONE or (run.exit_code == INTERRUPTED and output in run.after):
+        if run.exit_code == DONE or (run.exit_code == INTERRUPTED and run.has_file(output)):
             return
         if SOLVING.search(run.stderr):
             yield Fault(RESULT, f"nothing is kept of the solve (exit code {run.exit_code})")

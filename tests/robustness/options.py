@@ -161,7 +161,7 @@ def make_scene(rng, seeds):
     kind = rng.choice([words for words in seeds.helps if words[0] == "make-scene"])
     chosen = some_choices(rng, seeds, kind, most=2)
     outputs = ("out.mgf", "out.views.json")
-    return Case("", [*kind, "-o", "out.mgf", *chosen], outputs=outputs)
+    return Case("", [*kind, "-o", "out.mgf", *chosen], outputs=outputs, checks=(check.scene_can_be_read("out.mgf"),))
 
 
 def ended_when_too_long(case):
