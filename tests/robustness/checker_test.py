@@ -87,7 +87,8 @@ class Checker(unittest.TestCase):
     def test_damage_that_is_not_noticed(self):
         for sort, expected in ((UNNOTICED, b"result\n"), (RESULT, b"another result\n")):
             checks = (check.damage_is_refused(expected),)
-            self.assert_found(sort, 'echo result >"$3"', arguments=("render", "-o", "out.exr"), outputs=("out.exr",), checks=checks)
+            drawn = {"arguments": ("render", "-o", "out.exr"), "outputs": ("out.exr",), "checks": checks}
+            self.assert_found(sort, SOUND, **drawn)
 
     def test_message(self):
         allowed = frozenset({FAILED})

@@ -2,10 +2,11 @@
 
 import re
 
-NUMBERS = [b"0", b"-1", b"1", b"-0", b"1e38", b"-1e38", b"1e39", b"1e400", b"-1e400", b"nan", b"inf", b"-inf", b"1e-45", b"1e-400"]
-NUMBERS += [b".5", b"2", b"0.999999", b"1000", b"-3.7", b"1e5", b"1e14", b"1e-6", b"180"]
-NUMBERS += [b"0.0000001", b"90", b"1e9", b"2147483648", b"4294967296", b"18446744073709551616", b"9" * 400, b"0x10", b"1e", b"."]
-CONTROL = [b"\0", b"\x1b[31m", b"\x07", b"\r", b"\x7f", b"\xff\xfe", b"\xc3\x28", b"\xef\xbb\xbf", b"\x0b", b"\\\n", b"\t\t", b"\"", b"#"]
+# What a number may become, one word each.
+NUMBERS = b"""0 -1 1 -0 .5 2 -3.7 0.999999 90 180 1000 1e5 1e9 1e14 1e-6 0.0000001 1e38 -1e38 1e39 1e400 -1e400 1e-45 1e-400
+    nan inf -inf 2147483648 4294967296 18446744073709551616 0x10 1e .""".split()
+NUMBERS += [b"9" * 400]
+CONTROL = [b"\0", b"\x1b[31m", b"\x07", b"\r", b"\x7f", b"\xff\xfe", b"\xc3\x28", b"\xef\xbb\xbf", b"\x0b", b"\\\n", b"\t\t", b'"', b"#"]
 HEADER = 400  # bytes
 NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 WORD = re.compile(rb"[^\s,]+")
@@ -130,7 +131,8 @@ def nest(rng, data):
     return splice(data, at, at, opening * depth + closing * rng.choice((0, depth)))
 
 
-BINARY = (flip_bits, flip_byte, zero_range, randomise_range, extreme_integer, delete_range, duplicate_range, swap_blocks, truncate, append)
+BINARY = (flip_bits, flip_byte, zero_range, randomise_range, extreme_integer)
+BINARY += (delete_range, duplicate_range, swap_blocks, truncate, append)
 TEXT = (flip_bits, delete_range, duplicate_range, truncate, *[substitute_number] * 10)
 TEXT += (swap_words, copy_word, copy_word, lengthen_word, shuffle_lines, insert_control)
 JSON = (*TEXT, nest)

@@ -35,6 +35,8 @@ TYPICAL = {
     "UINT": ("0", "1", "4294967295", "18446744073709551615"),
     "WxH": ("1x1", "1x16384", "16384x1", "64x3", "16384x16384"),
 }
+MUCH_WORK = ("--rays-per-iteration=1e12", "--rays-per-iteration=1e9", "--eye-rays=268435456")
+MUCH_WORK += ("--warm-up=1000000", "--min-area=1e-12")
 COORDINATES = ("0", "1", "-1", "1.3", "0.3", "1e-45", "1e-30", "1e-6", "1e3", "1e7", "-1e10", "1e14", "1e15")
 BEYOND = ("1e16", "1e18", "1e30", "1e38", "-3.4e38", "1e39", "1e300")  # for the eye of a camera
 ACCEPTED_OR_REFUSED = frozenset({DONE, WRONG_USAGE, BAD_INPUT})
@@ -84,14 +86,11 @@ def value_of(rng, option):
     return typical(rng, option) if rng.random() < 0.75 else odd(rng, option)
 
 
-def written(rng, option):
-    return f"{option.name}={value_of(rng, option)}" if option.type else option.name
-
-
-def some_choices(rng, seeds, subcommand, most, without=LIMITS):
+def some_choices(rng, seeds, subcommand, most, without=LIMITS, value=value_of):
     """Up to `most` options of a subcommand, each with a value of its own."""
     known = [option for option in options_in(seeds.helps[subcommand]) if option.name not in without]
-    return [written(rng, option) for option in rng.sample(known, rng.randint(1, most))]
+    chosen = rng.sample(known, rng.randint(1, most))
+    return [f"{option.name}={value(rng, option)}" if option.type else option.name for option in chosen]
 
 
 def names(words):
@@ -101,6 +100,32 @@ def names(words):
 def is_refused(words):
     """Whether one of the options has a value that no number has."""
     return any(word.partition("=")[2] in NO_NUMBERS for word in words if "=" in word)
+
+
+# ---- solves that have to keep their limit on time
+
+
+def solve_with(arguments, seeds):
+    arguments = ["solve", "room.mgf", "-o", "out.h5", "--stats", "stats", *arguments]
+    checks = (check.can_be_drawn("out.h5"), check.stats_are_finite("stats"))
+    return Case(
+        description=" ".join(arguments),
+        arguments=arguments,
+        files=seeds.some(*SCENE),
+        allowed=ACCEPTED_OR_REFUSED,
+        outputs=("out.h5", "stats"),
+        memory=True,
+        seconds=TIME,
+        checks=checks,
+    )
+
+
+def time_limits(rng, seeds, _):
+    """However much work the other options ask for."""
+    chosen = some_choices(rng, seeds, ("solve",), most=3, value=typical)
+    work = rng.choice(MUCH_WORK)
+    chosen += [work] if not names([work]) & names(chosen) else []
+    return solve_with([*looking(chosen), "--time", str(TIME), *chosen], seeds)
 
 
 # ---- one of each subcommand, with the limits that the options leave
@@ -121,9 +146,7 @@ def solve(rng, seeds):
     chosen = some_choices(rng, seeds, ("solve",), most=3, without=LIMITS - {varied})
     limit = limits_besides(chosen, rays="2k") if "--time" in names(chosen) else limits_besides(chosen, time=str(TIME))
     more = rng.choice(([], ["--rays", "2k"])) if not {"--rays", "--time"} & names(chosen) else []
-    arguments = ["solve", "room.mgf", "-o", "out.h5", "--stats", "stats", *looking(chosen), *limit, *more, *chosen]
-    checks = (check.can_be_drawn("out.h5"), check.stats_are_finite("stats"))
-    return Case("", arguments, seeds.some(*SCENE), outputs=("out.h5", "stats"), checks=checks, seconds=TIME)
+    return solve_with([*looking(chosen), *limit, *more, *chosen], seeds)
 
 
 def draw(rng, seeds, inputs, *options):

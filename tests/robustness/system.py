@@ -6,7 +6,7 @@ import subprocess
 
 import check
 from case import BAD_INPUT, DONE, FAILED, INTERRUPTED, WRONG_USAGE, Case, Signal, signal_name
-from options import some_choices
+from options import some_choices, typical
 from seeds import ROOM_RAYS, SCENE, TELLERS, WRITERS
 
 HEEDED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -45,7 +45,7 @@ def interrupted_early(case):
 
 
 def during_endless_solve(rng, seeds):
-    options = some_choices(rng, seeds, ("solve",), most=2)
+    options = some_choices(rng, seeds, ("solve",), most=2, value=typical)
     sent = Signal(rng.choice(HEEDED), rng.uniform(0, 0.8))
     case = one_signal(seeds, "endless solve", solve_room(*ENDLESS, *options), sent, seconds=sent.delay)
     case.allowed |= {WRONG_USAGE, BAD_INPUT}  # of the options
@@ -101,6 +101,7 @@ def while_drawing(rng, seeds):
 
 def signals(rng, seeds, number):
     kinds = (during_write, during_endless_solve, during_short_solve, twice, killed, during_write, while_drawing, ignored)
+    kinds += (during_endless_solve,)
     return kinds[number % len(kinds)](rng, seeds)
 
 
@@ -108,12 +109,18 @@ def signals(rng, seeds, number):
 
 
 def written_case(seeds, key, description, **more):
-    """One of WRITERS, disturbed: where it says that it is done, it has written what it always writes."""
+    """One of WRITERS, disturbed: where it says that it is done, it has written what it always writes. Where it fails,
+    it leaves nothing; of several outputs, those that are there are whole."""
     command = WRITERS[key]
-    more.setdefault("checks", (check.same_bytes(seeds.written[key]),))
-    more.setdefault("outputs", command.outputs)
-    arguments = more.pop("arguments", list(command.arguments))
-    return Case(f"{key}: {description}", arguments, files=seeds.some(*command.inputs), **more)
+    more.setdefault("may_leave", command.outputs if len(command.outputs) > 1 else ())
+    return Case(
+        description=f"{key}: {description}",
+        arguments=list(command.arguments),
+        files=seeds.some(*command.inputs),
+        outputs=command.outputs,
+        checks=(check.same_bytes(seeds.written[key]),),
+        **more,
+    )
 
 
 def largest_output(seeds, key):
@@ -151,6 +158,7 @@ def on_full_disk(rng, seeds, key):
     case = written_case(seeds, key, f"disk of {pages} pages", prepare=prepare, clean_up=clean_up)
     case.arguments = [moved.get(word, word) for word in case.arguments]
     case.outputs = tuple(moved.values())
+    case.may_leave = case.outputs if case.may_leave else ()
     expected = {moved[name]: content for name, content in seeds.written[key].items()}
     case.checks = (check.same_bytes(expected),)
     case.allowed = outcome_of_limit(pages * page, sum(map(len, expected.values())))
@@ -220,7 +228,8 @@ def descriptors(rng, seeds, number):
         key = rng.choice(list(WRITERS))
         tells = key.startswith("compare") and 1 in disturbed
         allowed = frozenset({FAILED} if tells else {DONE})
-        return written_case(seeds, key, "disturbed descriptors", allowed=allowed, **common)
+        outputs = WRITERS[key].outputs  # whole, even if the failure is to tell of them
+        return written_case(seeds, key, "disturbed descriptors", allowed=allowed, may_leave=outputs, **common)
     key = rng.choice(list(TELLERS))
     allowed = frozenset({FAILED} if 1 in disturbed else {DONE})
     files = seeds.some(*TELLERS[key].inputs)
