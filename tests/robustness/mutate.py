@@ -6,7 +6,8 @@ import re
 NUMBERS = b"""0 -1 1 -0 .5 2 -3.7 0.999999 90 180 1000 1e5 1e9 1e14 1e-6 0.0000001 1e38 -1e38 1e39 1e400 -1e400 1e-45 1e-400
     nan inf -inf 2147483648 4294967296 18446744073709551616 0x10 1e .""".split()
 NUMBERS += [b"9" * 400]
-CONTROL = [b"\0", b"\x1b[31m", b"\x07", b"\r", b"\x7f", b"\xff\xfe", b"\xc3\x28", b"\xef\xbb\xbf", b"\x0b", b"\\\n", b"\t\t", b'"', b"#"]
+CONTROL = [b"\0", b"\x1b[31m", b"\x07", b"\r", b"\x7f", b"\xff\xfe", b"\xc3\x28", b"\xef\xbb\xbf", b"\x0b"]
+CONTROL += [b"\\\n", b"\t\t", b'"', b"#"]
 HEADER = 400  # bytes
 NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 WORD = re.compile(rb"[^\s,]+")

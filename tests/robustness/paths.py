@@ -206,8 +206,8 @@ def read_only_folder(rng, seeds):
     return named_output(rng, seeds, "locked/out", "writes", prepare=prepare, allowed=allowed)
 
 
-SCENARIOS = (odd_scene, odd_output, missing_input, odd_text_inside, longest_name, too_long_name, leading_dash, in_missing_folder)
-SCENARIOS += (over_a_folder, through_link, into_pipe, scene_through_link, same_file_twice, read_only_folder)
+SCENARIOS = (odd_scene, odd_output, missing_input, odd_text_inside, longest_name, too_long_name, leading_dash)
+SCENARIOS += (in_missing_folder, over_a_folder, through_link, into_pipe, scene_through_link, same_file_twice, read_only_folder)
 
 
 def paths(rng, seeds, number):
