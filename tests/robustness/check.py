@@ -1,0 +1,228 @@
+"""What must hold of every run, whatever it was given; and checks that single cases ask for."""
+
+import json
+import re
+import signal
+import subprocess
+
+from case import (
+    CRASH,
+    DONE,
+    EXIT_CODE,
+    FAILED,
+    HANG,
+    INTERRUPTED,
+    LEFTOVER,
+    MESSAGE,
+    RESULT,
+    UNNOTICED,
+    Fault,
+    signal_name,
+)
+
+SANITIZER = re.compile(rb"ERROR: (?:Address|Leak|Memory|Thread)Sanitizer|runtime error:|WARNING: ThreadSanitizer")
+LIBRARY_TEXT = re.compile(
+    rb"json\.exception|HDF5-DIAG|terminate called|std::|filesystem error|\bH5[A-Z]\w|\bImf_|\bstbi|basic_string|bad_alloc"
+)
+CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
+REASON = re.compile(rb"^(?:error: .|stopping)", re.MULTILINE)
+NOT_FINITE = re.compile(rb"^ .*[ :(]-?(?:nan|inf)\b", re.MULTILINE)  # in the indented lines of figures
+SOLVING = re.compile(rb"rays|stopping")  # on stderr, once the solver has begun
+DRAW = ("--eye", "1,1,1", "--look-at", "2,2,1", "--size", "4x4", "--samples", "1")
+
+
+def faults_of(run):
+    """Everything that is wrong with a run. Where it has crashed or hung, the rest is not asked."""
+    grave = [*crashes(run), *hangs(run)]
+    if grave:
+        return [*grave, *leftovers(run)]
+    found = [*exit_codes(run), *leftovers(run), *messages(run)]
+    found += results(run) if not found else ()
+    for check in run.case.checks:
+        found += check(run)
+    return found
+
+
+def last_line(text):
+    lines = text.decode(errors="replace").strip().splitlines()
+    return lines[-1][:200] if lines else ""
+
+
+# ---- of every run
+
+
+def sent(run):
+    return {s.number for s in run.case.signals}
+
+
+def crashes(run):
+    report = SANITIZER.search(run.stderr)
+    if report:
+        line = run.stderr[report.start() :].splitlines()[0]
+        yield Fault(CRASH, line.decode(errors="replace")[:200])
+    elif run.exit_code < 0 and not run.timed_out and -run.exit_code not in sent(run):
+        yield Fault(CRASH, f"ended by {signal_name(-run.exit_code)}: {last_line(run.stderr)}")
+
+
+def hangs(run):
+    if run.timed_out:
+        yield Fault(HANG, f"still there after {run.seconds:.1f} s: {last_line(run.stderr)}")
+
+
+def ran_out_of_memory(run):
+    return run.case.memory and run.exit_code == FAILED and b"memory" in run.stderr
+
+
+def exit_codes(run):
+    if run.exit_code not in run.case.allowed and not ran_out_of_memory(run):
+        allowed = " or ".join(map(str, sorted(run.case.allowed)))
+        yield Fault(EXIT_CODE, f"{run.exit_code} instead of {allowed}: {last_line(run.stderr)}")
+
+
+def leftovers(run):
+    if run.exit_code == -signal.SIGKILL and signal.SIGKILL in sent(run):
+        return  # what it leaves is for a later run to remove
+    may_be_new = set(run.case.may_leave)
+    may_change = set(run.case.may_leave)
+    if run.kept_result():
+        may_be_new.update(run.case.outputs)
+        may_change.update(run.case.outputs)
+    for name in run.new_files():
+        if name not in may_be_new:
+            yield Fault(LEFTOVER, f"{name!a} (exit code {run.exit_code})")
+    for name, state in run.before.items():
+        if name not in may_change and run.after.get(name) != state:
+            yield Fault(LEFTOVER, f"{name!a} has changed (exit code {run.exit_code})")
+
+
+def messages(run):
+    if run.exit_code > 0 and run.case.says_why() and not REASON.search(run.stderr):
+        yield Fault(MESSAGE, f"exit code {run.exit_code} without a reason: {last_line(run.stderr)}")
+    for name, text in (("stdout", run.stdout), ("stderr", run.stderr)):
+        if name == "stderr" and (library := LIBRARY_TEXT.search(text)):
+            yield Fault(MESSAGE, f"{library[0].decode()} in: {last_line(text)}")
+        if CONTROL.search(text):
+            yield Fault(MESSAGE, f"control characters on {name}: {CONTROL.sub(b'?', text)[-200:]!a}")
+
+
+def results(run):
+    """Outputs are there, and no number in them is other than finite."""
+    if run.kept_result():
+        for name in run.case.outputs:
+            if name not in run.after:
+                yield Fault(RESULT, f"exit code {run.exit_code}, but there is no {name!a}")
+    if "--json" in run.case.arguments and run.stdout:
+        yield from faults_of_json("stdout", run.stdout)
+    if NOT_FINITE.search(run.stdout):
+        yield Fault(RESULT, f"not finite: {NOT_FINITE.search(run.stdout)[0].decode(errors='replace')}")
+
+
+def refuse_constant(name):
+    raise ValueError(f"{name} is no JSON")
+
+
+def faults_of_json(name, text):
+    try:
+        json.loads(text.decode(), parse_constant=refuse_constant)
+    except ValueError as error:
+        yield Fault(RESULT, f"{name}: {error}")
+
+
+# ---- that cases ask for
+
+
+def succeeds(run, *arguments):
+    """Runs the command once more. @return a fault, where it does anything but what it should."""
+    try:
+        again = run.program(*arguments)
+    except subprocess.TimeoutExpired:
+        return [Fault(HANG, f"afterwards: {' '.join(arguments)}")]
+    if again.returncode != DONE:
+        return [Fault(RESULT, f"`{' '.join(arguments)}` fails afterwards with {again.returncode}: {last_line(again.stderr)}")]
+    return []
+
+
+def can_be_drawn(name):
+    """What `solve` has written, `render` reads."""
+
+    def check(run):
+        return succeeds(run, "render", name, "-o", "drawn.exr", *DRAW) if run.has_file(name) else []
+
+    return check
+
+
+def scene_can_be_read(name):
+    def check(run):
+        return succeeds(run, "info", name) if run.has_file(name) and run.kept_result() else []
+
+    return check
+
+
+def picture_is_finite(name):
+    """Of .exr and .hdr: the others have no way to say that a number is not finite."""
+
+    def check(run):
+        if not run.has_file(name) or not run.kept_result():
+            return
+        measured = run.program("compare", name, name, "--json")
+        if measured.returncode != DONE:
+            yield Fault(RESULT, f"{name!a} cannot be read: {last_line(measured.stderr)}")
+        elif count := json.loads(measured.stdout)["non_finite_pixels"]:
+            yield Fault(RESULT, f"{count} pixels of {name!a} are not finite")
+
+    return check
+
+
+def stats_are_finite(name):
+    def check(run):
+        for line in run.bytes(name).splitlines() if run.has_file(name) else ():
+            yield from faults_of_json(name, line)
+
+    return check
+
+
+def same_bytes(expected):
+    """Outputs that are there equal those of an undisturbed run. @param expected  Name to bytes."""
+
+    def check(run):
+        for name, content in expected.items():
+            if run.exit_code != INTERRUPTED and run.has_file(name) and run.bytes(name) != content:
+                yield Fault(RESULT, f"{name!a} differs from that of an undisturbed run")
+
+    return check
+
+
+def damage_is_refused(expected_picture):
+    """A damaged solution is refused; that it draws the same picture is no excuse."""
+
+    def check(run):
+        if run.exit_code == DONE and run.has_file("out.exr"):
+            same = run.bytes("out.exr") == expected_picture
+            yield Fault(UNNOTICED, "draws the same picture") if same else Fault(RESULT, "draws another picture in silence")
+
+    return check
+
+
+def interruption(output):
+    """After one signal, what was solved is kept; before the solve it may end as any program does, leaving nothing."""
+
+    def check(run):
+        if run.exit_code == DONE or (run.exit_code == INTERRUPTED and run.has_file(output)):
+            return
+        if SOLVING.search(run.stderr):
+            yield Fault(RESULT, f"nothing is kept of the solve (exit code {run.exit_code})")
+
+    return check
+
+
+def later_run_tidies_up(output, *arguments):
+    """A killed run can remove nothing; the next one to the same output does."""
+
+    def check(run):
+        yield from succeeds(run, *arguments)
+        names = {path.relative_to(run.folder.parent).as_posix() for path in run.folder.parent.rglob("*")}
+        known = {f"work/{name}" for name in (*run.before, output)} | {"work", "temporary"}
+        for name in sorted(names - known):
+            yield Fault(LEFTOVER, f"{name!a}, even after a later run")
+
+    return check
