@@ -191,6 +191,11 @@ TEST(PendingFile, TakesTheLongestNamesThereAre) {
     }
 }
 
+TEST(PendingFile, RefusesNamesThatAreTooLong) {
+    const TemporaryFolder folder;
+    EXPECT_THAT(error_for(folder.path() / std::string(300, 'n')), testing::EndsWith("': File name too long"));
+}
+
 TEST(PendingFile, MayBeMoved) {
     const TemporaryFolder folder;
     std::optional<PendingFile> file(std::in_place, folder.path() / "out.h5");

@@ -66,7 +66,7 @@ def twice(rng, seeds):
     number = rng.choice(HEEDED)
     first = rng.uniform(0, 0.6)
     signals = [Signal(number, first), Signal(number, first + rng.choice((0, 0.001, 0.05, 0.2)))]
-    arguments = solve_room(*ENDLESS, "--rays-per-iteration", rng.choice(("10k", "1e12")))
+    arguments = solve_room(*ENDLESS, "--rays-per-iteration", rng.choice(("10k", "1e11")))
     allowed = {INTERRUPTED, -number}
     checks = [check.can_be_drawn("out.h5")]
     return interrupted_early(signalled(seeds, "endless solve", arguments, signals, allowed, checks, seconds=first))

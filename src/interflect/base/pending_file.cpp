@@ -133,7 +133,9 @@ PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path
     } else if (loop || !fs::exists(status) || fs::is_regular_file(status)) {
         try {
             replaced_path_ = target_of(final_path_);
-        } catch (const std::exception& e) {
+        } catch (const fs::filesystem_error& e) {
+            throw_cannot_write(final_path_, e.code().message());
+        } catch (const InputError& e) {
             throw_cannot_write(final_path_, e.what());
         }
         folder = replaced_path_.has_parent_path() ? replaced_path_.parent_path() : fs::path(".");
