@@ -8,7 +8,8 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <string_view>
+
+#include "apps/interflect/percent.h"
 
 namespace interflect::command {
 
@@ -20,8 +21,6 @@ constexpr double seconds_between_lines = 2;  // where stderr is no terminal
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
-constexpr std::string_view below_bar_stop_notice =
-    "\nstopping after this iteration, keeping what there is; once more ends at once, keeping nothing\n";
 std::string_view stop_notice;  // set before the signal handler is
 
 extern "C" void request_stop(int signal) {
@@ -36,9 +35,9 @@ bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
 
 }  // namespace
 
-StopOnInterrupt::StopOnInterrupt() {
+StopOnInterrupt::StopOnInterrupt(std::string_view notice) {
     stop_requested = false;
-    stop_notice = below_bar_stop_notice.substr(stderr_is_terminal() ? 0 : 1);
+    stop_notice = notice.substr(stderr_is_terminal() ? 0 : 1);
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
 }
@@ -82,11 +81,11 @@ void ProgressBar::show(const WorkDone& work) {
     const double fraction = work.fraction;
     if (!terminal_ && fraction < 1 && work.seconds < last_shown_ + seconds_between_lines) return;
     last_shown_ = work.seconds;
-    const std::string error = std::isfinite(work.error) ? fmt::format("{:.2g}%", 100 * work.error) : std::string("-");
+    const std::string error = work.error ? "error " + percent(*work.error) + ", " : std::string();
     const std::string left = fraction > 0 ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
-    const std::string text = fmt::format(
-        "{:3.0f}%  {} rays, {}/s, error {}, {} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
-        magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
+    const std::string text =
+        fmt::format("{:3.0f}%  {} rays, {}/s, {}{} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
+                    magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
     if (!terminal_) {
         fmt::print(stderr, "{}\n", text);
         return;

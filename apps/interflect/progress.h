@@ -1,17 +1,24 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "interflect/solver/solve.h"
 
 namespace interflect::command {
 
+/// What Ctrl-C says where it ends an iteration: the first character is for a terminal, where a bar stands in the line.
+inline constexpr std::string_view stop_after_iteration =
+    "\nstopping after this iteration, keeping what there is; once more ends at once, keeping nothing\n";
+
 /// Until the end of its scope, the first Ctrl-C (or SIGTERM) sets a flag, and says so, instead of ending the process;
 /// the second ends it.
 class StopOnInterrupt {
   public:
-    StopOnInterrupt();
+    /// @param notice  Like stop_after_iteration; of static lifetime.
+    explicit StopOnInterrupt(std::string_view notice = stop_after_iteration);
     ~StopOnInterrupt();
     StopOnInterrupt(const StopOnInterrupt&) = delete;
     StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
@@ -23,7 +30,7 @@ struct WorkDone {
     double fraction = 0;  ///< In [0, 1].
     double seconds = 0;
     std::int64_t rays = 0;
-    double error = 0;  ///< Estimated relative error; infinite or not a number where unknown.
+    std::optional<double> error;  ///< Estimated relative error, if it has one; infinite where not known yet.
 };
 
 /// Shows it on stderr: one line that is written over on a terminal, else a line now and then.
