@@ -94,12 +94,12 @@ std::optional<Picture> draw_light(const SolvedScene& solved, const RayCaster& ra
     DrawingProgress progress;
     const Rendering rendering = render(solved.scene, *solved.solution.forest, ray_caster, view,
                                        solved.solution.irradiance, options.render, progress.monitor());
-    if (progress.interrupted()) return {};
+    if (DrawingProgress::interrupted()) return {};
     Picture picture = picture_of_light(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
                                       options.render.samples, options.render.seed, {}, progress.monitor());
-    if (progress.interrupted()) return {};
+    if (DrawingProgress::interrupted()) return {};
     return picture;
 }
 
@@ -120,7 +120,7 @@ std::optional<Picture> draw_quantity(const SolvedScene& solved, const RayCaster&
                                options.render.seed};
     DrawingProgress progress;
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
-    if (progress.interrupted()) return {};
+    if (DrawingProgress::interrupted()) return {};
     const std::string label = label_of(options.shown);
     if (rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label);
     return Picture{
@@ -197,7 +197,7 @@ void warn_of_tone_options(const RenderArguments& options, const CLI::App& comman
         if (is_quantity(options.shown))
             spdlog::warn("{} has no effect: numbers of the elements are drawn in false colours", name);
         else if (!is_for_people(options))
-            spdlog::warn("{} has no effect: {} holds linear values, only .png and .jpg are exposed", name,
+            spdlog::warn("{} does not change linear values, which {} holds: it is for .png and .jpg", name,
                          options.output.string());
     }
 }

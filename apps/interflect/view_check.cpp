@@ -69,8 +69,9 @@ void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, con
     const FirstMet met = first_met(scene, ray_caster, view, aspect);
     if (met.nothing + met.backs <= 0.5) return;
     spdlog::warn(
-        "view '{}': the camera seems to be outside the scene: {} of the picture shows nothing and {} the backs "
-        "of faces, which light goes through",
+        "view '{}': the camera seems to be outside the scene: {} of the picture shows nothing and {} is seen through "
+        "the "
+        "backs of one-sided faces",
         view.name, percent(met.nothing), percent(met.backs));
 }
 

@@ -14,7 +14,7 @@ file(RENAME ${work}/first ${prefix})
 
 file(GLOB_RECURSE package_files ${prefix}/lib*/cmake/*.cmake)
 foreach(file ${package_files})
-  file(STRINGS ${file} paths REGEX "[\"; ]/(usr|home|tmp|work|opt)/|${work}|${build}")
+  file(STRINGS ${file} paths REGEX "[\"; :]/(usr|home|tmp|work|opt)/|${work}|${build}")
   if(paths)
     message(FATAL_ERROR "${file} names a path of this machine: ${paths}")
   endif()

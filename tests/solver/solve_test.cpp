@@ -266,8 +266,9 @@ TEST(Solve, RefusesABrokenScene) {
     const std::string message = error_of(scene, {});
     EXPECT_THAT(message, HasSubstr("material 'red': exitance"));
     EXPECT_THAT(message, HasSubstr("material 'green': reflectance"));
-    scene.patches.clear();
-    EXPECT_THAT(error_of(scene, {}), HasSubstr("no patches"));
+    Scene empty = colourful_box();
+    empty.patches.clear();
+    EXPECT_THAT(error_of(empty, {}), HasSubstr("no patches"));
 }
 
 TEST(Solve, RefusesTheRayCasterOfAnotherScene) {
