@@ -6,11 +6,27 @@ find_dependency(Imath 3.1)
 find_dependency(OpenEXR 3.1)
 find_dependency(fmt)
 find_dependency(nlohmann_json)
-find_dependency(HDF5 COMPONENTS C)
 # Debian 12 has Embree 3; the one file that calls it (raycast/ray_caster.cpp) compiles against Embree 4 as well.
 find_package(embree 4 CONFIG QUIET)
 if(NOT embree_FOUND)
   find_dependency(embree 3)
 endif()
-find_path(INTERFLECT_GLU_INCLUDE GL/glu.h REQUIRED)
-find_library(INTERFLECT_GLU_LIBRARY GLU REQUIRED)
+
+# interflect_find_library(TARGET HEADER header LIBRARY names... [FOLDERS suffixes...]): an imported library, so that what
+# is installed names no path of this machine.
+function(interflect_find_library target)
+  cmake_parse_arguments(arg "" "HEADER" "LIBRARY;FOLDERS" ${ARGN})
+  if(TARGET ${target})
+    return()
+  endif()
+  string(MAKE_C_IDENTIFIER ${target} name)
+  find_path(${name}_INCLUDE ${arg_HEADER} PATH_SUFFIXES ${arg_FOLDERS} REQUIRED)
+  find_library(${name}_LIBRARY NAMES ${arg_LIBRARY} PATH_SUFFIXES ${arg_FOLDERS} REQUIRED)
+  add_library(${target} UNKNOWN IMPORTED)
+  set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${${name}_LIBRARY}
+                                             INTERFACE_INCLUDE_DIRECTORIES ${${name}_INCLUDE})
+endfunction()
+
+interflect_find_library(interflect::glu HEADER GL/glu.h LIBRARY GLU)
+# CMake's own FindHDF5 asks the compiler of C, which a project need not have enabled.
+interflect_find_library(interflect::hdf5 HEADER hdf5.h LIBRARY hdf5 hdf5_serial FOLDERS hdf5/serial)

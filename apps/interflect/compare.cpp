@@ -78,11 +78,18 @@ void write_difference(PendingFile& file, const ImageDifference& difference) {
     if (difference.non_finite_pixels > 0)
         throw InputError(
             fmt::format("cannot draw the difference: {} pixels are not finite", difference.non_finite_pixels));
-    write_image(file.temporary_path(), show_flip_map(difference.flip_map));
-    file.commit();
+    write_image(file, show_flip_map(difference.flip_map));
 }
 
 bool is_tone_mapped(const std::filesystem::path& path) { return needs_tone_mapping(require_image_format(path)); }
+
+void warn_of_unlike_values(const CompareArguments& options) {
+    const bool image = is_tone_mapped(options.image), reference = is_tone_mapped(options.reference);
+    if (image == reference) return;
+    spdlog::warn("{} is tone-mapped for a display and {} holds linear values: the measures compare unlike things",
+                 (image ? options.image : options.reference).string(),
+                 (image ? options.reference : options.image).string());
+}
 
 void run(const CompareArguments& options) {
     std::optional<PendingFile> difference_file;
@@ -95,6 +102,7 @@ void run(const CompareArguments& options) {
         difference_file.emplace(*options.difference);
     }
     const Image image = read_image(options.image), reference = read_image(options.reference);
+    warn_of_unlike_values(options);
     const CompareOptions compare_options{
         .scale = options.scale,
         .field_of_view = field_of_view(options),

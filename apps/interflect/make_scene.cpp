@@ -1,6 +1,8 @@
 #include <spdlog/spdlog.h>
 
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 
 #include "apps/interflect/commands.h"
@@ -20,13 +22,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct OutputOptions {
+    fs::path path;
+    bool force = false;  // replaces views that differ
+};
+
+std::string file_content(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// The views beside a scene were not named by whoever asks for it: they may be someone's own.
+void require_replaceable(const PendingFile& views, bool force) {
+    if (force || !fs::exists(views.final_path()) ||
+        file_content(views.final_path()) == file_content(views.temporary_path()))
+        return;
+    throw InputError(views.final_path(), 0, "has other views than the scene's: expected --force to replace them");
+}
+
 /// Makes a scene and writes it with its views. Both files are opened before the work begins.
-void write(const fs::path& path, const std::function<Scene()>& make) {
+void write(const OutputOptions& output, const std::function<Scene()>& make) {
+    const fs::path& path = output.path;
     if (path.extension() != ".mgf") throw InputError(path, 0, "scenes are written as .mgf");
     PendingFile scene_file(path), view_file(view_list_path(path));
     const Scene scene = make();
     write_mgf(scene, scene_file.temporary_path());
     write_view_list(scene.views, view_file.temporary_path());
+    require_replaceable(view_file, output.force);
     scene_file.commit();
     view_file.commit();
     spdlog::info("{}: {} patches; {}: {} views", path.string(), scene.patches.size(), view_file.final_path().string(),
@@ -36,10 +58,11 @@ void write(const fs::path& path, const std::function<Scene()>& make) {
 /// Adds one kind of scene, with the option that every kind has.
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help,
                    const std::function<Scene()>& make) {
-    const auto output = std::make_shared<fs::path>();
+    const auto output = std::make_shared<OutputOptions>();
     CLI::App& kind = *parent.add_subcommand(name, help);
-    kind.add_option("-o,--output", *output, "Scene file to write (.mgf); its views go beside it (.views.json)")
+    kind.add_option("-o,--output", output->path, "Scene file to write (.mgf); its views go beside it (.views.json)")
         ->required();
+    kind.add_flag("--force", output->force, "Replace a .views.json that has other views");
     kind.callback([output, make] { write(*output, make); });
     return kind;
 }

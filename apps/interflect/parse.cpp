@@ -101,6 +101,22 @@ Size parse_size(const std::string& text) {
     return {static_cast<int>(width), static_cast<int>(height)};
 }
 
+Exposure parse_exposure(const std::string& text) {
+    constexpr double most = 100;
+    constexpr std::string_view automatic = "auto";
+    std::string_view rest = text;
+    Exposure exposure{.relative = rest.starts_with(automatic)};
+    if (exposure.relative) rest.remove_prefix(automatic.size());
+    if (exposure.relative && rest.empty()) return exposure;
+    const bool has_sign = rest.starts_with('+') || rest.starts_with('-');
+    double stops = 0;
+    const bool parsed = (has_sign || !exposure.relative) && take_number(rest, stops) && rest.empty();
+    if (!parsed || std::abs(stops) > most)
+        refuse(text, "stops from -100 to 100, such as 2, or auto, or stops from there, such as auto+1");
+    exposure.stops = static_cast<float>(stops);
+    return exposure;
+}
+
 float parse_mesh_size(const std::string& text) {
     if (text == "auto") return automatic_mesh_size;
     if (text == "none") return whole_patches;

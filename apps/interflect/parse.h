@@ -33,6 +33,13 @@ struct Size {
     int width = 1280, height = 720;
 };
 Size parse_size(const std::string& text);
+/// "2" -> {2, absolute}; "auto", "auto+1", "auto-0.5" -> {0, 1, -0.5 relative to the automatic one} [stops], from -100
+/// to 100.
+struct Exposure {
+    float stops = 0;
+    bool relative = true;
+};
+Exposure parse_exposure(const std::string& text);
 /// "0.05" -> 0.05, above 0; "auto" -> automatic_mesh_size; "none" -> whole_patches.
 float parse_mesh_size(const std::string& text);
 inline constexpr float automatic_mesh_size = 0, whole_patches = -1;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/interflect/percent.h"
+
 namespace interflect::command {
 
 namespace {
@@ -56,11 +58,11 @@ void ProgressBar::show(const WorkDone& work) {
     const double fraction = work.fraction;
     if (!terminal_ && fraction < 1 && work.seconds < last_shown_ + seconds_between_lines) return;
     last_shown_ = work.seconds;
-    const std::string error = std::isfinite(work.error) ? fmt::format("{:.2g}%", 100 * work.error) : std::string("-");
+    const std::string error = work.error ? "error " + percent(*work.error) + ", " : std::string();
     const std::string left = fraction > 0 ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
-    const std::string text = fmt::format(
-        "{:3.0f}%  {} rays, {}/s, error {}, {} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
-        magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
+    const std::string text =
+        fmt::format("{:3.0f}%  {} rays, {}/s, {}{} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
+                    magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
     if (!terminal_) {
         print(text + "\n");
         return;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "interflect/solver/solve.h"
 
@@ -11,7 +13,7 @@ struct WorkDone {
     double fraction = 0;  ///< In [0, 1].
     double seconds = 0;
     std::int64_t rays = 0;
-    double error = 0;  ///< Estimated relative error; infinite or not a number where unknown.
+    std::optional<double> error;  ///< Estimated relative error, if it has one; infinite where not known yet.
 };
 
 /// Shows it on stderr: one line that is written over on a terminal, else a line now and then.

@@ -1,21 +1,26 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
+#include "apps/interflect/drawing_progress.h"
 #include "apps/interflect/parse.h"
+#include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/show.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
+#include "apps/interflect/view_check.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/exports/solution_file.h"
 #include "interflect/image/image_files.h"
+#include "interflect/image/legend.h"
 #include "interflect/image/outlines.h"
 #include "interflect/image/render.h"
 #include "interflect/image/tone_map.h"
@@ -44,7 +49,7 @@ struct RenderArguments {
     PictureShading shading = PictureShading::smooth;
     std::optional<int> samples;
     RenderOptions render;
-    std::optional<float> exposure;
+    Exposure exposure;
     Tonemap tonemap = Tonemap::filmic;
     Shown shown = Shown::light;
 };
@@ -64,83 +69,111 @@ View view_to_draw(const Scene& scene, const ViewOptions& options) {
 struct Picture {
     Image image;
     std::string quantity = "luminance [cd/m^2]";
-    float exposure = 0;
+    std::optional<float> exposure;  // none where it has no meaning
     std::int64_t non_finite_pixels = 0;
 };
+
+bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
+
+bool is_black(const Image& image) {
+    return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
+}
 
 /// Tone-mapped in formats for people.
 Picture picture_of_light(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
     Picture picture;
-    picture.exposure = options.exposure.value_or(automatic_exposure(light));
+    picture.exposure = options.exposure.stops + (options.exposure.relative ? automatic_exposure(light) : 0);
     picture.non_finite_pixels = non_finite_pixels;
-    const bool tone_mapped = needs_tone_mapping(require_image_format(options.output));
-    picture.image = tone_mapped ? tone_map(light, picture.exposure, options.tonemap) : light;
+    picture.image = is_for_people(options) ? tone_map(light, *picture.exposure, options.tonemap) : light;
+    if (is_black(light)) spdlog::warn("the view shows no light: the picture is black");
     return picture;
 }
 
-Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                   const RenderArguments& options) {
-    const Rendering rendering =
-        render(solved.scene, *solved.solution.forest, ray_caster, view, solved.solution.irradiance, options.render);
+/// None where that was interrupted.
+std::optional<Picture> draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                                  const RenderArguments& options) {
+    DrawingProgress progress;
+    const Rendering rendering = render(solved.scene, *solved.solution.forest, ray_caster, view,
+                                       solved.solution.irradiance, options.render, progress.monitor());
+    if (progress.interrupted()) return {};
     Picture picture = picture_of_light(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
-                                      options.render.samples, options.render.seed);
+                                      options.render.samples, options.render.seed, {}, progress.monitor());
+    if (progress.interrupted()) return {};
     return picture;
 }
 
-/// In false colours for people, as numbers in formats to measure with.
-Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                      const RenderArguments& options) {
-    const EyeSampling sampling{options.size.width, options.size.height, options.render.samples, options.render.seed};
-    QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling);
-    const bool for_people = needs_tone_mapping(require_image_format(options.output));
-    return {for_people ? std::move(drawn.shown) : std::move(drawn.values), label_of(options.shown), 0,
-            drawn.non_finite_pixels};
+/// Rows of the picture that its legend takes; 0 where there is no room for one.
+int legend_rows(const RenderArguments& options) {
+    const auto [width, height] = options.size;
+    if (!is_for_people(options)) return 0;
+    if (legend_fits(width, height, label_of(options.shown))) return legend_height(width);
+    spdlog::warn("{} x {} pixels have no room for a legend: the colours are not explained", width, height);
+    return 0;
+}
+
+/// In false colours for people, as numbers in formats to measure with. None where that was interrupted.
+std::optional<Picture> draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                                     const RenderArguments& options) {
+    const int rows = legend_rows(options);
+    const EyeSampling sampling{options.size.width, options.size.height - rows, options.render.samples,
+                               options.render.seed};
+    DrawingProgress progress;
+    QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
+    if (progress.interrupted()) return {};
+    const std::string label = label_of(options.shown);
+    if (rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label);
+    return Picture{
+        is_for_people(options) ? std::move(drawn.shown) : std::move(drawn.values), label, {}, drawn.non_finite_pixels};
 }
 
 void write_picture(PendingFile& output, const Picture& picture, const View& view, const Scene& scene,
                    std::uint64_t seed, const RenderArguments& options) {
-    write_image(output.temporary_path(), picture.image,
-                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure});
-    output.commit();
+    write_image(output, picture.image,
+                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)});
     if (picture.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", picture.non_finite_pixels);
-    spdlog::info("{}: {} x {}, view '{}', {}, exposure {:+.2f}", options.output.string(), picture.image.width,
-                 picture.image.height, view.name, picture.quantity, picture.exposure);
+    const bool is_exposed = picture.exposure && is_for_people(options);
+    spdlog::info("{}: {} x {}, view '{}', {}{}", options.output.string(), picture.image.width, picture.image.height,
+                 view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
+}
+
+/// A solution, or a scene that is not solved yet.
+SolvedScene read(const RenderArguments& options, const CLI::App& command) {
+    if (!is_solution_file(options.scene.path)) return {options.scene.load(), {}};
+    SolvedScene solved = read_solution(options.scene.path);
+    refuse_scene_options(command, options.scene.path, options.shading == PictureShading::path);
+    return solved;
 }
 
 /// Draws the light of a solution; solves a scene first.
-void run_solution(RenderArguments& options, PendingFile& output) {
+void run_solution(RenderArguments& options, const CLI::App& command, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
-    SolvedScene solved;
-    if (solved_before)
-        solved = read_solution(options.scene.path);
-    else
-        solved.scene = options.scene.load();
+    SolvedScene solved = read(options, command);
     const View view = view_to_draw(solved.scene, options.view);
     Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses what defines no picture
-    if (options.shown == Shown::mesh && !needs_tone_mapping(require_image_format(options.output)))
+    if (options.shown == Shown::mesh && !is_for_people(options))
         throw InputError(options.output, 0, "outlines of the mesh are for pictures to look at: expected .png or .jpg");
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     const SolveOptions solve_options = options.solver.resolved({view}, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(solved.scene);
+    warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
     if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver);
 
     options.render.width = options.size.width;
     options.render.height = options.size.height;
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
-    const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                                                       : draw_light(solved, ray_caster, view, options);
-    write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
+    const std::optional<Picture> picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                                                                      : draw_light(solved, ray_caster, view, options);
+    if (picture) write_picture(output, *picture, view, solved.scene, solved.solution.options.seed, options);
 }
 
 /// Draws the light that path tracing finds; of a solution file the scene alone counts.
-void run_paths(const RenderArguments& options, PendingFile& output) {
-    const Scene scene =
-        is_solution_file(options.scene.path) ? read_solution(options.scene.path).scene : options.scene.load();
+void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
+    const Scene scene = read(options, command).scene;
     const View view = view_to_draw(scene, options.view);
     PathOptions path_options;
     path_options.width = options.size.width;
@@ -148,9 +181,24 @@ void run_paths(const RenderArguments& options, PendingFile& output) {
     path_options.samples = options.samples.value_or(path_options.samples);
     path_options.until = options.solver.until();
     path_options.seed = options.solver.seed();
-    const PathTracing traced = run_path_tracer(scene, RayCaster(scene), view, path_options, options.path);
+    const RayCaster ray_caster(scene);
+    warn_of_camera_outside(scene, ray_caster, view,
+                           static_cast<float>(options.size.width) / static_cast<float>(options.size.height));
+    const PathTracing traced = run_path_tracer(scene, ray_caster, view, path_options, options.path);
     const Picture picture = picture_of_light(traced.image, traced.non_finite_pixels, options);
     write_picture(output, picture, view, scene, path_options.seed, options);
+}
+
+/// Curves and exposure are for light on a display.
+void warn_of_tone_options(const RenderArguments& options, const CLI::App& command) {
+    for (const char* name : {"--exposure", "--tonemap"}) {
+        if (command.get_option(name)->count() == 0) continue;
+        if (is_quantity(options.shown))
+            spdlog::warn("{} has no effect: numbers of the elements are drawn in false colours", name);
+        else if (!is_for_people(options))
+            spdlog::warn("{} does not change linear values, which {} holds: it is for .png and .jpg", name,
+                         options.output.string());
+    }
 }
 
 /// Everything that can be refused is refused before the first ray.
@@ -161,15 +209,16 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         refuse_solver_options(command);
     else
         refuse_path_options(command);
+    warn_of_tone_options(options, command);
     require_distinct_files(std::array<NamedFile, 4>{{{"the scene", options.scene.path},
                                                      {"--output", options.output},
                                                      {"--stats", options.solver.stats},
                                                      {"--error-image", options.path.error_image}}});
     PendingFile output(options.output);
     if (options.shading == PictureShading::path)
-        run_paths(options, output);
+        run_paths(options, command, output);
     else
-        run_solution(options, output);
+        run_solution(options, command, output);
     if (is_stop_requested()) exit_code = interrupted;
 }
 
@@ -195,11 +244,10 @@ void add_render(CLI::App& app, int& exit_code) {
         "smooth: interpolated over each surface; flat: one value an element; path: path tracing, without solving")
         ->default_str("smooth");
     options->path.add_to(command);
-    command
-        .add_option("--exposure", options->exposure,
-                    "Brightness of .png and .jpg: 1 more is twice as bright (default: automatic)")
-        ->type_name("STOPS")
-        ->check(number_between(-100, 100));
+    add_parsed(command, "--exposure", options->exposure, parse_exposure,
+               "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as by itself")
+        ->type_name("STOPS|auto[+-STOPS]")
+        ->default_str("auto");
     add_choice<Tonemap>(command, "--tonemap", options->tonemap,
                         {{"filmic", Tonemap::filmic}, {"reinhard", Tonemap::reinhard}, {"linear", Tonemap::linear}},
                         "Curve of .png and .jpg")

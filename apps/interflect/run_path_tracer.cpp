@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <array>
 #include <chrono>
 #include <optional>
-#include <string_view>
 
+#include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
 #include "interflect/base/error.h"
@@ -18,18 +17,14 @@ namespace interflect::command {
 
 namespace {
 
-constexpr const char* path_group = "Path tracing";
-
-bool is_given(const CLI::Option* option) { return option->count() > 0; }
-
 void log_outcome(const PathTracing& traced, double seconds) {
     const auto rays = static_cast<double>(traced.rays);
-    spdlog::info(
-        "path tracing: {} paths, {} rays in {}, estimated relative error {:.2g}% a pixel{}",
-        magnitude(static_cast<double>(traced.paths)), magnitude(rays), duration(seconds), 100 * traced.relative_error,
-        traced.escaped_rays > 0
-            ? fmt::format(", {:.2g}% of the rays left the scene", 100 * static_cast<double>(traced.escaped_rays) / rays)
-            : "");
+    spdlog::info("path tracing: {} paths, {} rays in {}, estimated relative error {} a pixel{}",
+                 magnitude(static_cast<double>(traced.paths)), magnitude(rays), duration(seconds),
+                 percent(traced.relative_error),
+                 traced.escaped_rays > 0 ? fmt::format(", {} of the rays left the scene",
+                                                       percent(static_cast<double>(traced.escaped_rays) / rays))
+                                         : "");
 }
 
 void require_linear_format(const std::filesystem::path& path) {
@@ -47,27 +42,6 @@ void PathTracerArguments::add_to(CLI::App& app) {
     app.add_option("--error-image", error_image, "Write the standard error of each pixel: .exr .hdr")
         ->type_name("FILE")
         ->group(path_group);
-}
-
-void refuse_solver_options(const CLI::App& command) {
-    constexpr std::array<std::string_view, 3> solver_groups = {"Solver", "Refinement", "Importance"};
-    constexpr std::array<std::string_view, 2> shared = {"--seed", "--until"};
-    const auto has = [](const auto& names, const std::string& name) {
-        return std::find(names.begin(), names.end(), name) != names.end();
-    };
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name = option->get_name();
-        if (is_given(option) && ((has(solver_groups, option->get_group()) && !has(shared, name)) || name == "--show"))
-            throw InputError(fmt::format("{}: --shading path makes no solution", name));
-    }
-    if (is_given(command.get_option("--max-samples")) && !is_given(command.get_option("--until")))
-        throw InputError("--max-samples: without --until every pixel gets --samples");
-}
-
-void refuse_path_options(const CLI::App& command) {
-    for (const CLI::Option* option : command.get_options())
-        if (option->get_group() == path_group && is_given(option))
-            throw InputError(fmt::format("{}: only --shading path takes it", option->get_name()));
 }
 
 PathTracing run_path_tracer(const Scene& scene, const RayCaster& ray_caster, const View& view, PathOptions options,
@@ -90,9 +64,8 @@ PathTracing run_path_tracer(const Scene& scene, const RayCaster& ray_caster, con
     }
     log_outcome(traced, seconds());
     if (error_image) {
-        write_image(error_image->temporary_path(), traced.standard_error,
+        write_image(*error_image, traced.standard_error,
                     {view, "standard error of luminance [cd/m^2]", scene.name, INTERFLECT_VERSION, options.seed});
-        error_image->commit();
     }
     return traced;
 }

@@ -7,6 +7,9 @@
 
 namespace interflect::command {
 
+/// Where the help lists them.
+inline constexpr const char* path_group = "Path tracing";
+
 /// What `render --shading path` alone takes.
 struct PathTracerArguments {
     int max_samples = PathOptions().max_samples;
@@ -14,11 +17,6 @@ struct PathTracerArguments {
 
     void add_to(CLI::App& app);
 };
-
-/// @throws InputError for an option that asks for a solution, or for what only a solution has.
-void refuse_solver_options(const CLI::App& command);
-/// @throws InputError for an option that only path tracing takes.
-void refuse_path_options(const CLI::App& command);
 
 /// Traces paths with a progress bar, says what came of it, and writes the image of the standard error if asked for.
 /// Ctrl-C ends it early with what there is.

@@ -2,17 +2,21 @@
 
 #include <spdlog/spdlog.h>
 #include <tbb/info.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/interflect/leaks.h"
+#include "apps/interflect/machine_memory.h"
+#include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
+#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/memory.h"
@@ -23,11 +27,6 @@ namespace interflect::command {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// What the machine has [bytes].
-std::size_t machine_memory() {
-    return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
 
 Json json_of(const RgbD& c) { return Json::array({c.x, c.y, c.z}); }
 
@@ -99,7 +98,9 @@ void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& com
     std::ofstream out(file.temporary_path());
     out << header_of(scene, command, solution.options, solution.emitted_power).dump() << '\n';
     for (const IterationReport& r : solution.iterations) out << line_of(r).dump() << '\n';
-    if (!out.flush()) throw std::runtime_error("cannot write " + file.final_path().string());
+    if (!out.flush())
+        throw std::runtime_error(
+            fmt::format("cannot write '{}': {}", file.final_path().string(), std::strerror(errno)));
     file.commit();
 }
 
@@ -108,12 +109,10 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
     const Escapes escapes = find_escapes(scene, ray_caster, solution);
     if (leaks(escapes))
         spdlog::warn(
-            "the scene looks closed but leaks: {:.2g}% of the light leaves it, most of that through gaps "
+            "the scene looks closed but leaks: {} of the light leaves it, most of that through gaps "
             "between faces",
-            100 * escapes.share());
+            percent(escapes.share()));
 }
-
-std::string percent(double share) { return fmt::format("{:.{}f}%", 100 * share, share < 0.0995 ? 1 : 0); }
 
 void log_outcome(const Solution& solution) {
     if (solution.non_finite > 0)
@@ -132,14 +131,25 @@ void log_outcome(const Solution& solution) {
                                    percent(last.noise_estimate), percent(last.discretisation_estimate))
                      : "",
                  last.escaped_rays > 0
-                     ? fmt::format(", {:.2g}% of the rays left the scene",
-                                   100.0 * static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays))
+                     ? fmt::format(", {} of the rays left the scene",
+                                   percent(static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays)))
                      : "");
     if (!solution.options.views.empty() && !std::isfinite(last.error_estimate) && solution.iterations.size() > 2)
         spdlog::warn("no view shows a lit surface that reflects light: the error is not known");
     if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.most_elements)
         spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements or --memory",
                      last.elements);
+}
+
+/// With as many elements at most as memory and addresses are there for. @param memory  As asked for, or 0.
+SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, SolveOptions options, std::size_t memory) {
+    if (options.most_elements < scene.patches.size())
+        throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
+                                     options.most_elements, scene.patches.size(), scene.name));
+    const std::size_t bytes = std::min(memory > 0 ? memory : machine_memory() / 10 * 9, addressable_memory());
+    options.most_elements =
+        std::min(options.most_elements, elements_within(memory_need(scene, ray_caster), bytes, scene));
+    return options;
 }
 
 }  // namespace
@@ -156,10 +166,7 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
     std::optional<PendingFile> stats;
     if (!command.stats.empty()) stats.emplace(command.stats);
     warn_of_covered_emission(scene, ray_caster);
-    SolveOptions options = asked_for;
-    const std::size_t bytes = command.memory > 0 ? command.memory : machine_memory() / 10 * 9;
-    options.most_elements =
-        std::min(options.most_elements, elements_within(memory_need(scene, ray_caster), bytes, scene));
+    const SolveOptions options = within_limits(scene, ray_caster, asked_for, command.memory);
     Solution solution;
     {
         ProgressBar bar;

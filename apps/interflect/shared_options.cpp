@@ -134,7 +134,8 @@ void SolverOptions::add_limits(CLI::App& app) {
                        "Most rays to trace, such as 20M (default 20M, unless --time or --until is given)")
                 ->type_name("COUNT")
                 ->group(solver_group);
-    app.add_option("--time", solve_.seconds, "Most seconds to take")
+    app.add_option("--time", solve_.seconds,
+                   "Most seconds to solve; reading and cutting the scene, and drawing and writing, come on top")
         ->type_name("SECONDS")
         ->check(number_between(1e-3, 1e9))
         ->group(solver_group);

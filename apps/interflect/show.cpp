@@ -78,11 +78,11 @@ void add_show(CLI::App& app, Shown& shown) {
 }
 
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                              const EyeSampling& sampling) {
+                              const EyeSampling& sampling, const PictureMonitor& monitor) {
     const std::vector<float> values = values_of(shown, solved.solution);
     Quantity quantity = described(shown);
     quantity.values = values;
-    return render_quantity(solved.scene, *solved.solution.forest, ray_caster, view, quantity, sampling);
+    return render_quantity(solved.scene, *solved.solution.forest, ray_caster, view, quantity, sampling, monitor);
 }
 
 std::string label_of(Shown shown) { return described(shown).label(); }

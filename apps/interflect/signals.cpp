@@ -5,7 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <string_view>
+#include <cstring>
 
 #include "interflect/base/pending_file.h"
 
@@ -14,10 +14,11 @@ namespace interflect::command {
 namespace {
 
 constexpr std::array<int, 3> stop_signals = {SIGINT, SIGTERM, SIGHUP};
-constexpr std::string_view stop_notice = "\nstopping, keeping what there is; once more ends at once, keeping nothing\n";
+std::atomic<const char*> stop_outcome{nullptr};  // null: the first signal ends the process
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free);  // for handlers
 
-std::atomic<bool> ends_gracefully{false}, stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may use it
+void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
 /// As the signal would have without a handler.
 void end_process(int signal) {
@@ -27,10 +28,13 @@ void end_process(int signal) {
 }
 
 extern "C" void handle_stop_signal(int signal) {
-    if (!ends_gracefully || stop_requested.exchange(true)) return end_process(signal);
+    const char* const outcome = stop_outcome;
+    if (!outcome || stop_requested.exchange(true)) return end_process(signal);
     const int errno_before = errno;
-    const std::string_view notice = stop_notice.substr(::isatty(STDERR_FILENO) == 1 ? 0 : 1);
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, notice.data(), notice.size());
+    if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar
+    say("stopping, ");
+    say(outcome);
+    say("; once more ends at once, keeping nothing\n");
     errno = errno_before;
 }
 
@@ -52,8 +56,8 @@ void handle_signals() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-const std::atomic<bool>& stop_on_signal() {
-    ends_gracefully = true;
+const std::atomic<bool>& stop_on_signal(const char* outcome) {
+    stop_outcome = outcome;
     return stop_requested;
 }
 

@@ -1,5 +1,6 @@
 #include "interflect/base/stable_array.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -22,6 +23,16 @@ TEST(StableArray, ReservesAddressesNotMemory) {
     StableArray<std::uint64_t> array(std::size_t{1} << 36);
     array[std::size_t{1} << 35] = 1;
     EXPECT_EQ(array[std::size_t{1} << 35], 1u);
+}
+
+TEST(StableArray, SaysWhatIsMissingWhereAddressesCannotBeReserved) {
+    try {
+        const StableArray<std::uint64_t> array(std::size_t{1} << 50);
+        FAIL() << "reserved";
+    } catch (const AddressSpaceError& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("8589934593 MiB of address space"));
+        EXPECT_THAT(e.what(), testing::HasSubstr("limit"));
+    }
 }
 
 TEST(StableArray, MovesWithItsContent) {

@@ -47,6 +47,15 @@ class Compare(CommandTest):
         self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.005)  # RGBE keeps 8 bits
         self.assertGreater(difference["rmse"], 0)
 
+    def test_linear_against_tone_mapped_is_warned_of(self):
+        for kind in ("exr", "hdr", "png"):
+            self.render(f"a.{kind}")
+        for image, reference in (("a.png", "a.exr"), ("a.hdr", "a.png")):
+            said = self.interflect("compare", image, reference, "--json").stderr
+            self.assertRegex(said, r"warning: a\.png is tone-mapped .* and a\.(exr|hdr) holds linear values")
+        for image, reference in (("a.png", "a.png"), ("a.hdr", "a.exr")):
+            self.assertEqual(self.interflect("compare", image, reference, "--json").stderr, "")
+
     def test_a_larger_picture_is_averaged(self):
         self.render("a.exr")
         self.render("large.exr", LARGE)

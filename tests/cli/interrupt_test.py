@@ -87,6 +87,18 @@ class Interrupt(CommandTest):
         self.assertEqual(self.files(), ["error.exr", "out.exr", "room.mgf"])
         self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
 
+    def test_drawing_ends_at_once_and_leaves_nothing(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
+        large = ("render", "room.h5", "-o", "out.png", *VIEW, "--size", "4000x3000", "--samples", "4096")
+        for shown in ("light", "mesh", "level"):
+            process = self.start(*large, "--show", shown)
+            self.assertRegex(process.stderr.readline(), r"^ *\d+%  .* rays, .*/s, .* left$")
+            process.send_signal(signal.SIGINT)
+            rest = process.communicate(timeout=SOON)[1]
+            self.assertEqual(process.returncode, INTERRUPTED, rest)
+            self.assertIn("stopping, no picture is written", rest)
+            self.assertEqual(self.files(), ["room.h5", "room.mgf"])
+
     def test_a_request_to_terminate_is_heeded_alike(self):
         self.interrupt_after_first_progress(
             "solve", "room.mgf", "-o", "out.h5", *ENDLESS, *SHORT_ITERATIONS, by=signal.SIGTERM

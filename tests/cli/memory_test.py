@@ -2,6 +2,8 @@
 
 import json
 import os
+import resource
+import subprocess
 import unittest
 
 from command import BAD_INPUT, COMMAND, DONE, CommandTest
@@ -53,6 +55,36 @@ class MemoryLimit(MemoryCase):
         self.assertIn("need", result.stderr)
         self.assertIn("50 MiB", result.stderr)
         self.assertEqual(self.files(), [])
+
+
+class LimitedAddressSpace(CommandTest):
+    """ulimit -v: addresses are reserved for no more elements than the limit leaves room for."""
+
+    def under(self, limit, *arguments, exit_code=DONE):
+        result = subprocess.run(
+            [COMMAND, *arguments],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        )
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        return result.stderr
+
+    def test_solves_whatever_is_asked_for(self):
+        few = ("solve", "maze:2", "-o", "out.h5", "--rays", "100k", "--view", "room-0")
+        for options in ((), ("--memory", "500M"), ("--memory", "64G"), ("--max-elements", "4G"), ("--method", "hwdrs")):
+            importance = ("--importance", "none") if "hwdrs" in options else ()
+            self.assertIn("elements", self.under(2000 * MIB, *few, *options, *importance))
+
+    def test_ends_refinement_before_the_limit(self):
+        said = self.under(1000 * MIB, "solve", "maze:2", "-o", "out.h5", *FINE, "1e-12")
+        self.assertIn("refinement ended at", said)
+
+    def test_says_what_is_missing(self):
+        said = self.under(250 * MIB, "solve", "maze:2", "-o", "out.h5", "--rays", "100k", exit_code=BAD_INPUT)
+        self.assertRegex(said, r"need \d+ MiB of memory, the limit is \d+ MiB")
 
 
 class LongRuns(MemoryCase):

@@ -3,12 +3,13 @@
 import os
 import pty
 import subprocess
+import time
 import unittest
 
-from command import COMMAND, CommandTest, room
+from command import COMMAND, VIEW, CommandTest, room
 
 # 100%  300.0 k rays, 1.2 M/s, error 4.5%, 0.0 s left
-STATUS = r"\d+%  [\d.]+( [kMGT])? rays, [\d.]+( [kMGT])?/s, error [\d.e+]+%, [\d.]+ s left"
+STATUS = r"\d+%  [\d.]+( [kMGT])? rays, [\d.]+( [kMGT])?/s, error [\d.]+%, [\d.]+ s left"
 
 
 class Progress(CommandTest):
@@ -43,6 +44,26 @@ class Progress(CommandTest):
         self.assertRegex(last, f"^{STATUS}$")
         self.assertIn("100%", last)
         self.assertRegex(summary, r"^info: hsrr: 300.0 k rays in .* elements, estimated relative error [\d.]+%")
+
+    def test_drawing_has_none_unless_it_takes_long(self):
+        self.interflect(*self.SOLVE)
+        result = self.interflect("render", "out.h5", "-o", "out.png", *VIEW, "--size", "32x18")
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        size = 128
+        seconds = 0
+        while seconds < 3:  # of a picture that takes long enough on this machine
+            size *= 2
+            start = time.monotonic()
+            said = self.interflect("render", "out.h5", "-o", "out.png", *VIEW, "--size", f"{size}x{size}").stderr
+            seconds = time.monotonic() - start
+        self.assertRegex(said, r"(?m)^ *\d+%  [\d.]+ [kMG] rays, [\d.]+ [kMG]/s, [\d.]+ s left$")
+        self.assertRegex(said, r"(?m)^100%  ")
+
+    def test_errors_are_readable_however_large(self):
+        few = ("--method", "srr", "--rays", "60", "--rays-per-iteration", "20")
+        said = self.interflect("solve", "room.mgf", "-o", "out.h5", *few).stderr
+        self.assertRegex(said, r"/s, error \d{3,4}%,")
+        self.assertRegex(said, r"relative error \d{3,4}% ")
 
     def test_bar_on_a_terminal(self):
         text = self.on_terminal()

@@ -5,7 +5,7 @@ import re
 import struct
 import unittest
 
-from command import BAD_INPUT, LARGE, SMALL, VIEW, VIEWS, CommandTest, room
+from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, CommandTest, room
 
 SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
@@ -112,6 +112,20 @@ class Shown(RenderTest):
         attributes = exr_attributes(self.render("out.exr", "--show", "importance", source="room.h5"))
         self.assertEqual(attributes["interflect.quantity"][1], b"importance [1/m^2]")
 
+    def test_a_legend_is_within_the_size_that_was_asked_for(self):
+        self.solve()
+
+        def draw(width, height):
+            size = ("--size", f"{width}x{height}", "--samples", "1")
+            said = self.interflect("render", "room.h5", "-o", "out.png", "--show", "irradiance", *size).stderr
+            self.assertEqual(struct.unpack_from(">II", self.bytes("out.png"), 16), (width, height))
+            return said
+
+        for size in ((640, 360), (240, 135), (204, 86)):
+            self.assertNotIn("legend", draw(*size))
+        for size in ((203, 135), (240, 85), (32, 18)):  # too narrow for numbers, too low
+            self.assertIn(f"warning: {size[0]} x {size[1]} pixels have no room for a legend", draw(*size))
+
     def test_what_is_not_there_is_refused(self):
         self.solve()
         result = self.interflect("render", "room.h5", "-o", "out.png", "--show", "importance", exit_code=BAD_INPUT)
@@ -134,6 +148,54 @@ class Methods(RenderTest):
     def test_importance_where_every_ray_is_kept_is_refused(self):
         arguments = ("render", "room.mgf", "-o", "out.png", "--method", "wdrs", "--importance", "full")
         self.assertIn("importance", self.interflect(*arguments, exit_code=BAD_INPUT).stderr)
+
+
+class OptionsWithoutEffect(RenderTest):
+    """What would be ignored is refused, or said to be ignored where a script may well give it for all formats."""
+
+    def refused(self, *options):
+        before = self.files()
+        result = self.interflect("render", "room.h5", "-o", "out.png", *SMALL, *options, exit_code=BAD_INPUT)
+        self.assertEqual(self.files(), before)
+        return result.stderr
+
+    def test_a_solution_is_not_solved_again(self):
+        self.solve()
+        for option, value in {
+            "--rays": "5M",
+            "--time": "10",
+            "--until": "5%",
+            "--method": "srr",
+            "--seed": "2",
+            "--min-area": "0.1",
+            "--mesh-size": "0.1",
+            "--epsilon": "1e-6",
+            "--importance": "none",
+            "--curve-divisions": "3",
+            "--max-patches": "1M",
+            "--stats": "stats.json",
+        }.items():
+            self.assertIn(
+                f"room.h5: it is solved already: {option} has no effect, expected a scene", self.refused(option, value)
+            )
+        self.assertIn("--contact-cuts", self.refused("--no-contact-cuts"))
+        self.assertIn("--rays", self.refused("--shading", "path", "--rays", "5M"))
+        self.assertIn("--max-patches", self.refused("--shading", "path", "--max-patches", "1M"))
+        path = ("--shading", "path", "--samples", "2", "--seed", "3", "--until", "50%", "--threads", "1")
+        self.interflect("render", "room.h5", "-o", "out.png", "--size", "8x4", *path)
+
+    def test_linear_formats_are_not_exposed_and_quantities_not_tone_mapped(self):
+        self.solve()
+
+        def said(name, *options):
+            return self.interflect("render", "room.h5", "-o", name, *SMALL, *options).stderr
+
+        for name in ("a.hdr", "a.exr"):
+            self.assertIn("warning: --exposure does not change linear values", said(name, "--exposure", "3"))
+            self.assertNotIn("exposure", said(name))
+        self.assertIn("warning: --tonemap does not change linear values", said("a.hdr", "--tonemap", "linear"))
+        self.assertIn("warning: --exposure has no effect", said("a.png", "--exposure", "3", "--show", "level"))
+        self.assertNotIn("warning", said("a.png", "--exposure", "3", "--tonemap", "linear"))
 
 
 class Pictures(RenderTest):
@@ -165,6 +227,19 @@ class Pictures(RenderTest):
             self.render(f"{stops + 9}.png", "--tonemap", "linear", "--exposure", stops)
         # PNG is read back as linear values: one stop more is twice as bright, but for 8 bits.
         self.assertAlmostEqual(self.json("compare", "1.png", "0.png")["ratio_of_means"], 2, delta=0.05)
+
+    def test_exposure_relative_to_the_automatic_one(self):
+        self.solve()
+
+        def exposure(*options):
+            said = self.interflect("render", "room.h5", "-o", "out.png", *SMALL, *options).stderr
+            return float(re.search(r"exposure ([+-][\d.]+)", said)[1])
+
+        automatic = exposure()
+        self.assertEqual(exposure("--exposure", "auto"), automatic)
+        self.assertAlmostEqual(exposure("--exposure", "auto+1"), automatic + 1, delta=0.011)
+        self.assertAlmostEqual(exposure("--exposure", "auto-0.5"), automatic - 0.5, delta=0.011)
+        self.assertEqual(exposure("--exposure", "+1.5"), 1.5)
 
     def test_exposure_does_not_touch_linear_pictures(self):
         self.assertEqual(self.render("a.hdr"), self.render("b.hdr", "--exposure", "3"))
@@ -262,6 +337,46 @@ class PathTracing(CommandTest):
             stderr = self.interflect(*render, *options, exit_code=BAD_INPUT).stderr
             self.assertIn(word, stderr, options)
         self.assertEqual(self.files(), ["room.mgf"])
+
+
+ONE_SIDED = PAINT.replace("m paint =\n", "m paint =\n\tsides 1\n")
+
+
+class Camera(CommandTest):
+    """Views that show nothing, or what nobody in the scene would see, are drawn with a warning."""
+
+    WARNING = "the camera seems to be outside the scene"
+
+    def said(self, text, *options, view=VIEW):
+        self.write("scene.mgf", text)
+        return self.interflect(
+            "render", "scene.mgf", "-o", "out.exr", *SMALL, "--rays", "20k", "--mesh-size", "1", *view, *options
+        ).stderr
+
+    def test_inside_there_is_no_warning(self):
+        self.assertNotIn("warning", self.said(room()))
+        self.assertNotIn("warning", self.said(self.dollhouse()))
+
+    @staticmethod
+    def dollhouse():
+        """The room, of walls that are seen from inside alone."""
+        return room().replace(PAINT, ONE_SIDED)
+
+    def test_outside_looking_through_the_backs_of_walls(self):
+        said = self.said(self.dollhouse(), view=("--eye", "1,-4,1.2", "--look-at", "1,1,1.2", "--fov", "25"))
+        self.assertRegex(said, self.WARNING + r": .* and \d+% is seen through the backs")
+
+    def test_looking_away(self):
+        said = self.said(room(), view=("--eye", "1,-4,1.2", "--look-at", "1,-9,1.2"))
+        self.assertRegex(said, self.WARNING + ": 100% of the picture shows nothing")
+        self.assertIn("the view shows no light", said)
+
+    def test_in_the_dark(self):
+        self.assertIn("warning: the view shows no light", self.said(room().replace("ed 1000", "ed 0")))
+        self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
+        path = ("--shading", "path", "--samples", "2", "--size", "8x4")
+        said = self.interflect("render", "dark.mgf", "-o", "out.png", *path, *VIEW).stderr
+        self.assertIn("warning: the view shows no light", said)
 
 
 if __name__ == "__main__":

@@ -76,7 +76,7 @@ class WrongUsage(CommandTest):
         for option, values in {
             "--size": ("64", "0x9", "9x-1", "1.5x9", "99999x9", "64x36x3"),
             "--samples": ("0",),
-            "--exposure": ("nan", "inf", "1000"),
+            "--exposure": ("nan", "inf", "1000", "auto1", "auto+", "auto+x", "auto+1000", "automatic", "1 auto", ""),
             "--fov": ("0", "180", "nan"),
             "--up": ("1,2", "x,y,z", "0,0,nan"),
         }.items():

@@ -9,6 +9,7 @@
 #include <random>
 #include <thread>
 
+#include "interflect/base/error.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -205,6 +206,18 @@ TEST(Forest, PushAndPullKeepTheIntegral) {
         at_roots += static_cast<double>(values[e]) * forest.area(e);
     EXPECT_NEAR(at_leaves, integral, 1e-4 * integral);
     EXPECT_NEAR(at_roots, integral, 1e-4 * integral);
+}
+
+TEST(Forest, RefusesACapacityThatCannotBe) {
+    const Scene scene = three_shapes();
+    EXPECT_THROW(ElementForest(scene, scene.patches.size() - 1), InputError);
+    EXPECT_THROW(ElementForest(scene, 0xffffffffu), InputError);
+}
+
+TEST(Forest, RefusesVerticesThatAreNotThere) {
+    Scene scene = three_shapes();
+    scene.vertices.pop_back();
+    EXPECT_THROW(ElementForest(scene, 100), InputError);
 }
 
 TEST(Forest, NewElementsInherit) {

@@ -283,6 +283,23 @@ TEST_P(EveryFormat, WritingWhereNothingCanBeWrittenFails) {
     EXPECT_THROW(write_image(folder.path() / "no such folder" / name(), gradient(4, 4)), std::exception);
 }
 
+TEST_P(EveryFormat, AFullDiskIsNamedWithThePath) {
+    const auto path = folder.path() / name();
+    std::filesystem::create_symlink("/dev/full", path);
+    try {
+        write_image(path, Image(64, 64));
+        FAIL() << "written";
+    } catch (const std::runtime_error& error) {
+        EXPECT_EQ(error.what(), "cannot write '" + path.string() + "': No space left on device");
+    }
+}
+
+TEST_P(EveryFormat, AnImageWithoutAllItsPixelsIsRefused) {
+    Image cut(8, 8);
+    cut.pixels.resize(60);
+    for (const Image& broken : {cut, Image()}) EXPECT_THROW(write_image(folder.path() / name(), broken), InputError);
+}
+
 TEST(ImageFiles, ClaimsOfEnormousSizesAreRefused) {
     const TemporaryFolder folder;
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";

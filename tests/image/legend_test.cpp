@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "interflect/base/error.h"
 #include "interflect/base/image_size.h"
@@ -91,6 +93,33 @@ TEST(Legend, GrowsWithThePictureAndIsCutOffInASmallOne) {
     EXPECT_EQ(legend_height(6 * 512), 6 * legend_height(512));
     for (const int width : {1, 3, 20, 100})
         EXPECT_EQ(with_legend(Image(width, 1), scale, "irradiance [lm/m^2]").width, width);
+}
+
+/// What fits is drawn as on a wider picture with the same dots: nothing of the title is missing at its right end.
+TEST(Legend, FitsWhereNothingIsCutOff) {
+    const std::string title = "relative standard error of irradiance";
+    EXPECT_TRUE(legend_fits(640, 360, title));
+    EXPECT_TRUE(legend_fits(320, 180, "irradiance [lm/m^2]"));
+    EXPECT_FALSE(legend_fits(320, 2 * legend_height(320) - 1, "irradiance [lm/m^2]")) << "more legend than picture";
+    EXPECT_FALSE(legend_fits(200, 200, "irradiance [lm/m^2]")) << "no room for three numbers";
+    EXPECT_FALSE(legend_fits(240, 240, std::string(60, 'm'))) << "no room for the title";
+    int least = 1;
+    while (!legend_fits(least, 1000, title)) ++least;
+    const Image narrow = with_legend(Image(least, 1), scale, title), wide = with_legend(Image(600, 1), scale, title);
+    for (int y = 1; y < 16; ++y)  // the title's rows
+        for (int x = 0; x < 600; ++x)
+            EXPECT_EQ(wide.at(x, y), x < least ? narrow.at(x, y) : wide.at(0, 1)) << x << ", " << y;
+}
+
+TEST(Legend, RefusesWhatItCannotDraw) {
+    const float infinite = std::numeric_limits<float>::infinity();
+    EXPECT_THROW(with_legend(Image(640, 1), scale, "m\xb2"), InputError);
+    EXPECT_THROW(legend_fits(640, 360, "two\nlines"), InputError);
+    EXPECT_THROW(with_legend(Image(), scale, "level"), InputError);
+    EXPECT_THROW(round_values(scale, 2), InputError);
+    for (const ColourScale& broken : {ColourScale{1, 1, linear}, ColourScale{0, infinite, linear},
+                                      ColourScale{0, 1, logarithmic}, ColourScale{std::nanf(""), 1, linear}})
+        EXPECT_THROW(with_legend(Image(640, 1), broken, "level"), InputError);
 }
 
 TEST(Legend, IsRefusedWhereTheImageGetsTooLarge) {

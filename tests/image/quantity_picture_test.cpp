@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "interflect/base/error.h"
-#include "interflect/image/legend.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -48,7 +47,7 @@ TEST(QuantityPicture, HasTheValueOfTheLeafThatAPixelSees) {
     EXPECT_EQ(picture.non_finite_pixels, 0);
 }
 
-TEST(QuantityPicture, ShowsItInColoursOverItsLegend) {
+TEST(QuantityPicture, ShowsItInColours) {
     const QuantityPicture picture = HalfPicture().picture(values);
     EXPECT_EQ(picture.scale.low, 0);
     EXPECT_EQ(picture.scale.high, 4) << "of what is seen: the root's 99 does not count";
@@ -56,7 +55,7 @@ TEST(QuantityPicture, ShowsItInColoursOverItsLegend) {
     EXPECT_EQ(picture.shown.at(1, 1), false_colour(0.5f));
     EXPECT_EQ(picture.shown.at(2, 0), black);
     EXPECT_EQ(picture.shown.width, 4);
-    EXPECT_EQ(picture.shown.height, 2 + legend_height(4));
+    EXPECT_EQ(picture.shown.height, 2);
 }
 
 TEST(QuantityPicture, LogarithmicScalesShowRatios) {

@@ -3,11 +3,17 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "interflect/base/error.h"
+#include "interflect/image/element_vertices.h"
+#include "interflect/image/outlines.h"
+#include "interflect/image/path_tracer.h"
+#include "interflect/image/quantity_picture.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -183,6 +189,64 @@ TEST(Render, RefusesWhatDoesNotFitTogether) {
     refined.subdivide(0);
     EXPECT_THROW(render(scene, refined, RayCaster(scene), view_of_plane(), std::vector{irradiance}), InputError);
     EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}), InputError);
+}
+
+/// As many patches, but elsewhere.
+struct OtherScene {
+    Scene scene, other;
+    OtherScene() {
+        const std::uint32_t material = add_material(scene, reflectance, exitance);
+        other = scene;
+        add_facing(scene, -1, 1, -1, 1, material);
+        add_facing(other, -1, 1, -1, 2, material);
+    }
+};
+
+TEST(Render, RefusesAForestOrARayCasterOfAnotherScene) {
+    const OtherScene made;
+    const ElementForest forest(made.scene, 1), other_forest(made.other, 1);
+    const RayCaster ray_caster(made.scene), other_ray_caster(made.other);
+    const std::vector<Rgb> h{irradiance};
+    const std::vector<float> values{1};
+    const View view = view_of_plane();
+    for (const auto& [f, caster] : {std::pair(&forest, &other_ray_caster), std::pair(&other_forest, &ray_caster)}) {
+        EXPECT_THROW(render(made.scene, *f, *caster, view, h), InputError);
+        EXPECT_THROW(render_quantity(made.scene, *f, *caster, view, {"level", "", values}, {}), InputError);
+        EXPECT_THROW(draw_outlines(Image(4, 2), made.scene, *f, *caster, view, 1, 1), InputError);
+    }
+    EXPECT_THROW(trace_paths(made.scene, other_ray_caster, view, {.width = 4, .height = 2}), InputError);
+    EXPECT_THROW(ElementVertices(made.scene, other_forest), InputError);
+}
+
+TEST(Render, TellsItsProgress) {
+    const OtherScene made;
+    std::vector<PictureProgress> reports;
+    const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
+    const Rendering whole =
+        render(made.scene, ElementForest(made.scene, 1), RayCaster(made.scene), view_of_plane(),
+               std::vector{irradiance}, options, {[&](const PictureProgress& p) { reports.push_back(p); }});
+    ASSERT_GT(reports.size(), 2u);
+    for (std::size_t i = 1; i < reports.size(); ++i) EXPECT_GT(reports[i].fraction, reports[i - 1].fraction);
+    EXPECT_GT(reports[0].fraction, 0);
+    EXPECT_EQ(reports.back().fraction, 1);
+    EXPECT_EQ(reports.back().rays, whole.rays);
+    EXPECT_FALSE(whole.interrupted);
+}
+
+TEST(Render, EndsWhenTold) {
+    const OtherScene made;
+    std::atomic<bool> stop{false};
+    int reports = 0;
+    const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
+    const Rendering part = render(made.scene, ElementForest(made.scene, 1), RayCaster(made.scene), view_of_plane(),
+                                  std::vector{irradiance}, options,
+                                  {[&](const PictureProgress&) {
+                                       ++reports;
+                                       stop = true;
+                                   },
+                                   &stop});
+    EXPECT_EQ(reports, 1);
+    EXPECT_TRUE(part.interrupted);
 }
 
 }  // namespace

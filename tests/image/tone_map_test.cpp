@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "interflect/base/error.h"
 #include "interflect/image/srgb.h"
 
 namespace interflect {
@@ -80,6 +81,11 @@ TEST(AutomaticExposure, LampsAndDarkCornersDoNotDecide) {
     for (int i = 5000; i < 5200; ++i) image.pixels[i] = grey(1e6f);   // 4% of the rest are lamps
     for (int i = 5200; i < 5400; ++i) image.pixels[i] = grey(1e-6f);  // 4% are nearly black
     EXPECT_NEAR(automatic_exposure(image), without, 0.01);
+}
+
+TEST(ToneMap, RefusesAnExposureThatIsNoNumber) {
+    for (const float exposure : {std::nanf(""), std::numeric_limits<float>::infinity()})
+        EXPECT_THROW(tone_map(Image(1, 1), exposure), InputError);
 }
 
 TEST(AutomaticExposure, OfNothingIsZero) {

@@ -1,4 +1,5 @@
-# Installs `build` below `work`, builds the project `consumer` against that and nothing else of ours, runs it.
+# Installs `build` below `work`, moves that elsewhere, builds the project `consumer` against it and nothing else of ours,
+# runs that.
 # cmake -D build=... -D consumer=... -D work=... -D generator=... -D compiler=... -D configuration=... -P check_package.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -7,8 +8,18 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${work})
-set(prefix ${work}/prefix)
-run(${CMAKE_COMMAND} --install ${build} --prefix ${prefix} --config ${configuration})
+run(${CMAKE_COMMAND} --install ${build} --prefix ${work}/first --config ${configuration})
+set(prefix ${work}/moved)  # what is installed works from any folder
+file(RENAME ${work}/first ${prefix})
+
+file(GLOB_RECURSE package_files ${prefix}/lib*/cmake/*.cmake)
+foreach(file ${package_files})
+  file(STRINGS ${file} paths REGEX "[\"; :]/(usr|home|tmp|work|opt)/|${work}|${build}")
+  if(paths)
+    message(FATAL_ERROR "${file} names a path of this machine: ${paths}")
+  endif()
+endforeach()
+
 run(${prefix}/bin/interflect --version)
 run(${CMAKE_COMMAND} -S ${consumer} -B ${work}/build -G ${generator} -D CMAKE_BUILD_TYPE=${configuration}
     -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${prefix})

@@ -166,7 +166,8 @@ struct DecalOnTable {
         const V3f decal_u = 0.25f * u + 0.125f * v, decal_v = -0.0625f * u + 0.25f * v;
         decal = {table.corner + 0.75f * u + 0.5f * v, decal_u, decal_v};
 
-        const std::uint32_t paint = add_material(scene, Rgb(0.5f), Rgb(1)), paper = add_material(scene, Rgb(0.8f), {});
+        const std::uint32_t paint = add_material(scene, Rgb(0.5f), Rgb(1)),
+                            paper = add_material(scene, Rgb(0.8f), Rgb(0));
         if (decal_first) decal_face = add_rectangle(scene, decal.corner, decal.u, decal.v, paper, 1, 1, true);
         table_face = add_rectangle(scene, table.corner, table.u, table.v, paint, 1, 1, true);
         float largest = 0;  // of the decal's coordinates

@@ -5,12 +5,14 @@
 #include "interflect/raycast/ray_caster.h"
 
 #include <ImathMatrix.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <vector>
 
+#include "interflect/base/error.h"
 #include "interflect/scene/patch_geometry.h"
 #include "tests/support/scenes.h"
 
@@ -349,6 +351,41 @@ TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
 }
 
 TEST(RayCaster, OfAnEmptySceneLetsAllRaysEscape) { EXPECT_EQ(traced(empty_scene(), downwards).patch, none); }
+
+TEST(RayCaster, RefusesABrokenScene) {
+    Scene scene = grey_box();
+    scene.patches[1].vertices[2] = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.patches[2].material = 99;
+    try {
+        const RayCaster ray_caster(scene);
+        FAIL() << "made";
+    } catch (const InputError& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("patch 1: a vertex index is out of range"));
+        EXPECT_THAT(e.what(), testing::HasSubstr("patch 2: there is no material 99"));
+    }
+}
+
+TEST(RayCaster, RefusesRoomForOtherThanAllHits) {
+    const RayCaster ray_caster(grey_box());
+    const std::vector<Ray> rays(3);
+    std::vector<Hit> hits(2);
+    EXPECT_THROW(ray_caster.trace(rays, hits), InputError);
+}
+
+TEST(RayCaster, KnowsItsScene) {
+    const Scene scene = grey_box();
+    const RayCaster ray_caster(scene);
+    Scene named = scene, moved = scene, turned = scene, cut = scene, elsewhere = scene;
+    named.name = "another";
+    named.materials[0].reflectance = Rgb(0.125f);
+    ray_caster.require_made_for(named);  // of the same geometry
+    moved.vertices[scene.patches[0].vertices[0]].x += 0.001f;
+    std::swap(turned.patches[0].vertices[1], turned.patches[0].vertices[3]);
+    cut.patches.pop_back();
+    elsewhere.origin.x = 1;
+    for (const Scene& other : {moved, turned, cut, elsewhere})
+        EXPECT_THROW(ray_caster.require_made_for(other), InputError);
+}
 
 TEST(RayCaster, SaysHowMuchMemoryItHolds) { EXPECT_GT(RayCaster(grey_box()).memory(), 54u * sizeof(V3f)); }
 

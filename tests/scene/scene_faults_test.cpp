@@ -5,7 +5,10 @@
 #include <functional>
 #include <limits>
 
+#include "interflect/base/error.h"
+#include "interflect/scene/contacts.h"
 #include "interflect/scene/scene.h"
+#include "interflect/scene/split.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -40,6 +43,18 @@ TEST_P(SceneFaults, AreFoundAndNamed) {
     const std::vector<std::string> faults = scene_faults(scene);
     ASSERT_FALSE(faults.empty());
     EXPECT_THAT(faults[0], HasSubstr(GetParam().message));
+}
+
+TEST_P(SceneFaults, AreRefusedByWhatDividesFaces) {
+    Scene scene = valid_scene();
+    GetParam().make(scene);
+    EXPECT_THROW(split_patches(scene, 0.5f, 1'000), InputError);
+    EXPECT_THROW(cut_at_contacts(scene), InputError);
+}
+
+TEST(SplitPatches, RefusesEdgesThatCannotBe) {
+    for (const float edge : {0.0f, -1.0f, std::nanf("")})
+        EXPECT_THROW(split_patches(valid_scene(), edge, 1'000), InputError) << edge;
 }
 
 INSTANTIATE_TEST_SUITE_P(

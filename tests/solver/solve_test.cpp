@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "interflect/base/error.h"
+#include "interflect/solver/surfaces.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
@@ -285,8 +286,38 @@ TEST(Solve, RefusesABrokenScene) {
     const std::string message = error_of(scene, {});
     EXPECT_THAT(message, HasSubstr("material 'red': exitance"));
     EXPECT_THAT(message, HasSubstr("material 'green': reflectance"));
-    scene.patches.clear();
-    EXPECT_THAT(error_of(scene, {}), HasSubstr("no patches"));
+    Scene empty = colourful_box();
+    empty.patches.clear();
+    EXPECT_THAT(error_of(empty, {}), HasSubstr("no patches"));
+}
+
+TEST(Solve, RefusesTheRayCasterOfAnotherScene) {
+    const Scene scene = colourful_box(), larger = closed_box({2, 2, 2}, 3, {{"wall", Rgb(0.5f), Rgb(1)}});
+    const RayCaster ray_caster(larger);
+    SolveOptions options = with_rays(1000);
+    for (const Method& method : methods) {
+        options.method = method;
+        EXPECT_THROW(interflect::solve(scene, ray_caster, options), InputError) << method.name;
+    }
+    EXPECT_THROW(interflect::covered_emission(scene, ray_caster), InputError);
+}
+
+TEST(Solve, RefusesViewsThatCannotBeLookedAtTogether) {
+    const View view{"inside", V3f(0.5f), V3f(0.9f, 0.6f, 0.5f)};
+    for (const WeightedView& broken :
+         {WeightedView{view, -1}, WeightedView{view, 1, std::nanf("")}, WeightedView{view, 1, 1, 0}}) {
+        SolveOptions options = with_rays(1000);
+        options.views = {broken};
+        EXPECT_THAT(error_of(colourful_box(), options), HasSubstr("view 'inside': weight, aspect and pixel_rows"));
+    }
+}
+
+TEST(Solve, SaysHowManyElementsThereMustBe) {
+    SolveOptions options = with_rays(1000);
+    options.most_elements = 1;
+    const Scene scene = colourful_box();
+    EXPECT_THAT(error_of(scene, options), HasSubstr("most_elements: 1, expected at least the number of patches, " +
+                                                    std::to_string(scene.patches.size())));
 }
 
 }  // namespace

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <new>
 #include <type_traits>
 #include <utility>
+
+#include "interflect/base/address_space.h"
 
 namespace interflect {
 
@@ -17,11 +18,12 @@ class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);
 
   public:
+    /// @throws AddressSpaceError
     explicit StableArray(std::size_t capacity = 0) : capacity_(capacity) {
         if (capacity == 0) return;
         void* memory =
             ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-        if (memory == MAP_FAILED) throw std::bad_alloc();
+        if (memory == MAP_FAILED) throw AddressSpaceError(bytes());
         data_ = static_cast<T*>(memory);
         ::madvise(memory, bytes(), MADV_HUGEPAGE);  // entries are looked up at random; refused: slower, no more
     }

@@ -1,20 +1,37 @@
 #include "interflect/elements/forest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <thread>
 #include <tuple>
 #include <utility>
 
+#include "interflect/base/error.h"
+#include "interflect/scene/geometry_fingerprint.h"
+
 namespace interflect {
 
+namespace {
+
+std::size_t valid_capacity(std::size_t capacity, std::size_t patches) {
+    constexpr std::size_t end = 0xfffffffeu;  // the numbers from there on are no elements'
+    if (capacity < patches || capacity >= end)
+        throw InputError(
+            fmt::format("a forest of at most {} elements: expected at least the {} patches and less than {}", capacity,
+                        patches, end));
+    return capacity;
+}
+
+}  // namespace
+
 ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
-    : patch_count_(static_cast<std::uint32_t>(scene.patches.size())),
-      nodes_(capacity),
+    : scene_fingerprint_(geometry_fingerprint(scene)),
+      patch_count_(static_cast<std::uint32_t>(scene.patches.size())),
+      nodes_(valid_capacity(capacity, scene.patches.size())),
       blocks_((capacity - scene.patches.size()) / 4) {
-    assert(capacity >= scene.patches.size() && capacity < being_made);
     geometry_.resize(scene.patches.size());
     parallel_for_ranges(scene.patches.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -24,6 +41,10 @@ ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
     });
     size_ = patch_count();
     generations_.push_back(patch_count());
+}
+
+void ElementForest::require_made_for(const Scene& scene) const {
+    interflect::require_made_for(scene, scene_fingerprint_, "the forest");
 }
 
 int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path(e)) - 1) / 2; }

@@ -25,8 +25,16 @@ class ElementForest {
     /// Finest level: an element's side is then 2^-15 of its patch's.
     static constexpr int deepest_level = 15;
 
-    /// One element a patch. @param capacity  Most elements ever, >= the number of patches and < 2^32 - 1.
+    /// One element a patch.
+    /// @param capacity  Most elements ever, >= the number of patches and < 2^32 - 2. Addresses are reserved for them.
+    /// @throws InputError for another capacity, or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
+
+    /// Bytes of addresses that are reserved for an element.
+    static constexpr std::size_t reserved_per_element = 11;
+
+    /// @throws InputError unless the forest was made for a scene of the same geometry (geometry_fingerprint).
+    void require_made_for(const Scene& scene) const;
 
     std::uint32_t patch_count() const { return patch_count_; }
     std::uint32_t size() const { return size_.load(std::memory_order_acquire); }
@@ -100,6 +108,8 @@ class ElementForest {
         std::uint32_t parent, patch, parent_path;
     };
 
+    static_assert((4 * sizeof(Node) + sizeof(Block)) / 4 == reserved_per_element);
+
     bool is_root(std::uint32_t e) const { return e < patch_count(); }
     const Block& block_of(std::uint32_t e) const { return blocks_[(e - patch_count()) / 4]; }
     std::uint32_t number_in_block(std::uint32_t e) const { return (e - patch_count()) % 4; }
@@ -107,6 +117,7 @@ class ElementForest {
     template <class Body>
     static void for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body);
 
+    std::uint64_t scene_fingerprint_;
     std::vector<PatchGeometry> geometry_;  // of each patch
     std::uint32_t patch_count_;
     /// Where generations begin and, last, where the last one ends: no element of one has its parent in the same.

@@ -275,6 +275,7 @@ std::array<float, 4> corner_angles(const PatchGeometry& patch, const Cell& cell)
 }  // namespace
 
 ElementVertices::ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options) {
+    forest.require_made_for(scene);
     VertexBuilder builder(scene, forest, options);
     count_ = builder.count();
     builder.find_hanging_vertices(hanging_, couplings_);

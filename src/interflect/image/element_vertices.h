@@ -35,6 +35,7 @@ class ElementVertices {
         float angle;  // [rad]
     };
 
+    /// @throws InputError for a forest of another scene.
     ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options = {});
 
     std::uint32_t count() const { return count_; }

@@ -2,6 +2,7 @@
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
@@ -9,8 +10,11 @@
 #include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include "interflect/image/image_codecs.h"
 
@@ -42,6 +46,25 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     text("interflect.version", metadata.version);
 }
 
+/// A file in memory: OpenEXR goes back to fill in what it left open.
+class ByteSink : public Imf::OStream {
+  public:
+    ByteSink() : OStream("memory") {}
+    void write(const char data[], int count) override {
+        const auto size = static_cast<std::size_t>(count);
+        if (position_ + size > bytes_.size()) bytes_.resize(position_ + size);
+        std::copy_n(data, size, bytes_.begin() + static_cast<std::ptrdiff_t>(position_));
+        position_ += size;
+    }
+    std::uint64_t tellp() override { return position_; }
+    void seekp(std::uint64_t position) override { position_ = position; }
+    std::string release() { return std::move(bytes_); }
+
+  private:
+    std::string bytes_;
+    std::size_t position_ = 0;
+};
+
 /// The pixels as OpenEXR's three channels.
 Imf::FrameBuffer frame_buffer(const Image& image, const Imath::Box2i& window) {
     Imf::FrameBuffer buffer;
@@ -62,15 +85,19 @@ void require_channels(const Imf::ChannelList& channels) {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata) {
+std::string encode_exr(const Image& image, const ImageMetadata& metadata) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::addChromaticities(header, Imf::Chromaticities());  // the default: Rec. 709 primaries, D65
     insert_metadata(metadata, header);
     for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(frame_buffer(image, header.dataWindow()));
-    file.writePixels(image.height);
+    ByteSink sink;
+    {
+        Imf::OutputFile file(sink, header);
+        file.setFrameBuffer(frame_buffer(image, header.dataWindow()));
+        file.writePixels(image.height);
+    }  // which completes the table of line offsets
+    return sink.release();
 }
 
 Image read_exr(const std::filesystem::path& path) {

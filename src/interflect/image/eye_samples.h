@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -30,17 +31,31 @@ struct PixelSamples {
     std::span<const Hit> hits;
 };
 
+/// How far a picture is.
+struct PictureProgress {
+    std::int64_t rays = 0;  ///< So far.
+    double fraction = 0;    ///< Of all rays, in [0, 1].
+};
+
+/// How a caller follows a picture in the making, and ends it early.
+struct PictureMonitor {
+    /// Called from the calling thread, about every million rays; may be empty.
+    std::function<void(const PictureProgress&)> on_progress;
+    const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is left in milliseconds.
+};
+
 /// Traces a ray from the eye at each of `offsets` from every sample, and hands the pixels one by one to `visit`, from
 /// any thread and in any order. The same rays for the same seed and any number of threads.
-/// @throws InputError for less than one sample.
+/// @throws InputError for less than one sample or one pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const EyeSampling& sampling,
-                  std::span<const PixelOffset> offsets, const std::function<void(const PixelSamples&)>& visit);
+                  std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
+                  const std::function<void(const PixelSamples&)>& visit);
 
 /// The same with one ray at each sample.
 inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const EyeSampling& sampling,
-                         const std::function<void(const PixelSamples&)>& visit) {
+                         const PictureMonitor& monitor, const std::function<void(const PixelSamples&)>& visit) {
     constexpr PixelOffset none_at_all;
-    trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, visit);
+    trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, monitor, visit);
 }
 
 /// Where on its patch a ray hit; hit.patch != none.
@@ -54,11 +69,7 @@ inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, co
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));
 }
 
-/// @throws InputError unless the forest has as many patches as the scene.
-void require_of_scene(const Scene& scene, const ElementForest& forest);
-
-/// The same, and unless there are as many values as elements. @param what  The values' name for the message.
-void require_values_of_elements(const Scene& scene, const ElementForest& forest, std::size_t value_count,
-                                const char* what);
+/// @throws InputError unless there are as many values as elements. @param what  The values' name for the message.
+void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
 }  // namespace interflect

@@ -8,10 +8,20 @@
 
 namespace interflect {
 
+void require_pixels(const Image& image) {
+    const auto size = static_cast<std::int64_t>(image.pixels.size());
+    if (image.width < 1 || image.height < 1 || std::int64_t{image.width} * image.height != size)
+        throw InputError(
+            fmt::format("an image of {} x {} pixels that holds {}: expected 1 x 1 or more, and all of them",
+                        image.width, image.height, size));
+}
+
 void require_same_size(const Image& image, const Image& reference) {
-    if (image.width != reference.width || image.height != reference.height || image.pixels.empty())
-        throw InputError(fmt::format("images of {} x {} and {} x {} pixels: expected the same size, with pixels",
-                                     image.width, image.height, reference.width, reference.height));
+    if (image.width != reference.width || image.height != reference.height)
+        throw InputError(fmt::format("images of {} x {} and {} x {} pixels: expected the same size", image.width,
+                                     image.height, reference.width, reference.height));
+    require_pixels(image);
+    require_pixels(reference);
 }
 
 Image box_downsample(const Image& image, int factor) {
@@ -19,6 +29,7 @@ Image box_downsample(const Image& image, int factor) {
         throw InputError(
             fmt::format("cannot down-sample an image of {} x {} pixels by {}: expected a whole factor of both",
                         image.width, image.height, factor));
+    require_pixels(image);
     if (factor == 1) return image;
     Image smaller(image.width / factor, image.height / factor);
     const double block_size = static_cast<double>(factor) * factor;

@@ -29,11 +29,14 @@ struct Image {
     }
 };
 
+/// @throws InputError unless the image has pixels, as many as width and height say.
+void require_pixels(const Image& image);
+
 /// @throws InputError unless both images have the same size, and pixels.
 void require_same_size(const Image& image, const Image& reference);
 
 /// The image with every factor x factor block of pixels replaced by its mean.
-/// @throws InputError where width or height is no multiple of `factor`, or factor < 1.
+/// @throws InputError where width or height is no multiple of `factor`, factor < 1, and as require_pixels() does.
 Image box_downsample(const Image& image, int factor);
 
 /// Pixels of which a channel is infinite or not a number.

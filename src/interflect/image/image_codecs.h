@@ -22,7 +22,7 @@ Image decode_png(std::string_view bytes);
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes);
 
-void write_exr(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata);
+std::string encode_exr(const Image& image, const ImageMetadata& metadata);
 Image read_exr(const std::filesystem::path& path);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);
 

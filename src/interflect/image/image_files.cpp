@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -36,11 +38,29 @@ std::string read_bytes(const fs::path& path) {
     return bytes;
 }
 
-void write_bytes(const fs::path& path, const std::string& bytes) {
+/// @param name  What to call the file where that fails.
+void write_bytes(const fs::path& path, const std::string& bytes, const fs::path& name) {
+    errno = 0;
     std::ofstream file(path, std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
-    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", path.string()));
+    if (!file)
+        throw std::runtime_error(
+            fmt::format("cannot write '{}': {}", name.string(), errno != 0 ? std::strerror(errno) : "it failed"));
+}
+
+std::string encode(ImageFormat format, const Image& image, const ImageMetadata& metadata) {
+    switch (format) {
+        case ImageFormat::png:
+            return codecs::encode_png(image);
+        case ImageFormat::jpeg:
+            return codecs::encode_jpeg(image);
+        case ImageFormat::hdr:
+            return codecs::encode_radiance(image);
+        case ImageFormat::exr:
+            break;
+    }
+    return codecs::encode_exr(image, metadata);
 }
 
 Image read_as(ImageFormat format, const fs::path& path) {
@@ -92,16 +112,16 @@ ImageFormat require_image_format(const fs::path& path) {
 }
 
 void write_image(const fs::path& path, const Image& image, const ImageMetadata& metadata) {
-    switch (require_image_format(path)) {
-        case ImageFormat::png:
-            return write_bytes(path, codecs::encode_png(image));
-        case ImageFormat::jpeg:
-            return write_bytes(path, codecs::encode_jpeg(image));
-        case ImageFormat::hdr:
-            return write_bytes(path, codecs::encode_radiance(image));
-        case ImageFormat::exr:
-            return codecs::write_exr(path, image, metadata);
-    }
+    const ImageFormat format = require_image_format(path);
+    require_pixels(image);
+    write_bytes(path, encode(format, image, metadata), path);
+}
+
+void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata) {
+    const ImageFormat format = require_image_format(file.final_path());
+    require_pixels(image);
+    write_bytes(file.temporary_path(), encode(format, image, metadata), file.final_path());
+    file.commit();
 }
 
 Image read_image(const fs::path& path) { return read_with(path, read_as); }

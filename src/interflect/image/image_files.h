@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "interflect/base/pending_file.h"
 #include "interflect/image/image.h"
 #include "interflect/scene/scene.h"
 
@@ -43,9 +44,13 @@ struct ImageMetadata {
 /// clamped
 ///                  to [0, 2^126]. In these three a pixel that is not finite becomes pure magenta, to be seen.
 /// @param metadata  Kept by .exr only.
-/// @throws InputError for an unknown extension; std::runtime_error where the file cannot be written.
+/// @throws InputError for an unknown extension and as require_pixels() does; std::runtime_error with the path and the
+///         reason where the file cannot be written.
 void write_image(const std::filesystem::path& path, const Image& image,
                  const ImageMetadata& metadata = ImageMetadata());
+
+/// The same into a file that appears under its name once it is complete: commits it. Errors have its final name.
+void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata());
 
 /// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png is decoded from sRGB).
 /// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.

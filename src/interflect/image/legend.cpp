@@ -20,6 +20,8 @@ const Rgb paper(0.01f, 0.01f, 0.01f), ink(0.8f, 0.8f, 0.8f);
 /// The places of a legend's parts, in dots of the font, from the legend's top.
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               bottom = 43;
+/// Round values that a scale has at least room for.
+constexpr int least_values = 3;
 /// Room for a number with the space to the next one, likewise, and the least such space.
 constexpr int number_width = 64, number_gap = 8;
 
@@ -35,12 +37,13 @@ void fill(Image& image, int left, int top, int right, int low, const Rgb& colour
         for (int x = std::max(left, 0); x < std::min(right, image.width); ++x) image.at(x, y) = colour;
 }
 
+/// [pixels]
+int text_width(std::string text, int dot) { return dot * stb_easy_font_width(text.data()); }
+
 /// Text is drawn with dots of a whole number of pixels, from its top left corner.
 class Pen {
   public:
     Pen(Image& image, int dot) : image_(image), dot_(dot) {}
-
-    int width(std::string text) const { return dot_ * stb_easy_font_width(text.data()); }
 
     void write(int left, int top, std::string text) {
         struct Vertex {
@@ -62,6 +65,18 @@ class Pen {
     Image& image_;
     int dot_;
 };
+
+void require_valid(const ColourScale& scale) {
+    const bool positive = scale.spacing == Spacing::linear || scale.low > 0;
+    if (!(scale.low < scale.high && std::isfinite(scale.high - scale.low) && positive))
+        throw InputError(fmt::format("a scale of colours from {} to {}: expected rising ends, above 0 if logarithmic",
+                                     scale.low, scale.high));
+}
+
+void require_printable(const std::string& title) {
+    if (!std::all_of(title.begin(), title.end(), [](char c) { return c >= ' ' && c <= '~'; }))
+        throw InputError("the title of a legend '" + title + "': expected printable ASCII");
+}
 
 /// The largest of 1, 2 and 5 times a power of ten that is not above x.
 double round_below(double x) {
@@ -107,11 +122,11 @@ void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
     Pen pen(image, dot);
     const int left = margin * dot, length = strip_length(image, dot);
     int free_from = left;
-    for (const float value : round_values(scale, std::max(3, length / (number_width * dot)))) {
+    for (const float value : round_values(scale, std::max(least_values, length / (number_width * dot)))) {
         const int x = left + static_cast<int>(scale.position(value) * static_cast<float>(length - dot));
         fill(image, x, top + strip_bottom * dot, x + dot, top + tick_bottom * dot, ink);
         const std::string number = fmt::format("{:.6g}", value);
-        const int width = pen.width(number),
+        const int width = text_width(number, dot),
                   begin = std::clamp(x - width / 2, left, left + std::max(0, length - width));
         if (begin < free_from) continue;
         pen.write(begin, top + numbers_top * dot, number);
@@ -122,6 +137,8 @@ void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
 }  // namespace
 
 std::vector<float> round_values(const ColourScale& scale, int most) {
+    require_valid(scale);
+    if (most < least_values) throw InputError(fmt::format("{} round values: expected 3 or more", most));
     const auto fits = [&](const std::vector<float>& values) { return static_cast<int>(values.size()) <= most; };
     if (scale.spacing == Spacing::logarithmic && scale.high >= 10 * scale.low) {
         std::vector<float> values = multiples_of_powers(scale, {1, 2, 5}, 1);
@@ -136,12 +153,22 @@ std::vector<float> round_values(const ColourScale& scale, int most) {
 
 int legend_height(int width) { return bottom * dot_size(width); }
 
+bool legend_fits(int width, int height, const std::string& title) {
+    require_printable(title);
+    const int dot = dot_size(width), room = width - 2 * margin * dot;
+    return room >= text_width(title, dot) && room >= least_values * number_width * dot &&
+           legend_height(width) <= height / 2;
+}
+
 Image with_legend(const Image& picture, const ColourScale& scale, const std::string& title) {
+    require_printable(title);
+    require_valid(scale);
     const int top = picture.height, dot = dot_size(picture.width);
     const std::int64_t height = std::int64_t{top} + legend_height(picture.width);
     if (picture.width > most_image_pixels / height)
         throw InputError(fmt::format("a picture of {} x {} pixels with its legend: expected at most {} pixels in all",
                                      picture.width, height, most_image_pixels));
+    require_pixels(picture);
     Image image(picture.width, static_cast<int>(height), paper);
     std::copy(picture.pixels.begin(), picture.pixels.end(), image.pixels.begin());
 

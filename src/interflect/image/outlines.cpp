@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 #include "interflect/base/error.h"
 #include "interflect/raycast/camera.h"
@@ -24,8 +25,8 @@ float outlined_share(const PixelSamples& samples, const ElementForest& forest) {
 }
 
 void require_valid(const OutlineOptions& options) {
-    if (!(options.width > 0))
-        throw InputError(fmt::format("outlines {} pixels wide: expected more than 0", options.width));
+    if (!(options.width > 0 && std::isfinite(options.width)))
+        throw InputError(fmt::format("outlines {} pixels wide: expected more than 0, and finite", options.width));
     if (!(options.opacity >= 0 && options.opacity <= 1))
         throw InputError(fmt::format("outlines of opacity {}: expected 0 to 1", options.opacity));
 }
@@ -33,14 +34,17 @@ void require_valid(const OutlineOptions& options) {
 }  // namespace
 
 Image draw_outlines(const Image& picture, const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
-                    const View& view, int samples, std::uint64_t seed, const OutlineOptions& options) {
-    require_of_scene(scene, forest);
+                    const View& view, int samples, std::uint64_t seed, const OutlineOptions& options,
+                    const PictureMonitor& monitor) {
+    ray_caster.require_made_for(scene);
+    forest.require_made_for(scene);
     require_valid(options);
+    require_pixels(picture);
     const Camera camera(view, picture.width, picture.height, scene.origin);
     const float half = 0.5f * options.width;  // on either side of a border
     const std::array<PixelOffset, rays_per_sample> offsets{{{-half, -half}, {half, -half}, {-half, half}}};
     Image outlined = picture;
-    trace_pixels(camera, ray_caster, {picture.width, picture.height, samples, seed}, offsets,
+    trace_pixels(camera, ray_caster, {picture.width, picture.height, samples, seed}, offsets, monitor,
                  [&](const PixelSamples& pixel) {
                      const float share = options.opacity * outlined_share(pixel, forest);
                      Rgb& shown = outlined.pixels[pixel.pixel];

@@ -22,6 +22,7 @@ struct OutlineOptions {
 /// @return         The same bits for the same seed and any number of threads.
 /// @throws InputError as render() does, and for options out of range.
 Image draw_outlines(const Image& picture, const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
-                    const View& view, int samples, std::uint64_t seed, const OutlineOptions& options = {});
+                    const View& view, int samples, std::uint64_t seed, const OutlineOptions& options = {},
+                    const PictureMonitor& monitor = {});
 
 }  // namespace interflect

@@ -490,6 +490,7 @@ std::size_t batch_size_for(int samples) {
 PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
                         const PathMonitor& monitor) {
     require_valid(options);
+    ray_caster.require_made_for(scene);
     const Camera camera(view, options.width, options.height, scene.origin);
     std::vector<PatchGeometry> geometry = geometry_of(scene);
     LightTree lights(scene, geometry);

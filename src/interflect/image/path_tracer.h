@@ -80,7 +80,7 @@ struct PathTracing {
 ///
 /// @param ray_caster  Of the same scene.
 /// @return            The same bits for the same seed and any number of threads, unless interrupted.
-/// @throws InputError for a view that defines no picture or an option out of range.
+/// @throws InputError for a view that defines no picture, an option out of range or a ray caster of another scene.
 /// Cost: two rays a vertex and, for reflectances about rho, 1 / (1 - rho) vertices a path or a few more; 110 bytes a
 /// patch and as many a pixel.
 PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const View& view,

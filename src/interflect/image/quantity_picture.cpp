@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "interflect/image/legend.h"
 #include "interflect/raycast/camera.h"
 
 namespace interflect {
@@ -39,13 +38,16 @@ ColourScale scale_of(const std::vector<Seen>& pixels, Spacing spacing) {
 }  // namespace
 
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
-                                const View& view, const Quantity& quantity, const EyeSampling& sampling) {
-    require_values_of_elements(scene, forest, quantity.values.size(), quantity.name.c_str());
+                                const View& view, const Quantity& quantity, const EyeSampling& sampling,
+                                const PictureMonitor& monitor) {
+    ray_caster.require_made_for(scene);
+    forest.require_made_for(scene);
+    require_values_of_elements(forest, quantity.values.size(), quantity.name.c_str());
     const Camera camera(view, sampling.width, sampling.height, scene.origin);
     QuantityPicture result;
     result.values = result.shown = Image(sampling.width, sampling.height);
     std::vector<Seen> pixels(result.values.pixels.size());
-    trace_pixels(camera, ray_caster, sampling, [&](const PixelSamples& samples) {
+    trace_pixels(camera, ray_caster, sampling, monitor, [&](const PixelSamples& samples) {
         pixels[samples.pixel] = seen_by(samples, forest, quantity.values);
     });
 
@@ -57,7 +59,7 @@ QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest,
         result.shown.pixels[i] = std::isfinite(value) ? share * false_colour(result.scale.position(value)) : Rgb(value);
     }
     result.non_finite_pixels = count_non_finite(result.values);
-    result.shown = with_legend(result.shown, result.scale, quantity.label());
+    result.interrupted = monitor.stop && *monitor.stop;
     return result;
 }
 

@@ -26,9 +26,10 @@ struct Quantity {
 /// A quantity as a view sees it.
 struct QuantityPicture {
     Image values;  ///< In all three channels: the mean over what a pixel sees, 0 where that is nothing. To measure.
-    Image shown;   ///< In false colours, what escapes black, with a legend below (legend.h). To look at.
+    Image shown;   ///< In false colours, what escapes black. To look at, with a legend (legend.h).
     ColourScale scale;                   ///< Fitted to the values in the picture.
     std::int64_t non_finite_pixels = 0;  ///< Not finite in either image; files of 8 bits show them magenta.
+    bool interrupted = false;            ///< Stopped by the caller: pixels that were not reached show nothing.
 };
 
 /// Shows one flat value a leaf, whatever light there is.
@@ -36,6 +37,7 @@ struct QuantityPicture {
 /// @return          The same bits for the same seed and any number of threads.
 /// @throws InputError as render() does.
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
-                                const View& view, const Quantity& quantity, const EyeSampling& sampling);
+                                const View& view, const Quantity& quantity, const EyeSampling& sampling,
+                                const PictureMonitor& monitor = {});
 
 }  // namespace interflect

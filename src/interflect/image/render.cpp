@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "interflect/image/element_vertices.h"
-#include "interflect/image/eye_samples.h"
 #include "interflect/image/smooth_field.h"
 
 namespace interflect {
@@ -49,8 +48,10 @@ class Shader {
 }  // namespace
 
 Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
-                 std::span<const Rgb> irradiance, const RenderOptions& options) {
-    require_values_of_elements(scene, forest, irradiance.size(), "irradiance");
+                 std::span<const Rgb> irradiance, const RenderOptions& options, const PictureMonitor& monitor) {
+    ray_caster.require_made_for(scene);
+    forest.require_made_for(scene);
+    require_values_of_elements(forest, irradiance.size(), "irradiance");
     const Camera camera(view, options.width, options.height, scene.origin);
     const Shader shader(scene, forest, irradiance, options);
 
@@ -58,7 +59,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     result.image = Image(options.width, options.height);
     std::atomic<std::int64_t> escaped_rays{0};
     const EyeSampling sampling{options.width, options.height, options.samples, options.seed};
-    trace_pixels(camera, ray_caster, sampling, [&](const PixelSamples& samples) {
+    trace_pixels(camera, ray_caster, sampling, monitor, [&](const PixelSamples& samples) {
         RgbD sum(0, 0, 0);
         std::int64_t escaped = 0;
         for (std::size_t i = 0; i < samples.rays.size(); ++i) {
@@ -74,6 +75,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     result.rays = static_cast<std::int64_t>(result.image.pixels.size()) * options.samples;
     result.escaped_rays = escaped_rays;
     result.non_finite_pixels = count_non_finite(result.image);
+    result.interrupted = monitor.stop && *monitor.stop;
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "interflect/elements/forest.h"
+#include "interflect/image/eye_samples.h"
 #include "interflect/image/image.h"
 #include "interflect/image/smooth_surfaces.h"
 #include "interflect/raycast/ray_caster.h"
@@ -34,14 +35,17 @@ struct Rendering {
     std::int64_t rays = 0;
     std::int64_t escaped_rays = 0;
     std::int64_t non_finite_pixels = 0;  ///< They keep their value (infinite or not a number) in `image`.
+    bool interrupted = false;            ///< Stopped by the caller: pixels that were not reached are black.
 };
 
 /// Renders what `view` sees of a solved scene.
 /// @param forest      Of the same scene, as is `ray_caster`.
 /// @param irradiance  H of every element, in the unit of the materials' exitance; only those of leaves count.
 /// @return            The same bits for the same seed and any number of threads.
-/// @throws InputError for a view that defines no picture, an option out of range, or sizes that disagree.
+/// @throws InputError for a view that defines no picture, an option out of range, sizes that disagree, and a forest or
+///         a ray caster of another scene.
 Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
-                 std::span<const Rgb> irradiance, const RenderOptions& options = {});
+                 std::span<const Rgb> irradiance, const RenderOptions& options = {},
+                 const PictureMonitor& monitor = {});
 
 }  // namespace interflect

@@ -1,8 +1,12 @@
 #include "interflect/image/tone_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "interflect/base/error.h"
 
 namespace interflect {
 
@@ -64,6 +68,7 @@ float automatic_exposure(const Image& image) {
 }
 
 Image tone_map(const Image& image, float exposure, Tonemap curve) {
+    if (!std::isfinite(exposure)) throw InputError(fmt::format("an exposure of {} stops: expected a number", exposure));
     const float gain = std::exp2(exposure);
     Image shown = image;
     for (Rgb& pixel : shown.pixels) {

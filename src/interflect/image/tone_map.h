@@ -20,6 +20,7 @@ float automatic_exposure(const Image& image);
 /// A picture for a display (linear; image_files.h encodes it as sRGB): each pixel times 2^exposure, then `curve`, in
 /// [0, 1]. Black stays black, and a pixel that is not finite stays as it is.
 /// @param exposure  [stops]: one more is twice as bright; at 0 a luminance of 1 cd/m^2 enters the curve as 1.
+/// @throws InputError for an exposure that is not finite.
 Image tone_map(const Image& image, float exposure, Tonemap curve = Tonemap::filmic);
 
 }  // namespace interflect

@@ -8,8 +8,12 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/raycast/embree.h"
+#include "interflect/scene/geometry_fingerprint.h"
 
 namespace interflect {
 
@@ -42,6 +46,11 @@ std::vector<float> tolerances(const Scene& scene) {
         }
     });
     return tolerance;
+}
+
+const Scene& valid(const Scene& scene) {
+    require_no_faults(scene_faults(scene), "cannot trace rays in", scene);
+    return scene;
 }
 
 void throw_embree_error(void*, RTCError, const char* message) {
@@ -123,7 +132,8 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     return {faces.two_sided && facing > 0 ? front + 1 : front, distance};
 }
 
-RayCaster::RayCaster(const Scene& scene) : origin_(scene.origin), lift_(tolerances(scene)) {
+RayCaster::RayCaster(const Scene& scene)
+    : scene_fingerprint_(geometry_fingerprint(valid(scene))), origin_(scene.origin), lift_(tolerances(scene)) {
     embree_ = std::make_unique<Embree>(CoincidentFaces(scene, lift_));
     for (const auto& [face, tolerance] : embree_->coincident.reaches()) {
         lift_[face] = std::max(lift_[face], tolerance);
@@ -146,6 +156,8 @@ RayCaster::RayCaster(const Scene& scene) : origin_(scene.origin), lift_(toleranc
 RayCaster::~RayCaster() = default;
 
 void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
+    if (hits.size() != rays.size())
+        throw InputError(fmt::format("{} rays, and room for {} hits: expected as many", rays.size(), hits.size()));
     constexpr std::size_t at_once = 32;
     EmbreeContext context;
     std::array<RTCRayHit, at_once> queries;
@@ -158,6 +170,10 @@ void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
 }
 
 float RayCaster::uncovered_share(std::uint32_t patch) const { return embree_->coincident.uncovered_share(patch); }
+
+void RayCaster::require_made_for(const Scene& scene) const {
+    interflect::require_made_for(scene, scene_fingerprint_, "the ray caster");
+}
 
 bool RayCaster::has_covered_patches() const { return embree_->coincident.has_covered_patches(); }
 

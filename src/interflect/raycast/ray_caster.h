@@ -26,14 +26,15 @@ struct Hit {
 /// The scene as the ray tracer holds it: Embree behind one small interface. Immutable, shared by all threads.
 class RayCaster {
   public:
+    /// @throws InputError that lists every fault of the scene (scene_faults).
     explicit RayCaster(const Scene& scene);
     ~RayCaster();
     RayCaster(const RayCaster&) = delete;
     RayCaster& operator=(const RayCaster&) = delete;
 
-    /// Finds the first hit of every ray, on the calling thread; hits.size() == rays.size(). The back of a one-sided
-    /// face lets a ray through. Of faces that coincide always the same one answers, seen from wherever (see
-    /// coincident.h).
+    /// Finds the first hit of every ray, on the calling thread. The back of a one-sided face lets a ray through. Of
+    /// faces that coincide always the same one answers, seen from wherever (see coincident.h).
+    /// @throws InputError unless there are as many hits as rays.
     void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
 
     /// The ray offset: how far above its patch a ray starts [m]. With c the largest coordinate of the patch's own
@@ -51,6 +52,9 @@ class RayCaster {
     /// Whether uncovered_share() is below 1 anywhere.
     bool has_covered_patches() const;
 
+    /// @throws InputError unless this ray caster was made for a scene of the same geometry (geometry_fingerprint).
+    void require_made_for(const Scene& scene) const;
+
     /// Scene::origin: world coordinates of what rays have as (0, 0, 0) [m].
     const Imath::V3d& origin() const { return origin_; }
 
@@ -61,6 +65,7 @@ class RayCaster {
     friend class PreparedRays;
     struct Embree;
     std::unique_ptr<Embree> embree_;
+    std::uint64_t scene_fingerprint_;
     Imath::V3d origin_;
     std::vector<float> lift_;
 };

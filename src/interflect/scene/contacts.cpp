@@ -437,6 +437,7 @@ std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std
 }  // namespace
 
 Scene cut_at_contacts(const Scene& scene, const ContactOptions& options) {
+    require_no_faults(scene_faults(scene), "cannot cut the faces of", scene);
     const std::vector<Facet> facets = facets_of(scene);
     const std::vector<CutFacet> cut = cut_facets(scene, facets, options);
     Scene result = scene;

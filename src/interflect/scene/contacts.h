@@ -36,7 +36,7 @@ struct ContactOptions {
 /// Lengths below 4e-6 of the face's diameter, or below four roundings of its coordinates, are ignored: nothing thinner
 /// is cut off. Neither the order of faces nor the number of threads matters.
 ///
-/// @param scene  Valid (scene_faults).
+/// @throws InputError for a scene with faults (scene_faults).
 /// @return       The scene, with a warning where a limit of `options` was reached. Patches keep their order, pieces in
 ///               place of their face. O(n log n + k) time for n faces and k pairs of faces that touch.
 Scene cut_at_contacts(const Scene& scene, const ContactOptions& options = {});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "interflect/base/error.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
@@ -58,6 +59,13 @@ std::vector<std::string> scene_faults(const Scene& scene) {
             return fmt::format("view '{}' is not finite, or its field of view not between 0 and 180 degrees", v.name);
         });
     return faults;
+}
+
+void require_no_faults(const std::vector<std::string>& faults, const std::string& purpose, const Scene& scene) {
+    if (faults.empty()) return;
+    std::string message = purpose + " '" + scene.name + "':";
+    for (const std::string& fault : faults) message += "\n  " + fault;
+    throw InputError(message);
 }
 
 }  // namespace interflect

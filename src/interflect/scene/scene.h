@@ -72,4 +72,8 @@ struct Scene {
 /// outside [0, 1), negative exitance, degenerate patch), a sentence each; empty for a valid scene. Lists at most 20.
 std::vector<std::string> scene_faults(const Scene& scene);
 
+/// @param purpose  What the scene cannot be used for then: "cannot solve".
+/// @throws InputError that lists the faults, if there are any: "cannot solve 'room.mgf':" and a line each.
+void require_no_faults(const std::vector<std::string>& faults, const std::string& purpose, const Scene& scene);
+
 }  // namespace interflect

@@ -76,6 +76,8 @@ void split_triangle(Scene& split, VertexPool& pool, const Patch& patch, const Pa
 }  // namespace
 
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches) {
+    require_no_faults(scene_faults(scene), "cannot divide", scene);
+    if (!(largest_edge > 0)) throw InputError(fmt::format("edges of {} m: expected more than 0", largest_edge));
     double count = 0;
     for (const Patch& patch : scene.patches) {
         const Pieces n = pieces_of(scene, patch, largest_edge);

@@ -8,7 +8,7 @@ namespace interflect {
 /// mesh of a method that does not refine by itself. Quadrilaterals become grids, triangles become n^2 triangles;
 /// patches that share an edge divide it alike. Sides stay neighbours, other_side included.
 /// @param largest_edge  [m], > 0.
-/// @throws InputError where more than `most_patches` would result.
+/// @throws InputError where more than `most_patches` would result, for another edge, and for a scene with faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches);
 
 /// An edge length that shows light and shadow over the scene at a moderate cost: the diagonal of its bounding box

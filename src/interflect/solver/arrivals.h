@@ -19,6 +19,7 @@ class Arrivals {
   public:
     static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
     using Load = std::array<std::int64_t, 5>;
+    static constexpr std::size_t reserved_per_element = sizeof(Load);  ///< Bytes of addresses.
 
     /// @param capacity  Most elements ever.
     explicit Arrivals(std::size_t capacity) : sums_(capacity) {}

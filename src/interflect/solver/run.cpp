@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/base/address_space.h"
 #include "interflect/base/parallel.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/light.h"
@@ -13,13 +14,16 @@ namespace interflect {
 
 namespace {
 
-/// A step of rays may make more elements than are kept at its end (Oracle::most_elements): addresses are set aside for
-/// as many as no step of a second or two makes.
+/// A step of rays may make more elements than are kept at its end (Oracle::most_elements): addresses are reserved for
+/// as many as no step of a second or two makes, or for what fits half of the addresses that the process may have.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
+    constexpr std::size_t per_element = ElementForest::reserved_per_element + Arrivals::reserved_per_element;
     if (!options.method.refines) return scene.patches.size();
     if (options.method.scheme == Scheme::links) return options.most_elements;
-    return std::min(largest, options.most_elements + excess);
+    const std::size_t fitting = free_address_space() / 2 / per_element;
+    return std::min(largest,
+                    options.most_elements + std::min(excess, fitting - std::min(fitting, options.most_elements)));
 }
 
 V3f centre_of(const ElementForest& forest, std::uint32_t element) {
@@ -38,7 +42,7 @@ Run::Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, con
       view(o.views, o.seed),
       floor(scene, o),
       streams(o.points, o.seed),
-      arrivals(forest_capacity(scene, o)),
+      arrivals(forest->capacity()),
       schedule(o, scene.patches.size()),
       noise(scene.patches.size()),
       stop(m.stop) {

@@ -1,5 +1,7 @@
 #include "interflect/solver/solve.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,8 +25,8 @@ namespace {
 
 void require_valid(const Scene& scene, const SolveOptions& o) {
     std::vector<std::string> faults = scene_faults(scene);
-    const auto require = [&](bool holds, const char* message) {
-        if (!holds) faults.emplace_back(message);
+    const auto require = [&](bool holds, const std::string& message) {
+        if (!holds) faults.push_back(message);
     };
     require(!scene.patches.empty(), "the scene has no patches");
     require(o.rays > 0, "rays: expected more than 0");
@@ -38,19 +40,20 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require(o.epsilon_decay >= 0 && o.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
     require(o.smallest_area >= 0, "smallest_area: expected 0 or more");
     require(o.most_elements >= scene.patches.size() && o.most_elements < 0xfffffff0u,
-            "most_elements: expected at least the number of patches and less than 2^32 - 16");
+            fmt::format("most_elements: {}, expected at least the number of patches, {}, and less than 2^32 - 16",
+                        o.most_elements, scene.patches.size()));
     require(o.alpha >= 0 && o.alpha <= 1, "alpha: expected 0 to 1");
     require(o.beta >= 0 && o.beta <= 1, "beta: expected 0 to 1");
     require(o.inherited_trust >= 0 && o.inherited_trust <= 1, "inherited_trust: expected 0 to 1");
     require(o.importance_smoothing >= 0 && o.importance_smoothing <= 1, "importance_smoothing: expected 0 to 1");
     require(o.importance_exponent >= 0 && o.importance_exponent <= 1, "importance_exponent: expected 0 to 1");
     require(o.eye_rays > 0 && o.eye_rays <= most_eye_rays, "eye_rays: expected 1 to 2^24");
+    for (const WeightedView& v : o.views)
+        require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
+                "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");
     require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
             "importance: a method that keeps every ray needs rays of equal power, which importance does not give");
-    if (faults.empty()) return;
-    std::string message = "cannot solve '" + scene.name + "':";
-    for (const std::string& f : faults) message += "\n  " + f;
-    throw InputError(message);
+    require_no_faults(faults, "cannot solve", scene);
 }
 
 /// One iteration: what is received in one bounce of the present estimate, merged with the past.
@@ -156,6 +159,7 @@ const Method& find_method(const std::string& name) {
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     require_valid(scene, options);
+    ray_caster.require_made_for(scene);
     if (options.method.scheme == Scheme::links) return solve_by_links(scene, ray_caster, options, monitor);
     return solve_by_iterations(scene, ray_caster, options, monitor);
 }

@@ -25,6 +25,7 @@ Surfaces::Surfaces(const Scene& scene, const RayCaster& ray_caster) : scene_(sce
 }
 
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster) {
+    ray_caster.require_made_for(scene);
     CoveredEmission covered;
     if (!ray_caster.has_covered_patches()) return covered;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {

@@ -43,6 +43,7 @@ struct CoveredEmission {
     std::int64_t wholly = 0, partly = 0;  ///< Emitting patches that others cover.
     RgbD power{0, 0, 0};                  ///< What they would emit there [lm or W].
 };
+/// @throws InputError for a ray caster of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
 /// B = M + rho H of every element [lm/m^2 or W/m^2]. @param irradiance  H; size forest.size().

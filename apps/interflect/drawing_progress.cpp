@@ -1,0 +1,19 @@
+#include "apps/interflect/drawing_progress.h"
+
+namespace interflect::command {
+
+PictureMonitor DrawingProgress::monitor() {
+    start_ = std::chrono::steady_clock::now();
+    return {[this](const PictureProgress& progress) { show(progress); },
+            keeps_on_ ? nullptr : &stop_on_signal("no picture is written")};
+}
+
+void DrawingProgress::show(const PictureProgress& progress) {
+    constexpr double patience = 1;  // [s]
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (!bar_ && (seconds < patience || progress.fraction == 1)) return;
+    if (!bar_) bar_.emplace();
+    bar_->show({progress.fraction, seconds, progress.rays, {}});
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,49 @@
+#include "apps/interflect/machine_memory.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "interflect/base/address_space.h"
+
+namespace interflect::command {
+
+namespace {
+
+/// The path of the process's control group (version 2) within their file system; empty where there is none.
+std::string control_group() {
+    std::ifstream file("/proc/self/cgroup");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("0::/")) return line.substr(4);
+    return {};
+}
+
+/// The least limit of memory of the control group and those that it is in.
+std::size_t control_group_memory() {
+    const std::filesystem::path root = "/sys/fs/cgroup";
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    for (std::filesystem::path group = root / control_group();; group = group.parent_path()) {
+        std::size_t bytes = 0;
+        if (std::ifstream(group / "memory.max") >> bytes) least = std::min(least, bytes);  // else it says "max"
+        if (group == root || !group.has_relative_path()) return least;
+    }
+}
+
+}  // namespace
+
+std::size_t machine_memory() {
+    const std::size_t physical =
+        static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    return std::min(physical, control_group_memory());
+}
+
+std::size_t addressable_memory() {
+    const std::size_t free = free_address_space();
+    return free == std::numeric_limits<std::size_t>::max() ? free : free / 2;
+}
+
+}  // namespace interflect::command

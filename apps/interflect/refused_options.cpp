@@ -1,0 +1,58 @@
+#include "apps/interflect/refused_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "apps/interflect/run_path_tracer.h"
+#include "interflect/base/error.h"
+
+namespace interflect::command {
+
+namespace {
+
+bool is_given(const CLI::Option* option) { return option->count() > 0; }
+
+template <std::size_t Count>
+bool has(const std::array<std::string_view, Count>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+constexpr std::array<std::string_view, 2> shared_with_path_tracing = {"--seed", "--until"};
+
+bool is_of_solving(const CLI::Option& option) {
+    constexpr std::array<std::string_view, 3> groups = {"Solver", "Refinement", "Importance"};
+    return has(groups, option.get_group());
+}
+
+}  // namespace
+
+void refuse_solver_options(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (is_given(option) && ((is_of_solving(*option) && !has(shared_with_path_tracing, name)) || name == "--show"))
+            throw InputError(fmt::format("{}: --shading path makes no solution", name));
+    }
+    if (is_given(command.get_option("--max-samples")) && !is_given(command.get_option("--until")))
+        throw InputError("--max-samples: without --until every pixel gets --samples");
+}
+
+void refuse_path_options(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_group() == path_group && is_given(option))
+            throw InputError(fmt::format("{}: only --shading path takes it", option->get_name()));
+}
+
+void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {
+    constexpr std::array<std::string_view, 2> of_reading = {"--curve-divisions", "--max-patches"};
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (!is_given(option) || !(is_of_solving(*option) || has(of_reading, name))) continue;
+        if (traces_paths && has(shared_with_path_tracing, name)) continue;
+        throw InputError(solution, 0, fmt::format("it is solved already: {} has no effect, expected a scene", name));
+    }
+}
+
+}  // namespace interflect::command

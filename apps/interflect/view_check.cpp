@@ -1,0 +1,78 @@
+#include "apps/interflect/view_check.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "apps/interflect/percent.h"
+#include "interflect/raycast/camera.h"
+
+namespace interflect::command {
+
+namespace {
+
+constexpr int check_rows = 36;
+constexpr int most_check_columns = 1024;  // of a picture that is very wide
+
+std::vector<Ray> camera_rays(const Scene& scene, const View& view, float aspect) {
+    const int columns = std::clamp(static_cast<int>(static_cast<float>(check_rows) * aspect), 1, most_check_columns);
+    const Camera camera(view, columns, check_rows, scene.origin);
+    std::vector<Ray> rays;
+    for (int y = 0; y < check_rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            rays.push_back(camera.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+    return rays;
+}
+
+std::vector<Hit> hits_of(const RayCaster& ray_caster, const std::vector<Ray>& rays) {
+    std::vector<Hit> hits(rays.size());
+    ray_caster.trace(rays, hits);
+    return hits;
+}
+
+/// From the eye to beyond all of the scene [m].
+float beyond_all(const Scene& scene, const V3f& eye) {
+    float farthest = 1;
+    for (const V3f& v : scene.vertices) farthest = std::max(farthest, (v - eye).length());
+    return 2 * farthest;
+}
+
+}  // namespace
+
+FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
+    const std::vector<Ray> rays = camera_rays(scene, view, aspect);
+    const std::vector<Hit> hits = hits_of(ray_caster, rays);
+    const float beyond = beyond_all(scene, rays.front().origin);
+
+    // On its way back to the eye a ray meets the fronts of those faces whose backs let it through.
+    constexpr float almost = 0.9999f;  // all of the way: not the face that was hit
+    std::vector<Ray> backwards;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const float distance = hits[i].patch == none ? beyond : almost * hits[i].distance;
+        backwards.push_back({rays[i].origin + distance * rays[i].direction, -rays[i].direction});
+    }
+    const std::vector<Hit> hits_backwards = hits_of(ray_caster, backwards);
+    FirstMet met;
+    const double share = 1 / static_cast<double>(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const float distance = (backwards[i].origin - rays[i].origin).length();
+        if (hits_backwards[i].patch != none && hits_backwards[i].distance < distance)
+            met.backs += share;
+        else if (hits[i].patch == none)
+            met.nothing += share;
+    }
+    return met;
+}
+
+void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
+    const FirstMet met = first_met(scene, ray_caster, view, aspect);
+    if (met.nothing + met.backs <= 0.5) return;
+    spdlog::warn(
+        "view '{}': the camera seems to be outside the scene: {} of the picture shows nothing and {} is seen through "
+        "the "
+        "backs of one-sided faces",
+        view.name, percent(met.nothing), percent(met.backs));
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect::command {
+
+/// What a view meets first, as shares of the picture.
+struct FirstMet {
+    double nothing = 0;  ///< No face at all.
+    double backs = 0;    ///< The back of a one-sided face, which lets rays through, whatever is seen behind it.
+};
+
+/// Traces 64 x 36 rays. @param aspect  Width over height of the picture.
+FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);
+
+/// Logs where a camera seems to be outside the scene: most of its rays meet nothing, or the back of a face.
+void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);
+
+}  // namespace interflect::command

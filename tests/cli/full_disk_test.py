@@ -1,0 +1,49 @@
+"""A file that does not fit: named as it was asked for, with the system's reason, and nothing of it is left."""
+
+import resource
+import signal
+import subprocess
+import unittest
+
+from command import COMMAND, FAILED, VIEW, CommandTest, room
+
+
+def let_no_file_exceed(size):
+    """For the process to come: a write beyond that many bytes fails as one on a full disk does."""
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return limit
+
+
+class FullDisk(CommandTest):
+    def assert_fails(self, name, *arguments):
+        result = subprocess.run(
+            [COMMAND, *arguments],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            preexec_fn=let_no_file_exceed(1000),
+            restore_signals=False,  # SIGXFSZ among them
+        )
+        self.assertEqual(result.returncode, FAILED, result.stderr)
+        self.assertIn(f"error: cannot write '{name}': File too large\n", result.stderr)
+        self.assertEqual(self.files(), ["room.mgf"])
+
+    def test_pictures(self):
+        self.write("room.mgf", room())
+        for kind in ("png", "jpg", "hdr", "exr"):
+            path = ("--shading", "path", "--size", "64x36", "--samples", "2")
+            self.assert_fails(f"out.{kind}", "render", "room.mgf", "-o", f"out.{kind}", *VIEW, *path)
+
+    def test_statistics(self):
+        self.write("room.mgf", room())
+        solve = ("solve", "room.mgf", "-o", "out.h5", "--stats", "stats", "--rays", "20k", "--mesh-size", "none")
+        self.assert_fails("stats", *solve)
+
+
+if __name__ == "__main__":
+    unittest.main()
