@@ -12,6 +12,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "interflect/base/escapes.h"
 #include "interflect/image/image_codecs.h"
 
 namespace interflect::codecs {
@@ -23,7 +24,7 @@ constexpr const char* fov_attribute = "interflect.fov";
 
 void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     const auto text = [&](const char* name, const std::string& value) {
-        header.insert(name, Imf::StringAttribute(value));
+        header.insert(name, Imf::StringAttribute(escaped(value)));
     };
     const auto number = [&](const char* name, float value) { header.insert(name, Imf::FloatAttribute(value)); };
     const auto vector = [&](const char* name, const V3f& value) { header.insert(name, Imf::V3fAttribute(value)); };
