@@ -9,8 +9,8 @@ namespace interflect {
 namespace {
 
 TEST(Escapes, LeaveValidTextAsItIs) {
-    for (const std::string text :
-         {"", "the office.mgf", "wände", "C:\\scenes\\x", "\\", "\\x", "\\x4", "\\xg0", "\\xAB", "日本語", "😀", "\u00a0"})
+    for (const std::string text : {"", "the office.mgf", "wände", "C:\\scenes\\x", "\\", "\\x", "\\x4", "\\xg0",
+                                   "\\xAB", "日本語", "😀", "\u00a0"})
         EXPECT_EQ(escaped(text), text);
 }
 
