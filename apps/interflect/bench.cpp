@@ -6,17 +6,18 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/messages.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
+#include "interflect/exports/json_text.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/solve.h"
 #include "interflect/solver/steps.h"
@@ -26,7 +27,6 @@ namespace interflect::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 struct BenchArguments {
@@ -191,10 +191,10 @@ void run(const BenchArguments& options) {
                           {"ratio", ratio},
                           {"shares_of_time", shares_of_time},
                           {"ray_tracer_bytes", ray_caster.memory()}};
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result, 2) << '\n';
         return;
     }
-    fmt::print("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds\n", scene.name,
+    print_line("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds", scene.name,
                solve_options.method.name, scene.patches.size(), work.solution.forest->size(), threads, options.rounds);
     for (std::size_t i = 0; i < interfaces.size(); ++i)
         fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, embree[i] / 1e6);

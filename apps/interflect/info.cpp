@@ -6,11 +6,17 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/messages.h"
+#include "apps/interflect/print_views.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/shared_options.h"
+#include "apps/interflect/solution_info.h"
+#include "apps/interflect/up_axis.h"
+#include "interflect/exports/solution_file.h"
+#include "interflect/exports/solve_report.h"
 #include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/memory.h"
 #include "interflect/solver/surfaces.h"
@@ -19,7 +25,6 @@ namespace interflect::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 struct Emitter {
@@ -67,11 +72,6 @@ std::vector<std::string> outside_files(const Scene& scene, const fs::path& scene
     return outside;
 }
 
-template <class Vector>
-Json json_of(const Vector& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
 Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string>& outside, const MemoryNeed& need) {
     const Json memory{{"scene", need.scene},
                       {"ray_tracer", need.ray_tracer},
@@ -79,12 +79,7 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
                       {"per_element", MemoryNeed::per_element},
                       {"at_least", need.with(scene.patches.size())}};
     Json views = Json::array(), warnings = Json::array(), emitters = Json::array();
-    for (const View& v : scene.views)
-        views.push_back({{"name", v.name},
-                         {"eye", json_of(v.eye)},
-                         {"look_at", json_of(v.look_at)},
-                         {"up", json_of(v.up)},
-                         {"fov", v.fov}});
+    for (const View& v : scene.views) views.push_back(json_of(v));
     for (const Warnings::Entry& w : scene.warnings.entries())
         warnings.push_back({{"kind", w.kind}, {"message", w.message}, {"where", w.where}, {"count", w.count}});
     for (const auto& [material, e] : s.emitters)
@@ -92,20 +87,16 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
                             {"patches", e.patches},
                             {"area", e.area},
                             {"power", json_of(e.power)}});
+    const std::optional<UpAxis> up = find_up_axis(scene);
     const Json bounds{{"min", json_of(s.bounds.min)}, {"max", json_of(s.bounds.max)}};
-    return {{"scene", scene.name},
-            {"patches", scene.patches.size()},
-            {"triangles", s.triangles},
-            {"two_sided_patches", s.two_sided},
-            {"bounds", bounds},
-            {"area", s.area},
-            {"emitted_power", json_of(s.emitted_power)},
-            {"emitters", emitters},
-            {"views", views},
-            {"memory", memory},
-            {"files", scene.files},
-            {"files_outside", outside},
-            {"warnings", warnings}};
+    return {
+        {"scene", scene.name},      {"patches", scene.patches.size()},
+        {"triangles", s.triangles}, {"two_sided_patches", s.two_sided},
+        {"bounds", bounds},         {"up", up ? Json{{"axis", up->axis}, {"evidence", up->evidence}} : Json(nullptr)},
+        {"area", s.area},           {"emitted_power", json_of(s.emitted_power)},
+        {"emitters", emitters},     {"views", views},
+        {"memory", memory},         {"files", scene.files},
+        {"files_outside", outside}, {"warnings", warnings}};
 }
 
 /// "-0.15 to 6": the ends of an interval, without digits that are rounding error in a scene of that size.
@@ -120,38 +111,29 @@ std::string interval(double low, double high, double scene_size) {
     return fmt::format("{} to {}", rounded(low), rounded(high));
 }
 
-template <class Vector>
-std::string text_of(const Vector& v) {
-    return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);
-}
-
-/// A point of the world, far from its origin too.
-std::string text_of_point(const Imath::V3d& p) { return fmt::format("{:.10g} {:.10g} {:.10g}", p.x, p.y, p.z); }
-
 /// [MiB], rounded up.
 std::size_t mebibytes(std::size_t bytes) { return (bytes + (1 << 20) - 1) >> 20; }
 
 void print_text(const Scene& scene, const Summary& s, const std::vector<std::string>& outside, const MemoryNeed& need) {
-    fmt::print("{}\n", scene.name);
-    fmt::print("  patches   {} ({} triangles; {} on two-sided faces)\n", scene.patches.size(), s.triangles,
-               s.two_sided);
+    print_line("{}", scene.name);
+    print_line("  patches   {} ({} triangles; {} on two-sided faces)", scene.patches.size(), s.triangles, s.two_sided);
     const Imath::V3d low = s.bounds.min, high = s.bounds.max;
     const double size = s.bounds.size().length();
-    fmt::print("  bounds    x {}, y {}, z {} m\n", interval(low.x, high.x, size), interval(low.y, high.y, size),
+    print_line("  bounds    x {}, y {}, z {} m", interval(low.x, high.x, size), interval(low.y, high.y, size),
                interval(low.z, high.z, size));
-    fmt::print("  area      {:.6g} m2\n", s.area);
-    fmt::print("  emitted   {:.6g} lm (RGB {})\n", luminance(s.emitted_power), text_of(s.emitted_power));
+    const std::optional<UpAxis> up = find_up_axis(scene);
+    print_line("  up        {}", up ? fmt::format("{}, from {}", up->axis, up->evidence) : "not known");
+    print_line("  area      {:.6g} m2", s.area);
+    print_line("  emitted   {:.6g} lm (RGB {})", luminance(s.emitted_power), text_of(s.emitted_power));
     for (const auto& [material, e] : s.emitters)
-        fmt::print("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm\n", scene.materials[material].name, e.patches,
+        print_line("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm", scene.materials[material].name, e.patches,
                    e.area, luminance(e.power));
-    for (const View& v : scene.views)
-        fmt::print("  view      {}: eye {}, look at {}, up {}, fov {:.4g}\n", v.name, text_of_point(v.eye),
-                   text_of_point(v.look_at), text_of(v.up), v.fov);
-    fmt::print("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements\n",
+    print_views(scene.views);
+    print_line("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements",
                mebibytes(need.with(scene.patches.size())), mebibytes(need.scene), mebibytes(need.ray_tracer),
                mebibytes(need.patches), mebibytes(1'000'000 * MemoryNeed::per_element));
-    fmt::print("  files     {}\n", scene.files.size());
-    for (const std::string& file : outside) fmt::print("  outside   {}: not in the scene's own folder\n", file);
+    print_line("  files     {}", scene.files.size());
+    for (const std::string& file : outside) print_line("  outside   {}: not in the scene's own folder", file);
 }
 
 }  // namespace
@@ -162,10 +144,11 @@ void add_info(CLI::App& app) {
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App& command = *app.add_subcommand("info", "Tell what is in a scene");
-    options->scene.add_to(command);
+    CLI::App& command = *app.add_subcommand("info", "Tell what is in a scene or a solution");
+    options->scene.add_to(command, "Scene file (.mgf), maze:ROOMS[:furniture], or solution file (.h5)");
     command.add_flag("--json", options->json, "As JSON on stdout");
     command.callback([options] {
+        if (is_solution_file(options->scene.path)) return print_solution_info(options->scene.path, options->json);
         const Scene scene = options->scene.load();
         const RayCaster ray_caster(scene);
         warn_of_covered_emission(scene, ray_caster);
@@ -173,7 +156,7 @@ void add_info(CLI::App& app) {
         const std::vector<std::string> outside = outside_files(scene, options->scene.path);
         const MemoryNeed need = memory_need(scene, ray_caster);
         if (options->json)
-            std::cout << to_json(scene, summary, outside, need).dump(2) << '\n';
+            std::cout << json_text(to_json(scene, summary, outside, need), 2) << '\n';
         else
             print_text(scene, summary, outside, need);
     });

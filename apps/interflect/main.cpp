@@ -1,11 +1,11 @@
 #include <malloc.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <exception>
 #include <string>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/messages.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/standard_streams.h"
 #include "interflect/base/error.h"
@@ -24,7 +24,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
     } else {
         command += " " + chosen.front()->get_name();
     }
-    return "error: " + message + "\n`" + command + " --help` tells what may be given.\n";
+    return "error: " + interflect::escaped(message) + "\n`" + command + " --help` tells what may be given.\n";
 }
 
 constexpr const char* footer =
@@ -70,8 +70,7 @@ int main(int argc, char** argv) try {
     open_missing_standard_streams();
     handle_signals();
     return_large_arrays();
-    spdlog::set_default_logger(spdlog::stderr_color_st("interflect"));
-    spdlog::set_pattern("%^%l%$: %v");
+    interflect::command::log_to_stderr();
     return run(argc, argv);
 } catch (const interflect::InputError& e) {
     spdlog::error("{}", e.what());

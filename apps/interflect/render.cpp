@@ -140,8 +140,12 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
 
 /// A solution, or a scene that is not solved yet.
 SolvedScene read(const RenderArguments& options, const CLI::App& command) {
-    if (!is_solution_file(options.scene.path)) return {options.scene.load(), {}};
-    SolvedScene solved = read_solution(options.scene.path);
+    SolvedScene solved;
+    if (!is_solution_file(options.scene.path)) {
+        solved.scene = options.scene.load();
+        return solved;
+    }
+    solved = read_solution(options.scene.path);
     refuse_scene_options(command, options.scene.path, options.shading == PictureShading::path);
     return solved;
 }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/interflect/leaks.h"
@@ -18,6 +17,7 @@
 #include "apps/interflect/signals.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
+#include "interflect/exports/solve_report.h"
 #include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/memory.h"
 #include "interflect/solver/surfaces.h"
@@ -26,47 +26,12 @@ namespace interflect::command {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json json_of(const RgbD& c) { return Json::array({c.x, c.y, c.z}); }
-
-const char* name_of(ImportanceUse use) {
-    return use == ImportanceUse::off ? "none" : use == ImportanceUse::direct ? "direct" : "full";
-}
-
 Json header_of(const Scene& scene, const SolverOptions& command, const SolveOptions& o, const RgbD& emitted_power) {
     double area = 0;
     for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
-    Json views = Json::array();
-    for (const WeightedView& v : o.views) views.push_back(v.view.name);
-    const auto limit = [](bool given, auto value) { return given ? Json(value) : Json(nullptr); };
-    const Json options{{"rays", limit(o.rays < std::numeric_limits<std::int64_t>::max(), o.rays)},
-                       {"seconds", limit(std::isfinite(o.seconds), o.seconds)},
-                       {"until", limit(o.until > 0, o.until)},
-                       {"points", o.points == PointSet::sobol ? "sobol" : "random"},
-                       {"complete_passes", o.complete_passes},
-                       {"warm_up", o.warm_up},
-                       {"iterations", o.iterations},
-                       {"rays_per_iteration", o.rays_per_iteration},
-                       {"refinement", o.refinement == Refinement::variance ? "variance" : "power"},
-                       {"shrinkage", o.shrinks},
-                       {"epsilon", o.epsilon},
-                       {"epsilon_decay", o.epsilon_decay},
-                       {"min_area", o.smallest_area},
-                       {"inherited_trust", o.inherited_trust},
-                       {"defer_refinement", o.defer_refinement},
-                       {"importance", name_of(o.method.importance)},
-                       {"iteration", o.separate_iterations ? "separate" : "combined"},
-                       {"importance_storage", o.importance_at_elements ? "element" : "patch"},
-                       {"importance_sampling", o.total_importance ? "total" : "indirect"},
-                       {"importance_smoothing", o.importance_smoothing},
-                       {"importance_exponent", o.importance_exponent},
-                       {"alpha", o.alpha},
-                       {"beta", o.beta},
-                       {"views", views}};
     return {{"scene", scene.name},
             {"method", o.method.name},
-            {"options", options},
+            {"options", json_of(o)},
             {"seed", o.seed},
             {"threads", command.threads > 0 ? command.threads : tbb::info::default_concurrency()},
             {"version", INTERFLECT_VERSION},
@@ -75,29 +40,16 @@ Json header_of(const Scene& scene, const SolverOptions& command, const SolveOpti
             {"emitted_power", json_of(emitted_power)}};
 }
 
-Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json line_of(const IterationReport& r) {
-    return {{"iteration", r.iteration},
-            {"seconds", r.seconds},
-            {"rays", r.rays},
-            {"power_rays", r.power_rays},
-            {"importance_rays", r.importance_rays},
-            {"elements", r.elements},
-            {"leaves", r.leaves},
-            {"total_power", json_of(r.total_power)},
-            {"escaped_power", json_of(r.escaped_power)},
-            {"error_estimate", finite_or_null(r.error_estimate)},
-            {"noise_estimate", finite_or_null(r.noise_estimate)},
-            {"discretisation_estimate", finite_or_null(r.discretisation_estimate)},
-            {"largest_quantum", r.largest_quantum},
-            {"high_quantum", r.high_quantum}};
+Json line_of(const IterationReport& report) {
+    Json line{{"iteration", report.iteration}, {"seconds", report.seconds}};
+    line.update(json_of(report));
+    return line;
 }
 
 void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& command, const Solution& solution) {
     std::ofstream out(file.temporary_path());
-    out << header_of(scene, command, solution.options, solution.emitted_power).dump() << '\n';
-    for (const IterationReport& r : solution.iterations) out << line_of(r).dump() << '\n';
+    out << json_text(header_of(scene, command, solution.options, solution.emitted_power)) << '\n';
+    for (const IterationReport& r : solution.iterations) out << json_text(line_of(r)) << '\n';
     if (!out.flush())
         throw std::runtime_error(
             fmt::format("cannot write '{}': {}", file.final_path().string(), std::strerror(errno)));

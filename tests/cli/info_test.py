@@ -4,7 +4,7 @@ import json
 import math
 import unittest
 
-from command import ROOT, VIEWS, CommandTest, room, vertices
+from command import BAD_INPUT, ROOT, VIEWS, CommandTest, room, vertices
 
 
 class Info(CommandTest):
@@ -64,6 +64,81 @@ class Info(CommandTest):
         area = {n: self.json("info", "ball.mgf", "--curve-divisions", n)["area"] for n in (2, 16)}
         self.assertLess(area[2], area[16])
         self.assertLess(abs(area[16] / (4 * math.pi) - 1), 0.01)
+
+
+class UpAxis(CommandTest):
+    def test_is_that_of_the_views(self):
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS).replace("[0, 0, 1]", "[0, -1, 0]").replace("[1, 2, 0]", "[1, 2, 1]"))
+        self.assertEqual(self.json("info", "room.mgf")["up"], {"axis": "-y", "evidence": "views"})
+        self.assertIn("up        -y, from views", self.interflect("info", "room.mgf").stdout)
+
+    def test_is_guessed_from_the_light_where_there_are_no_views(self):
+        self.write("room.mgf", room())
+        self.assertEqual(self.json("info", "room.mgf")["up"], {"axis": "z", "evidence": "light"})
+        self.write("turned.mgf", "i room.mgf -rx 90\n")
+        self.assertEqual(self.json("info", "turned.mgf")["up"], {"axis": "-y", "evidence": "light"})
+
+    def test_is_not_known_of_a_dark_scene(self):
+        self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
+        self.assertIsNone(self.json("info", "dark.mgf")["up"])
+        self.assertIn("up        not known", self.interflect("info", "dark.mgf").stdout)
+
+
+class Solution(CommandTest):
+    OPTIONS = ("--method", "ihsrr", "--rays", "20k", "--seed", "7", "--epsilon-decay", "0.5", "--view", "door")
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--stats", "stats", *self.OPTIONS)
+        self.header, *self.iterations = map(json.loads, (self.folder / "stats").read_text().splitlines())
+
+    def test_json_tells_what_the_statistics_told(self):
+        report = self.json("info", "room.h5")
+        for key in ("scene", "method", "options", "seed", "version", "patches", "emitted_power"):
+            self.assertEqual(report[key], self.header[key], key)
+        last = self.iterations[-1]
+        self.assertIsNotNone(last["error_estimate"])
+        del last["seconds"]
+        self.assertEqual(report["result"], last)
+        self.assertEqual((report["format_version"], report["interrupted"]), (4, False))
+        self.assertEqual(report["files"], ["room.mgf", "room.views.json"])
+        self.assertEqual([view["name"] for view in report["views"]], ["door", "door", "floor"])
+
+    def test_text_tells_the_same(self):
+        text = self.interflect("info", "room.h5").stdout
+        result = self.json("info", "room.h5")["result"]
+        words = ("room.mgf", "version 4", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
+        for word in (*words, str(result["rays"]), str(result["elements"]), "noise ", "mesh "):
+            self.assertIn(word, text)
+        self.assertNotIn("alpha", text, "only what differs from the defaults")
+
+    def test_of_version_3_tells_what_it_knows(self):
+        report = self.json("info", ROOT / "tests" / "exports" / "version-3.h5")
+        self.assertEqual((report["format_version"], report["method"], report["patches"]), (3, "isrr", 13))
+        self.assertEqual((report["result"]["rays"], report["result"]["elements"]), (1000, 13))
+        for key in ("version", "options", "files"):
+            self.assertNotIn(key, report)
+
+    def test_damaged_is_refused(self):
+        content = bytearray(self.bytes("room.h5"))
+        content[-1] ^= 1
+        (self.folder / "bad.h5").write_bytes(content)
+        for arguments in (("info", "bad.h5"), ("render", "bad.h5", "-o", "out.png")):
+            message = self.interflect(*arguments, exit_code=BAD_INPUT).stderr
+            self.assertIn("the file is damaged: the checksum of /solution/indirect_importance differs", message)
+
+
+class Views(CommandTest):
+    def test_are_told_in_no_more_digits_than_they_have(self):
+        single, double = 1.600000023841858, 100000000.3  # the float nearest to 1.6, and no float
+        views = {"views": [{"name": "door", "eye": [single, double, 0], "look_at": [1, 2, 1], "fov": 38.7}]}
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(views))
+        text = self.interflect("info", "room.mgf").stdout
+        self.assertIn("door: eye 1.6 100000000.3 0, look at 1 2 1, up 0 0 1, fov 38.7\n", text)
 
 
 class Office(CommandTest):

@@ -66,7 +66,7 @@ class Statistics(CommandTest):
         for line in iterations:
             self.assertEqual(
                 list(line),
-                ["iteration", "seconds", "rays", "power_rays", "importance_rays", "elements", "leaves"]
+                ["iteration", "seconds", "rays", "power_rays", "importance_rays", "escaped_rays", "elements", "leaves"]
                 + ["total_power", "escaped_power", "error_estimate", "noise_estimate", "discretisation_estimate"]
                 + ["largest_quantum", "high_quantum"],
             )

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "interflect/base/error.h"
+#include "interflect/exports/checksums.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -129,15 +130,15 @@ std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     return parents;
 }
 
-/// A file's bytes with the only array that has these contents changed to others of the same size.
-std::string replaced(std::string bytes, const std::vector<std::uint32_t>& before,
-                     const std::vector<std::uint32_t>& after) {
-    const auto raw = [](const std::vector<std::uint32_t>& numbers) {
-        return std::string(reinterpret_cast<const char*>(numbers.data()), 4 * numbers.size());
+/// Finds the only array that has these contents in a file's bytes, and changes it to others of the same size.
+template <class T>
+std::string replaced(std::string bytes, const std::vector<T>& before, const std::vector<T>& after) {
+    const auto raw = [](const std::vector<T>& values) {
+        return std::string(reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size());
     };
     const std::size_t at = bytes.find(raw(before));
     if (at == std::string::npos) throw std::logic_error("no such array in the file");
-    return bytes.replace(at, 4 * before.size(), raw(after));
+    return bytes.replace(at, raw(before).size(), raw(after));
 }
 
 std::string error_of(const fs::path& path) {
@@ -159,9 +160,17 @@ class SolutionFile : public testing::Test {
         return contents(path_);
     }
 
-    /// A damaged file must be refused, or make a scene that is valid all the same; it must never crash the reader.
+    /// A file of these bytes with checksums that are right: what they cannot protect the reader from.
+    fs::path write_with_checksums(const std::string& bytes) const {
+        const fs::path path = folder_.write("damaged.h5", bytes);
+        write_checksums(path, {});
+        return path;
+    }
+
+    /// What was never written must be refused, or make a scene that is valid all the same; it must never crash the
+    /// reader.
     void expect_harmless(const std::string& bytes, const std::string& what) const {
-        const fs::path damaged = folder_.write("damaged.h5", bytes);
+        const fs::path damaged = write_with_checksums(bytes);
         try {
             const SolvedScene solved = read_solution(damaged);
             EXPECT_TRUE(scene_faults(solved.scene).empty()) << what;
@@ -180,7 +189,7 @@ TEST_F(SolutionFile, ReadsWhatWasWritten) {
         solved.solution.interrupted = interrupted;
         write_solution(path_, solved.scene, solved.solution);
         expect_equal(read_solution(path_), solved);
-        EXPECT_EQ(read_solution(path_).solution.options.rays, 10'000) << "as many as were traced";
+        EXPECT_EQ(read_solution(path_).solution.options.rays, 10'000);
     }
 }
 
@@ -192,7 +201,6 @@ TEST_F(SolutionFile, KeepsTheOriginAndViewsFarFromTheWorlds) {
     expect_equal(read_solution(path_), solved);
 }
 
-// Version 2 had no origin, and views in single precision.
 /// Takes from the patches what version 2 did not have: their surfaces, the last number of each.
 void drop_surfaces_of_patches(const std::filesystem::path& path) {
     const char* name = "/scene/patches";
@@ -212,21 +220,53 @@ void drop_surfaces_of_patches(const std::filesystem::path& path) {
     H5Dclose(set), H5Sclose(space), H5Fclose(file);
 }
 
-TEST_F(SolutionFile, OpensAnOlderOneAboutTheWorldsOrigin) {
-    SolvedScene solved = example();
-    std::string bytes = bytes_of(solved);
+/// What version 3 made of the same scene: no checksums, and less in the description.
+std::string as_version_3(std::string bytes) {
+    bytes.erase(0, checksum_block_size);
     for (const auto& [now, before] :
-         {std::pair<std::string, std::string>{"\"format_version\": 3", "\"format_version\": 2"},
-          {"\"origin\": ", "\"nothing\":"}}) {
-        ASSERT_NE(bytes.find(now), std::string::npos) << now;
+         {std::pair<std::string, std::string>{"\"format_version\": 4", "\"format_version\": 3"},
+          {"\"version\": ", "\"nothing\": "},
+          {"\"files\": ", "\"nothi\": "},
+          {"\"options\": ", "\"nothing\": "},
+          {"\"result\": ", "\"nothin\": "}}) {
+        if (bytes.find(now) == std::string::npos) throw std::logic_error("no such text in the file: " + now);
         bytes.replace(bytes.find(now), now.size(), before);
     }
-    std::ofstream(path_, std::ios::binary) << bytes;
-    drop_surfaces_of_patches(path_);
+    return bytes;
+}
+
+TEST_F(SolutionFile, OpensVersion3) {
+    const SolvedScene solved = example();
+    const SolvedScene read = read_solution(folder_.write("old.h5", as_version_3(bytes_of(solved))));
+    expect_equal(read, solved);
+    EXPECT_EQ(read.format_version, 3);
+    EXPECT_EQ(read.interflect_version, "");
+    EXPECT_EQ(read.solution.options.rays, 10'000) << "as many as were traced";
+}
+
+/// A room of six two-sided walls and a lamp that Interflect 0.1.0 solved when version 3 was the newest.
+TEST_F(SolutionFile, OpensAFileOfItsTime) {
+    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/version-3.h5");
+    EXPECT_EQ(read.format_version, 3);
+    EXPECT_EQ(read.scene.name, "room.mgf");
+    EXPECT_EQ(read.scene.patches.size(), 13u);
+    EXPECT_STREQ(read.solution.options.method.name, "isrr");
+    EXPECT_EQ(read.solution.view_importance.size(), 13u);
+    EXPECT_EQ(read.solution.iterations.back().elements, 13u);
+}
+
+TEST_F(SolutionFile, OpensVersion2) {
+    SolvedScene solved = example();
+    std::string bytes = as_version_3(bytes_of(solved));
+    for (const auto& [now, before] :
+         {std::pair<std::string, std::string>{"version\": 3", "version\": 2"}, {"\"origin\": ", "\"nothing\":"}})
+        bytes.replace(bytes.find(now), now.size(), before);
+    const fs::path path = folder_.write("old.h5", bytes);
+    drop_surfaces_of_patches(path);
     for (Patch& patch : solved.scene.patches) patch.surface = none;
     solved.scene.contacts.clear();
     solved.solution.discretisation_error.assign(solved.solution.forest->size(), 0.0f);
-    expect_equal(read_solution(path_), solved);
+    expect_equal(read_solution(path), solved);
 }
 
 TEST_F(SolutionFile, ReadsARefinedForestWithImportance) {
@@ -270,31 +310,57 @@ TEST_F(SolutionFile, CannotBeWrittenIntoAMissingFolder) {
                  std::runtime_error);
 }
 
-TEST_F(SolutionFile, IsRefusedWithIrradianceThatCannotBe) {
-    for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.0f}) {
-        SolvedScene solved = refined_example();
-        solved.solution.irradiance[3].y = wrong;
-        write_solution(path_, solved.scene, solved.solution);
-        EXPECT_THAT(error_of(path_), HasSubstr("irradiance of element 3")) << wrong;
+/// Of a solution that is written before by bytes_of().
+std::string refusal(const fs::path& path, const SolvedScene& solved) {
+    const std::string before = contents(path);
+    try {
+        write_solution(path, solved.scene, solved.solution);
+    } catch (const std::runtime_error& e) {
+        EXPECT_TRUE(contents(path) == before) << "something was written: " << e.what();
+        return e.what();
     }
+    return "written";
 }
 
-TEST_F(SolutionFile, IsRefusedWithImportanceThatCannotBe) {
-    SolvedScene solved = refined_example();
-    solved.solution.indirect_importance[5] = -1;
-    write_solution(path_, solved.scene, solved.solution);
-    EXPECT_THAT(error_of(path_), HasSubstr("the indirect importance of element 5 is negative"));
+TEST_F(SolutionFile, IsNotWrittenWhenItCouldNotBeRead) {
+    const SolvedScene good = refined_example();
+    bytes_of(good);
+    const auto refused_with = [&](const auto& spoil) {
+        SolvedScene solved = good;
+        spoil(solved.scene, solved.solution);
+        return refusal(path_, solved);
+    };
+    for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.0f})
+        EXPECT_THAT(refused_with([&](Scene&, Solution& s) { s.irradiance[3].y = s.irradiance[5].z = wrong; }),
+                    HasSubstr("irradiance of element 3 is negative or not finite (2 such numbers)"));
+    for (const auto values : {&Solution::standard_error, &Solution::discretisation_error, &Solution::rays,
+                              &Solution::view_importance, &Solution::indirect_importance}) {
+        EXPECT_THAT(refused_with([&](Scene&, Solution& s) { (s.*values)[5] = -1; }), HasSubstr(" of element 5 is neg"));
+        EXPECT_THAT(refused_with([&](Scene&, Solution& s) { (s.*values).pop_back(); }), HasSubstr("differ in number"));
+    }
+    EXPECT_THAT(refused_with([](Scene&, Solution& s) { s.irradiance.pop_back(); }),
+                HasSubstr("irradiance and elements differ in number"));
+    EXPECT_THAT(refused_with([](Scene&, Solution& s) { s.emitted_power.x = std::nan(""); }),
+                HasSubstr("emitted power"));
+    EXPECT_THAT(refused_with([](Scene& s, Solution&) { s.materials[0].reflectance.x = 1; }), HasSubstr("reflectance"));
+    EXPECT_THAT(refused_with([](Scene& s, Solution&) { s.views[0].fov = std::nanf(""); }), HasSubstr("view 'door'"));
+    EXPECT_THAT(refused_with([](Scene&, Solution& s) { s.options.epsilon = std::nan(""); }), HasSubstr("'epsilon'"));
+    EXPECT_EQ(refusal(path_, good), "written");
 }
 
-TEST_F(SolutionFile, IsRefusedWhereElementsAndTheirValuesDiffer) {
-    SolvedScene solved = refined_example();
-    solved.solution.irradiance.pop_back();
-    write_solution(path_, solved.scene, solved.solution);
-    EXPECT_THAT(error_of(path_), HasSubstr("irradiance and elements differ in number"));
-    solved = refined_example();
-    solved.solution.view_importance.pop_back();
-    write_solution(path_, solved.scene, solved.solution);
-    EXPECT_THAT(error_of(path_), HasSubstr("view importance and elements differ in number"));
+TEST_F(SolutionFile, IsRefusedWithNumbersThatCannotBe) {
+    const SolvedScene solved = refined_example();
+    const std::string bytes = bytes_of(solved);
+    for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity(), -1.0f}) {
+        std::vector<Rgb> damaged = solved.solution.irradiance;
+        damaged[3].y = wrong;
+        EXPECT_THAT(error_of(write_with_checksums(replaced(bytes, solved.solution.irradiance, damaged))),
+                    HasSubstr("irradiance of element 3 is negative or not finite"));
+    }
+    std::vector<float> damaged = solved.solution.indirect_importance;
+    damaged[5] = -1;
+    EXPECT_THAT(error_of(write_with_checksums(replaced(bytes, solved.solution.indirect_importance, damaged))),
+                HasSubstr("the indirect importance of element 5 is negative"));
 }
 
 /// An element with children can neither have them twice nor come after them, nor lie below the deepest level.
@@ -305,26 +371,17 @@ TEST_F(SolutionFile, IsRefusedWithAForestThatCannotGrow) {
     for (const std::uint32_t wrong : {subdivided[0], solved.solution.forest->size(), none}) {
         std::vector<std::uint32_t> damaged = subdivided;
         damaged[1] = wrong;
-        EXPECT_THAT(error_of(folder_.write("damaged.h5", replaced(bytes, subdivided, damaged))),
+        EXPECT_THAT(error_of(write_with_checksums(replaced(bytes, subdivided, damaged))),
                     HasSubstr(std::to_string(wrong) + " cannot be subdivided"));
     }
     std::vector<std::uint32_t> deep = subdivided;
     for (std::uint32_t i = 1; i < deep.size(); ++i)
         deep[i] = solved.solution.forest->patch_count() + 4 * (i - 1);  // always the first child of the last
     ASSERT_GT(deep.size(), std::size_t{ElementForest::deepest_level});
-    EXPECT_THAT(error_of(folder_.write("deep.h5", replaced(bytes, subdivided, deep))),
-                HasSubstr("cannot be subdivided"));
+    EXPECT_THAT(error_of(write_with_checksums(replaced(bytes, subdivided, deep))), HasSubstr("cannot be subdivided"));
 }
 
-TEST_F(SolutionFile, IsRefusedWhereverItIsCutOff) {
-    const std::string bytes = bytes_of(refined_example());
-    for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 100)
-        EXPECT_THAT(error_of(folder_.write("cut.h5", bytes.substr(0, length))), HasSubstr("not a solution file"))
-            << length;
-    EXPECT_THAT(error_of(folder_.write("cut.h5", bytes.substr(0, bytes.size() - 1))), HasSubstr("not a solution file"));
-}
-
-TEST_F(SolutionFile, DoesNoHarmWithFlippedBits) {
+TEST_F(SolutionFile, DoesNoHarmWithFlippedBitsAndRightChecksums) {
     const std::string bytes = bytes_of(refined_example());
     std::mt19937_64 random(1);
     for (int trial = 0; trial < 300; ++trial) {
@@ -335,7 +392,7 @@ TEST_F(SolutionFile, DoesNoHarmWithFlippedBits) {
     }
 }
 
-TEST_F(SolutionFile, DoesNoHarmWithOverwrittenStretches) {
+TEST_F(SolutionFile, DoesNoHarmWithOverwrittenStretchesAndRightChecksums) {
     const std::string bytes = bytes_of(refined_example());
     std::mt19937_64 random(2);
     for (int trial = 0; trial < 150; ++trial) {
@@ -350,6 +407,8 @@ TEST_F(SolutionFile, DoesNoHarmWithOverwrittenStretches) {
 TEST_F(SolutionFile, IsRecognised) {
     bytes_of(example());
     EXPECT_TRUE(is_solution_file(path_));
+    EXPECT_TRUE(is_solution_file(folder_.write("version3.h5", contents(path_).substr(checksum_block_size))));
+    EXPECT_TRUE(is_solution_file(folder_.write("damaged.h5", "x" + contents(path_).substr(1))));
     EXPECT_FALSE(is_solution_file(folder_.write("scene.mgf", "m wall =\n")));
     EXPECT_FALSE(is_solution_file(folder_.write("empty.h5", "")));
     EXPECT_FALSE(is_solution_file(folder_.path()));

@@ -8,20 +8,22 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "interflect/base/error.h"
+#include "interflect/exports/checksums.h"
+#include "interflect/exports/description.h"
 
 namespace interflect {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Version 3 has an origin, contacts, and the surfaces of patches; before, the origin was 0.
-constexpr int format_version = 3, oldest_format_version = 2;
+/// Version 4 has checksums, options and result. Version 3 has an origin, contacts, and the surfaces of patches; before,
+/// the origin was 0.
+constexpr int format_version = 4, oldest_format_version = 2, first_with_checksums = 4, first_with_contacts = 3;
+constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
@@ -62,8 +64,9 @@ hid_t native_type<char>() {
 }
 
 /// Writes `rows` rows of `columns` numbers; no time stamps, so that equal contents are equal bytes.
+/// @return Where they are in the file.
 template <class T>
-void write_array(hid_t file, const std::string& name, const T* data, std::size_t rows, std::size_t columns) {
+FileRange write_array(hid_t file, const std::string& name, const T* data, std::size_t rows, std::size_t columns) {
     const std::array<hsize_t, 2> size{rows, columns};
     const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose, "cannot size an array");
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
@@ -72,8 +75,9 @@ void write_array(hid_t file, const std::string& name, const T* data, std::size_t
     H5Pset_create_intermediate_group(links, 1);
     const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space, links, properties, H5P_DEFAULT), H5Dclose,
                      "cannot write an array");
-    if (rows * columns > 0)
-        require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write '" + name + "'");
+    if (rows * columns == 0) return {name, checksum_block_size, 0};
+    require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write '" + name + "'");
+    return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
 }
 
 template <class T>
@@ -113,61 +117,6 @@ std::vector<Vector> grouped(const std::vector<float>& numbers) {
     std::vector<Vector> v(numbers.size() / 3);
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = Vector(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
     return v;
-}
-
-template <class T>
-Json json_of(const Imath::Vec3<T>& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-template <class Vector>
-Vector vector_of(const Json& j) {
-    return {j.at(0).get<decltype(Vector::x)>(), j.at(1).get<decltype(Vector::x)>(), j.at(2).get<decltype(Vector::x)>()};
-}
-
-/// Everything that is not a long array, as JSON text.
-Json describe(const Scene& scene, const Solution& solution) {
-    Json views = Json::array(), materials = Json::array();
-    for (const View& v : scene.views)
-        views.push_back({{"name", v.name},
-                         {"eye", json_of(v.eye)},
-                         {"look_at", json_of(v.look_at)},
-                         {"up", json_of(v.up)},
-                         {"fov", v.fov}});
-    for (const Material& m : scene.materials)
-        materials.push_back(
-            {{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
-    const std::int64_t rays = solution.iterations.empty() ? 0 : solution.iterations.back().rays;
-    return {{"scene", scene.name},
-            {"method", solution.options.method.name},
-            {"seed", solution.options.seed},
-            {"rays", rays},
-            {"emitted_power", json_of(solution.emitted_power)},
-            {"interrupted", solution.interrupted},
-            {"has_importance", !solution.view_importance.empty()},
-            {"origin", json_of(scene.origin)},
-            {"views", views},
-            {"materials", materials},
-            {"objects", scene.objects}};
-}
-
-void read_description(const Json& j, SolvedScene& solved) {
-    Scene& scene = solved.scene;
-    scene.name = j.at("scene").get<std::string>();
-    solved.solution.options.method = find_method(j.at("method").get<std::string>());
-    solved.solution.options.seed = j.at("seed").get<std::uint64_t>();
-    solved.solution.options.rays = j.at("rays").get<std::int64_t>();
-    solved.solution.emitted_power = vector_of<RgbD>(j.at("emitted_power"));
-    solved.solution.interrupted = j.at("interrupted").get<bool>();
-    if (j.contains("origin")) scene.origin = vector_of<Imath::V3d>(j.at("origin"));
-    for (const Json& v : j.at("views"))
-        scene.views.push_back({v.at("name").get<std::string>(), vector_of<Imath::V3d>(v.at("eye")),
-                               vector_of<Imath::V3d>(v.at("look_at")), vector_of<V3f>(v.at("up")),
-                               v.at("fov").get<float>()});
-    for (const Json& m : j.at("materials"))
-        scene.materials.push_back(
-            {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
-    scene.objects = j.at("objects").get<std::vector<std::string>>();
 }
 
 /// A patch is eight numbers: four vertices, material, object, other side, surface.
@@ -245,77 +194,138 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-void require_per_element(std::size_t size, const ElementForest& forest, const char* what) {
-    if (size != forest.size()) throw std::runtime_error(fmt::format("{} and elements differ in number", what));
+/// Why `numbers` cannot be what the elements have `per_element` of each; empty if they can.
+std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
+                     const char* what) {
+    if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);
+    const auto is_wrong = [](float number) { return !std::isfinite(number) || number < 0; };
+    const auto first = std::find_if(numbers.begin(), numbers.end(), is_wrong);
+    if (first == numbers.end()) return "";
+    return fmt::format("the {} of element {} is negative or not finite ({} such numbers)", what,
+                       static_cast<std::size_t>(first - numbers.begin()) / per_element,
+                       std::count_if(first, numbers.end(), is_wrong));
 }
 
-void require_quantities(const std::vector<float>& numbers, std::size_t per_element, const char* what) {
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        if (!std::isfinite(numbers[i]) || numbers[i] < 0)
-            throw std::runtime_error(
-                fmt::format("the {} of element {} is negative or not finite", what, i / per_element));
+void require_none(const std::string& fault) {
+    if (!fault.empty()) throw std::runtime_error(fault);
+}
+
+// What a reader may rely on, and so what a writer must hold to.
+
+void require_valid(const Scene& scene) {
+    for (const std::string& fault : scene_faults(scene)) require_none(fault);
+}
+
+/// @param solution  Of a valid scene.
+void require_valid(const Solution& solution) {
+    const ElementForest& forest = *solution.forest;
+    const auto* irradiance = reinterpret_cast<const float*>(solution.irradiance.data());
+    require_none(fault_of({irradiance, 3 * solution.irradiance.size()}, 3, forest, "irradiance"));
+    for (const ElementNumbers& n : element_numbers)
+        if (!n.needs_view || !solution.view_importance.empty())
+            require_none(fault_of(solution.*n.values, 1, forest, n.name));
+    if (!is_finite(solution.emitted_power)) require_none("the emitted power is not finite");
+}
+
+/// Whether a file has the eight bytes that HDF5 begins with at `offset`.
+bool has_hdf5_signature(const std::filesystem::path& path, std::uint64_t offset) {
+    std::string begin(hdf5_signature.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(offset));
+    return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == hdf5_signature;
+}
+
+void read_scene_arrays(hid_t file, int version, Scene& scene) {
+    scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
+    const bool has_contacts = version >= first_with_contacts;
+    const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
+    scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", each), each);
+    if (has_contacts) scene.contacts = contacts_of(grouped<V3f>(read_array<float>(file, "/scene/contacts", 3)));
+}
+
+void read_solution_arrays(hid_t file, int version, bool has_importance, SolvedScene& solved) {
+    Solution& solution = solved.solution;
+    solution.forest = forest_of(solved.scene, read_array<std::uint32_t>(file, "/elements/subdivided", 1));
+    solution.irradiance = grouped<Rgb>(read_array<float>(file, "/solution/irradiance", 3));
+    for (const ElementNumbers& n : element_numbers) {
+        if (n.needs_view && !has_importance) continue;
+        if (version < n.since_version)
+            (solution.*n.values).assign(solution.forest->size(), 0.0f);
+        else
+            solution.*n.values = read_array<float>(file, n.dataset, 1);
+    }
+    IterationReport& last = solution.iterations.back();
+    last.elements = solution.forest->size();
+    last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
 }
 
 SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
+    // HDF5 would look for its beginning farther on; a file without checksums begins with it.
+    const bool checked = !has_hdf5_signature(path, 0);
+    if (checked) verify_checksums(path);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
     const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
     SolvedScene solved;
     const std::vector<char> text = read_array<char>(file, "/description", 1);
-    const Json description = Json::parse(text.begin(), text.end());
-    const int version = description.at("format_version").get<int>();
-    if (version < oldest_format_version || version > format_version)
-        throw std::runtime_error("it was written by another version of Interflect");
-    read_description(description, solved);
-    solved.scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
-    const bool has_contacts = version > oldest_format_version;
-    const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
-    solved.scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", each), each);
-    if (has_contacts) solved.scene.contacts = contacts_of(grouped<V3f>(read_array<float>(file, "/scene/contacts", 3)));
-    for (const std::string& fault : scene_faults(solved.scene)) throw std::runtime_error(fault);
-
-    Solution& solution = solved.solution;
-    solution.forest = forest_of(solved.scene, read_array<std::uint32_t>(file, "/elements/subdivided", 1));
-    const std::vector<float> irradiance = read_array<float>(file, "/solution/irradiance", 3);
-    require_quantities(irradiance, 3, "irradiance");
-    solution.irradiance = grouped<Rgb>(irradiance);
-    require_per_element(solution.irradiance.size(), *solution.forest, "irradiance");
-    const bool has_importance = description.at("has_importance").get<bool>();
-    for (const auto& [dataset, name, values, needs_view, since_version] : element_numbers) {
-        if (needs_view && !has_importance) continue;
-        if (version < since_version) {
-            (solution.*values).assign(solution.forest->size(), 0.0f);
-            continue;
-        }
-        solution.*values = read_array<float>(file, dataset, 1);
-        require_per_element((solution.*values).size(), *solution.forest, name);
-        require_quantities(solution.*values, 1, name);
-    }
+    const bool has_importance =
+        read_description({text.data(), text.size()}, oldest_format_version, format_version, solved);
+    if (!checked && solved.format_version >= first_with_checksums)
+        throw std::runtime_error("the file is damaged: its checksums are missing");
+    read_scene_arrays(file, solved.format_version, solved.scene);
+    require_valid(solved.scene);
+    read_solution_arrays(file, solved.format_version, has_importance, solved);
+    require_valid(solved.solution);
     return solved;
+}
+
+/// @return Where the arrays are in the file.
+std::vector<FileRange> write_arrays(hid_t file, const std::string& description, const Scene& scene,
+                                    const Solution& solution) {
+    const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
+    std::vector<FileRange> ranges = {
+        write_array(file, "/description", description.data(), description.size(), 1),
+        write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3),
+        write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), numbers_per_patch),
+        write_array(file, "/scene/contacts", flattened(contact_ends(scene)).data(), 2 * scene.contacts.size(), 3),
+        write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1),
+        write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(),
+                    3)};
+    for (const ElementNumbers& n : element_numbers)
+        if (!n.needs_view || !solution.view_importance.empty())
+            ranges.push_back(write_array(file, n.dataset, (solution.*n.values).data(), (solution.*n.values).size(), 1));
+    return ranges;
+}
+
+/// An HDF5 file that begins with an empty block for checksums.
+std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
+                                  const Solution& solution) {
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make properties");
+    require(H5Pset_userblock(creation, checksum_block_size), "cannot set a user block");
+    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose,
+                      "cannot create the file");
+    std::vector<FileRange> ranges = write_arrays(file, description, scene, solution);
+    require(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot write the file");
+    return ranges;
 }
 
 }  // namespace
 
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution) {
-    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-                      "cannot create the file");
-    Json description{{"format", "interflect solution"}, {"format_version", format_version}};
-    description.update(describe(scene, solution));
-    const std::string text = description.dump(1);
-    write_array(file, "/description", text.data(), text.size(), 1);
-    write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3);
-    write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), numbers_per_patch);
-    write_array(file, "/scene/contacts", flattened(contact_ends(scene)).data(), 2 * scene.contacts.size(), 3);
-    const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
-    write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1);
-    write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(), 3);
-    for (const auto& [dataset, name, values, needs_view, since_version] : element_numbers)
-        if (!needs_view || !solution.view_importance.empty())
-            write_array(file, dataset, (solution.*values).data(), (solution.*values).size(), 1);
+    std::string description;
+    try {
+        require_valid(scene);
+        require_valid(solution);
+        description = describe(scene, solution, format_version);
+    } catch (const std::exception& e) {
+        throw std::runtime_error(fmt::format("the solution is not written: {}", e.what()));
+    }
+    write_checksums(path, write_hdf5(path, description, scene, solution));
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
     if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
+    if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
     try {
         return read_solution_unchecked(path);
     } catch (const std::exception& e) {
@@ -324,10 +334,7 @@ SolvedScene read_solution(const std::filesystem::path& path) {
 }
 
 bool is_solution_file(const std::filesystem::path& path) {
-    constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
-    std::string begin(signature.size(), '\0');
-    std::ifstream file(path, std::ios::binary);
-    return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == signature;
+    return has_checksums(path) || has_hdf5_signature(path, 0) || has_hdf5_signature(path, checksum_block_size);
 }
 
 }  // namespace interflect

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "interflect/base/escapes.h"
 #include "interflect/image/image_codecs.h"
 
 namespace interflect::codecs {
@@ -27,7 +28,7 @@ constexpr const char* fov_attribute = "interflect.fov";
 
 void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     const auto text = [&](const char* name, const std::string& value) {
-        header.insert(name, Imf::StringAttribute(value));
+        header.insert(name, Imf::StringAttribute(escaped(value)));
     };
     const auto number = [&](const char* name, float value) { header.insert(name, Imf::FloatAttribute(value)); };
     const auto vector = [&](const char* name, const V3f& value) { header.insert(name, Imf::V3fAttribute(value)); };

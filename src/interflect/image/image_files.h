@@ -29,7 +29,7 @@ constexpr bool needs_tone_mapping(ImageFormat format) {
 
 /// What an image shows and how it came to be. An OpenEXR file keeps it as the attributes interflect.view, .eye,
 /// .look_at (both in world coordinates, double precision), .up, .fov, .quantity, .scene, .exposure, .seed (text, since
-/// it has 64 bits) and .version.
+/// it has 64 bits) and .version; names are escaped() (base/escapes.h).
 struct ImageMetadata {
     View view;
     std::string quantity = "luminance [cd/m^2]";  ///< With its unit.

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "interflect/scene/scene.h"
+
+namespace interflect::command {
+
+/// Prints a line a view.
+void print_views(const std::vector<View>& views);
+
+/// Three numbers, short.
+template <class Vector>
+std::string text_of(const Vector& v) {
+    return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,87 @@
+#include "interflect/exports/description.h"
+
+#include <stdexcept>
+
+#include "interflect/exports/solve_report.h"
+
+namespace interflect {
+
+namespace {
+
+/// Since this version names are escaped, and options, result, files and the version of Interflect are there.
+constexpr int first_with_options = 4;
+
+Json json_of_materials(const std::vector<Material>& materials) {
+    Json json = Json::array();
+    for (const Material& m : materials)
+        json.push_back({{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
+    return json;
+}
+
+void read_scene(const Json& json, Scene& scene) {
+    scene.name = json.at("scene").get<std::string>();
+    if (json.contains("origin")) scene.origin = vector_of<Imath::V3d>(json.at("origin"));
+    for (const Json& v : json.at("views")) scene.views.push_back(view_of(v));
+    for (const Json& m : json.at("materials"))
+        scene.materials.push_back(
+            {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
+    scene.objects = json.at("objects").get<std::vector<std::string>>();
+    if (json.contains("files")) scene.files = json.at("files").get<std::vector<std::string>>();
+}
+
+/// Of old files only the number of rays is known.
+void read_result(const Json& json, int format_version, Solution& solution) {
+    IterationReport& last = solution.iterations.emplace_back();
+    if (format_version >= first_with_options) {
+        read_options(json.at("options"), solution.options);
+        last = report_of(json.at("result"));
+    } else {
+        solution.options.rays = last.rays = json.at("rays").get<std::int64_t>();
+    }
+}
+
+}  // namespace
+
+std::string describe(const Scene& scene, const Solution& solution, int format_version) {
+    Json views = Json::array();
+    for (const View& v : scene.views) views.push_back(json_of(v));
+    const IterationReport last = solution.iterations.empty() ? IterationReport() : solution.iterations.back();
+    const Json description{{"format", "interflect solution"},
+                           {"format_version", format_version},
+                           {"version", INTERFLECT_VERSION},
+                           {"scene", scene.name},
+                           {"files", scene.files},
+                           {"method", solution.options.method.name},
+                           {"seed", solution.options.seed},
+                           {"rays", last.rays},
+                           {"options", json_of(solution.options)},
+                           {"result", json_of(last)},
+                           {"emitted_power", json_of(solution.emitted_power)},
+                           {"interrupted", solution.interrupted},
+                           {"has_importance", !solution.view_importance.empty()},
+                           {"origin", json_of(scene.origin)},
+                           {"views", views},
+                           {"materials", json_of_materials(scene.materials)},
+                           {"objects", scene.objects}};
+    return json_text(description, 1);
+}
+
+bool read_description(std::string_view text, int oldest_format_version, int newest_format_version,
+                      SolvedScene& solved) {
+    Json json = Json::parse(text);
+    solved.format_version = json.at("format_version").get<int>();
+    if (solved.format_version < oldest_format_version || solved.format_version > newest_format_version)
+        throw std::runtime_error("it was written by another version of Interflect");
+    if (solved.format_version >= first_with_options) json = parse_json_text(text);
+    if (json.contains("version")) solved.interflect_version = json.at("version").get<std::string>();
+    read_scene(json, solved.scene);
+    Solution& solution = solved.solution;
+    solution.options.method = find_method(json.at("method").get<std::string>());
+    solution.options.seed = json.at("seed").get<std::uint64_t>();
+    read_result(json, solved.format_version, solution);
+    solution.emitted_power = vector_of<RgbD>(json.at("emitted_power"));
+    solution.interrupted = json.at("interrupted").get<bool>();
+    return json.at("has_importance").get<bool>();
+}
+
+}  // namespace interflect

@@ -1,0 +1,166 @@
+#include "interflect/exports/solve_report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "interflect/base/error.h"
+
+namespace interflect {
+
+namespace {
+
+template <class Value>
+using Choices = std::array<std::pair<const char*, Value>, 2>;
+
+/// Writes fields to JSON.
+struct Writer {
+    Json& json;
+
+    template <class Value>
+    void field(const char* name, const Value& value) const {
+        json[name] = value;
+    }
+    template <class Value>
+    void field_or_null(const char* name, const Value& value, const Value& when_null) const {
+        json[name] = value == when_null ? Json(nullptr) : Json(value);
+    }
+    void vector(const char* name, const RgbD& value) const { json[name] = json_of(value); }
+    template <class Value, std::size_t count>
+    void choice(const char* name, const Value& value,
+                const std::array<std::pair<const char*, Value>, count>& choices) const {
+        for (const auto& [word, meaning] : choices)
+            if (meaning == value) json[name] = word;
+    }
+};
+
+/// Sets fields from JSON.
+struct Reader {
+    const Json& json;
+
+    template <class Value>
+    void field(const char* name, Value& value) const {
+        json.at(name).get_to(value);
+    }
+    template <class Value>
+    void field_or_null(const char* name, Value& value, const Value& when_null) const {
+        value = json.at(name).is_null() ? when_null : json.at(name).get<Value>();
+    }
+    void vector(const char* name, RgbD& value) const { value = vector_of<RgbD>(json.at(name)); }
+    template <class Value, std::size_t count>
+    void choice(const char* name, Value& value, const std::array<std::pair<const char*, Value>, count>& choices) const {
+        const auto found = json.at(name).get<std::string>();
+        for (const auto& [word, meaning] : choices)
+            if (word == found) {
+                value = meaning;
+                return;
+            }
+        throw InputError(fmt::format("option '{}' has an unknown value '{}'", name, found));
+    }
+};
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The one list of options and their names. @param access  Writer or Reader.
+template <class Options, class Access>
+void for_each_option(Options& o, const Access& access) {
+    access.field_or_null("rays", o.rays, std::numeric_limits<std::int64_t>::max());
+    access.field_or_null("seconds", o.seconds, infinity);
+    access.field_or_null("until", o.until, 0.0);
+    access.choice("points", o.points, Choices<PointSet>{{{"sobol", PointSet::sobol}, {"random", PointSet::random}}});
+    access.field("complete_passes", o.complete_passes);
+    access.field("warm_up", o.warm_up);
+    access.field("iterations", o.iterations);
+    access.field("rays_per_iteration", o.rays_per_iteration);
+    access.choice("refinement", o.refinement,
+                  Choices<Refinement>{{{"variance", Refinement::variance}, {"power", Refinement::power}}});
+    access.field("shrinkage", o.shrinks);
+    access.field("epsilon", o.epsilon);
+    access.field("epsilon_decay", o.epsilon_decay);
+    access.field("min_area", o.smallest_area);
+    access.field("inherited_trust", o.inherited_trust);
+    access.field("defer_refinement", o.defer_refinement);
+    access.choice(
+        "importance", o.method.importance,
+        std::array<std::pair<const char*, ImportanceUse>, 3>{
+            {{"none", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}}});
+    access.choice("iteration", o.separate_iterations, Choices<bool>{{{"separate", true}, {"combined", false}}});
+    access.choice("importance_storage", o.importance_at_elements, Choices<bool>{{{"element", true}, {"patch", false}}});
+    access.choice("importance_sampling", o.total_importance, Choices<bool>{{{"total", true}, {"indirect", false}}});
+    access.field("importance_smoothing", o.importance_smoothing);
+    access.field("importance_exponent", o.importance_exponent);
+    access.field("alpha", o.alpha);
+    access.field("beta", o.beta);
+    access.field("eye_rays", o.eye_rays);
+}
+
+/// The one list of what is told of an iteration. @param access  Writer or Reader.
+template <class Report, class Access>
+void for_each_number(Report& r, const Access& access) {
+    access.field("iteration", r.iteration);
+    access.field("rays", r.rays);
+    access.field("power_rays", r.power_rays);
+    access.field("importance_rays", r.importance_rays);
+    access.field("escaped_rays", r.escaped_rays);
+    access.field("elements", r.elements);
+    access.field("leaves", r.leaves);
+    access.vector("total_power", r.total_power);
+    access.vector("escaped_power", r.escaped_power);
+    access.field_or_null("error_estimate", r.error_estimate, infinity);
+    access.field_or_null("noise_estimate", r.noise_estimate, infinity);
+    access.field_or_null("discretisation_estimate", r.discretisation_estimate, infinity);
+    access.field("largest_quantum", r.largest_quantum);
+    access.field("high_quantum", r.high_quantum);
+}
+
+}  // namespace
+
+Json json_of(const SolveOptions& options) {
+    Json json = Json::object();
+    for_each_option(options, Writer{json});
+    Json& views = json["views"] = Json::array();
+    for (const WeightedView& v : options.views) {
+        Json& view = views.emplace_back(json_of(v.view));
+        view["weight"] = v.weight;
+        view["aspect"] = shortest_number(v.aspect);
+        view["pixel_rows"] = v.pixel_rows;
+    }
+    return json;
+}
+
+void read_options(const Json& json, SolveOptions& options) {
+    for_each_option(options, Reader{json});
+    for (const Json& v : json.at("views"))
+        options.views.push_back(
+            {view_of(v), v.at("weight").get<double>(), v.at("aspect").get<float>(), v.at("pixel_rows").get<int>()});
+}
+
+Json json_of(const IterationReport& report) {
+    Json json = Json::object();
+    for_each_number(report, Writer{json});
+    return json;
+}
+
+IterationReport report_of(const Json& json) {
+    IterationReport report;
+    for_each_number(report, Reader{json});
+    return report;
+}
+
+Json json_of(const View& view) {
+    return {{"name", view.name},
+            {"eye", json_of(view.eye)},
+            {"look_at", json_of(view.look_at)},
+            {"up", json_of(view.up)},
+            {"fov", shortest_number(view.fov)}};
+}
+
+View view_of(const Json& json) {
+    return {json.at("name").get<std::string>(), vector_of<Imath::V3d>(json.at("eye")),
+            vector_of<Imath::V3d>(json.at("look_at")), vector_of<V3f>(json.at("up")), json.at("fov").get<float>()};
+}
+
+}  // namespace interflect

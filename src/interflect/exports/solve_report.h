@@ -1,0 +1,34 @@
+#pragma once
+
+#include "interflect/exports/json_text.h"
+#include "interflect/solver/solve.h"
+
+namespace interflect {
+
+/// How a solution was asked for: the `options` of solution files and of `solve --stats`, under the names of the command
+/// line. A limit that was not given is null. Of SolveOptions it lacks the seed and the method's name, which stand
+/// beside it, and most_elements, which follows the memory of the machine.
+Json json_of(const SolveOptions& options);
+
+/// Sets what json_of() told. @throws nlohmann::json::exception, InputError where something is missing or unknown.
+void read_options(const Json& json, SolveOptions& options);
+
+/// Where a run stood after an iteration, but for the time that it took: the same input gives the same text. An error
+/// that is not known is null.
+Json json_of(const IterationReport& report);
+
+/// What json_of() told. @throws nlohmann::json::exception
+IterationReport report_of(const Json& json);
+
+/// A view, with world coordinates in double precision.
+Json json_of(const View& view);
+View view_of(const Json& json);
+
+/// Three numbers. @throws nlohmann::json::exception
+template <class Vector>
+Vector vector_of(const Json& json) {
+    using Number = decltype(Vector::x);
+    return {json.at(0).get<Number>(), json.at(1).get<Number>(), json.at(2).get<Number>()};
+}
+
+}  // namespace interflect
