@@ -36,7 +36,7 @@ void expect_in(const std::string& message, const std::string& part) {
 
 struct BadLine {
     const char* name;
-    const char* line;      // the seventh, after the vertices
+    const char* line;      // the seventh, after the vertices; what else it takes for a face to use it
     const char* expected;  // part of the message
 };
 
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadLine{"UndefinedVertex", "f a b missing", "vertex 'missing' is not defined"},
         BadLine{"TwoVertices", "f a b", "f vertex1 vertex2 vertex3"},
-        BadLine{"RepeatedVertices", "f a b a b", "three different vertices"},
+
         BadLine{"EmptyHole", "fh - a b d", "three different vertices"},
         BadLine{"HoleOfTwo", "fh a b d - a b", "three different vertices"},
         BadLine{"NotANumber", "p nan 0 0", "'nan' is not a finite number"},
@@ -64,12 +64,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"NegativeReflectance", "rd -.1", "'-.1' must not be negative"},
         BadLine{"NegativeEmission", "ed -1", "'-1' must not be negative"},
         BadLine{"NegativeSpecular", "rs -.1 0", "must not be negative"},
-        BadLine{"Sides", "sides 3", "sides must be 1 or 2"}, BadLine{"Chromaticity", "cxy .8 .3", "is no chromaticity"},
-        BadLine{"ChromaticityWithoutLuminance", "cxy .5 0", "is no chromaticity"},
-        BadLine{"Spectrum", "cspec 780 380 1 1", "the shortest wavelength"},
-        BadLine{"Temperature", "cct 500", "at least 1000 K"},
-        BadLine{"MixOfUndefined", "cmix 1 red 1 blue", "colour 'red' is not defined"},
-        BadLine{"MixOddly", "cmix 1 red 1 blue 1", "pairs"}, BadLine{"Refraction", "ir 0 0", "index of refraction"},
+        BadLine{"Sides", "sides 3", "sides must be 1 or 2"},
+        BadLine{"Chromaticity", "cxy .8 .3\nrd .5", "is no chromaticity"},
+
+        BadLine{"ChromaticityBelow", "cxy .4 -.1\nrd .5", "is no chromaticity"},
+        BadLine{"ColourOfALamp", "cct 500\ned 5", "at least 1000 K"},
+        BadLine{"HugeEmission", "ed 1e30", "cannot be computed: expected 0, or 1e-09 to 1e+10"},
+        BadLine{"TinyEmission", "ed 1e-40", "cannot be computed: expected 0, or 1e-09 to 1e+10"},
+        BadLine{"Spectrum", "cspec 780 380 1 1\nrd .5", "the shortest wavelength"},
+        BadLine{"Temperature", "cct 500\nrd .5", "at least 1000 K"},
+        BadLine{"MixOfUndefined", "cmix 1 red 1 blue\nrd .5", "colour 'red' is not defined"},
+        BadLine{"MixOddly", "cmix 1 red 1 blue 1\nrd .5", "pairs"},
+        BadLine{"Refraction", "ir 0 0", "index of refraction"},
         BadLine{"UndefinedMaterial", "m paint", "material 'paint' is not defined"},
         BadLine{"UndefinedTemplate", "m paint = paint", "material 'paint' is not defined"},
         BadLine{"NoEquals", "v a b", "expected '='"}, BadLine{"NoName", "v =", "is not defined"},
@@ -95,6 +101,53 @@ TEST(MgfBadInput, NoUsableFaceIsLeft) {
     expect_in(message(three_vertices), "no usable face is left");
     expect_in(message("v a =\nv b =\nv d =\nf a b d\n"), "no usable face is left");
     expect_in(message("some text that is no scene\nat all\n"), "no usable face is left");
+}
+
+TEST(MgfBadInput, WithoutAUsableFaceTheFirstLeftOutIsNamed) {
+    expect_in(message(three_vertices + "f a b b\nf a a b\n"),
+              "bad.mgf:7: no usable face is left: 2 are left out, and this is the first of them: face with fewer than "
+              "three different vertices");
+    expect_in(message(three_vertices + "v e =\n p 0 1 0\nf a d b e\n"), "bad.mgf:9: no usable face is left");
+    expect_in(message(three_vertices + "v e =\n p 0 1 0\nf a d b e\n"), "outline crosses itself");
+    expect_in(message(three_vertices + "f a b missing\n"), "'missing' is not defined");
+    expect_in(message(three_vertices + "f a b b missing\n"), "'missing' is not defined");
+}
+
+TEST(MgfBadInput, AFaultCountsWhereItIsOnceAFaceUsesIt) {
+    const std::string bad = three_vertices + "c bad =\n cct 5\nc mixed =\n cmix 1 bad 1 bad\n";
+    const std::string uses = "m one =\n c mixed\n rd .5\nm two = one\nf a b d\n";
+    expect_in(message(bad + uses), "bad.mgf:8: a colour temperature must be at least 1000 K");
+    expect_in(message(bad + "m one =\n c mixed\n ed 5\nf a b d\n"), "bad.mgf:8: ");
+    EXPECT_EQ(message(bad + "m one =\n c mixed\n ed 0\n rd 0\nf a b d\n"), "no error") << "a black one uses none";
+    EXPECT_EQ(message(bad + "m one =\n c bad\n cxy .3 .3\n rd .5\nf a b d\n"), "no error") << "what is mended is good";
+    expect_in(message(three_vertices + "m x =\n rd -1\nm y = x\n ed z\nf a b d\n"), "bad.mgf:8: '-1' must not be");
+    expect_in(message(three_vertices + "m x =\n rd -1\n"), "bad.mgf:8: '-1' must not be");
+    expect_in(message(three_vertices + "m x =\n rd -1\nsph a 1\n"), "bad.mgf:8: '-1' must not be");
+}
+
+// ---- What cannot be computed
+
+std::string square(const std::string& size, const std::string& more = "") {
+    return "m x =\n rd .5\nv a =\nv b =\n p " + size + " 0 0\nv d =\n p 0 " + size + " 0\n" + more + "f a b d\n";
+}
+
+// Seen to fail without the limits, with areas of inf and 0.
+TEST(MgfBadInput, FacesThatAreTooWideAndScenesThatAreTooSmall) {
+    EXPECT_EQ(message(square("7e6")), "no error");
+    expect_in(message(square("7.1e6")), "bad.mgf:8: this face is 1e+07 m wide; at most 1e+07 m can be computed");
+    expect_in(message(square("1e14")), "bad.mgf:8: this face is 1.41e+14 m wide");
+    expect_in(message(square("1e38")), "bad.mgf:8: the transformed point (1e+38, 0, 0) is farther than 1e+15 m");
+    EXPECT_EQ(message(square("8e-7")), "no error");
+    for (const char* const size : {"5e-7", "1e-12", "1e-38"})
+        expect_in(message(square(size)), "m wide; at least 1e-06 m can be computed");
+    EXPECT_EQ(message(square("1", "v e =\n p 1e-10 0 0\nv g =\n p 0 1e-10 0\nf a e g\n")), "no error") << "litter";
+}
+
+TEST(MgfBadInput, ExitanceThatCannotBeComputed) {
+    for (const char* const exitance : {"0", "1.1e-9", "9.9e9"})
+        EXPECT_EQ(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "no error") << exitance;
+    for (const char* const exitance : {"1e-40", "9e-10", "1.1e10", "1e30", "1e38"})
+        expect_in(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "bad.mgf:9: exitance (");
 }
 
 TEST(MgfBadInput, BinaryJunk) {
@@ -222,6 +275,33 @@ TEST(MgfBadFiles, FilesThatIncludeEachOtherManyTimesEnd) {
     }
     folder.write("f10.mgf", "rd .5\n");
     expect_in(message_of([&] { read_mgf(folder.path() / "f0.mgf", {.max_patches = 1000}); }), "--max-patches");
+}
+
+// Seen to fail without the count of what was made: 50 million patches would allow for 10^9 words.
+TEST(MgfBadFiles, IncludesThatMakeNothingEndSoon) {
+    const TemporaryFolder folder;
+    for (int i = 0; i < 9; ++i) {
+        std::string text;
+        for (int k = 0; k < 40; ++k) text += "i f" + std::to_string(i + 1) + ".mgf\n";
+        folder.write("f" + std::to_string(i) + ".mgf", text);
+    }
+    folder.write("f9.mgf", "# nothing\n");
+    const auto start = std::chrono::steady_clock::now();
+    const std::string error = message_of([&] { read_mgf(folder.path() / "f0.mgf"); });
+    expect_in(error, "mgf:");
+    expect_in(error, "from which only 0 patches were made");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));  // asan takes longer
+}
+
+TEST(MgfLimits, CopiesOfNothingEndSoon) {
+    expect_in(message("xf -a 40000000 -t 1 0 0\nxf\n"), "bad.mgf:2: arrays and includes repeat 50 million words");
+}
+
+TEST(MgfLimits, FacesLeftOutCountAsPatches) {
+    const std::string spheres = "v c =\n p 1 1 1\nsph c 1e-9\n";  // of 128 faces, all lost to rounding
+    expect_in(message(three_vertices + "f a b d\n" + spheres, {.max_patches = 100}), "--max-patches");
+    expect_in(message(three_vertices + "f a b d\n" + spheres + "sph c 1e-9\n", {.max_patches = 200}), "--max-patches");
+    EXPECT_EQ(message(three_vertices + "f a b d\n" + spheres, {.max_patches = 200}), "no error");
 }
 
 TEST(LoadScene, UnknownExtensionListsTheKnownOnes) {

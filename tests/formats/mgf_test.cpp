@@ -324,6 +324,53 @@ TEST(Mgf, UnknownEntitiesAndIesAreSkippedWithAWarning) {
     EXPECT_EQ(scene.warnings.entries()[0].where, "test.mgf:20");
 }
 
+TEST(Mgf, FaceOfFewerThanThreeVerticesIsLeftOutWithAWarning) {
+    const Scene scene = read_faces("f a b b\nf a b a b\nf a b d\n");
+    EXPECT_EQ(scene.patches.size(), 1u);
+    ASSERT_EQ(scene.warnings.entries().size(), 1u);
+    EXPECT_EQ(scene.warnings.entries()[0].message, "face with fewer than three different vertices is left out");
+    EXPECT_EQ(warnings(scene, "degenerate-face"), 2);
+}
+
+TEST(Mgf, FaceThatCrossesItselfSaysSo) {
+    const Scene scene = read_faces("f a b e d\nf a b d\n");
+    EXPECT_EQ(scene.patches.size(), 1u);
+    EXPECT_EQ(scene.warnings.entries()[0].message.find("face whose outline crosses itself"), 0u);
+}
+
+// Seen to fail while a colour's fault made the whole file unreadable.
+TEST(Mgf, FaultsThatNoFaceUsesAreIgnoredWithAWarning) {
+    const Scene scene = read_faces(
+        "c odd =\n cxy 1 1\n cspec 380 780 0 0\n cmix 1 nowhere 1 odd\n cct x\n cxy 1\nm unused =\n rd -1\n sides 3\n"
+        "m good =\n c\n rd .5\nf a b d\n");
+    EXPECT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(warnings(scene, "unused-fault"), 7);
+    EXPECT_EQ(scene.warnings.entries().size(), 1u);
+}
+
+TEST(Mgf, ChromaticityWithoutLuminanceIsTakenWithAWarning) {
+    const auto reflectance = [](const std::string& cxy) {
+        const Scene scene = read_faces("m x =\n c\n  cxy " + cxy + "\n rd .05\nf a b d\n");
+        EXPECT_EQ(warnings(scene, "no-luminance"), 1);
+        EXPECT_EQ(warnings(scene, "out-of-gamut"), 1);
+        return scene.materials[0].reflectance;
+    };
+    const Rgb purple = reflectance("0.4 0"), blue = reflectance("0 0");
+    EXPECT_NEAR(luminance(purple), 0.05f, 1e-6f);
+    EXPECT_NEAR(luminance(blue), 0.05f, 1e-6f);
+    EXPECT_GT(blue.z, 2 * blue.x);
+    EXPECT_GT(purple.x, 2 * purple.y);
+    EXPECT_EQ(reflectance("0.4 1e-300"), purple);
+}
+
+TEST(Mgf, ByteOrderMarkOfAnIncludedFile) {
+    const testing_support::TemporaryFolder folder;
+    folder.write("part.mgf", "\xef\xbb\xbf" + vertices + one_sided + "f a b d e\n");
+    const Scene scene = read_mgf(folder.write("main.mgf", "\xef\xbb\xbfi part.mgf\n"));
+    EXPECT_EQ(scene.patches.size(), 1u);
+    EXPECT_EQ(warnings(scene, "unsupported-entity"), 0);
+}
+
 TEST(Mgf, FaceWithoutAreaIsLeftOutWithAWarning) {
     const Scene scene = read_faces("v c =\n p 2 0 0\nf a b c\nf a b d\n");
     EXPECT_EQ(scene.patches.size(), 1u);

@@ -103,6 +103,29 @@ TEST(Camera, RefusesViewsThatShowNothing) {
     EXPECT_THAT(refusal(view), HasSubstr("must be finite"));
 }
 
+// Seen to fail: such rays were drawn in steps of 6e-8, and the picture in blocks.
+TEST(Camera, RefusesPixelsFinerThanDirections) {
+    View view = straight_view();
+    view.fov = 0.01f;
+    EXPECT_THAT(refusal(view, 16, 9), "not refused");
+    EXPECT_THAT(refusal(view, 1600, 900), testing::HasSubstr("expected a field of view of 0.0123 degrees or more"));
+    view.fov = 0.0124f;
+    EXPECT_THAT(refusal(view, 1600, 900), "not refused");
+}
+
+TEST(Camera, FarFromASmallSceneIsAccurateToAPixel) {
+    View view = straight_view();
+    view.fov = 0.0124f;
+    for (const double distance : {1e3, 1e8, 1e14}) {
+        view.eye = Imath::V3d(distance / 3, -distance, 0.7);
+        view.look_at = Imath::V3d(0.2, 0.3, 0.1);
+        const Ray ray = Camera(view, 1600, 900, world).ray(800, 450);
+        const Imath::V3d to_scene = view.look_at - Imath::V3d(ray.origin), direction(ray.direction);
+        const double pixel = to_scene.length() * 0.0124 * std::numbers::pi / 180 / 900;
+        EXPECT_LT((to_scene - direction * to_scene.dot(direction)).length(), pixel) << distance;
+    }
+}
+
 TEST(Camera, RefusesImpossibleSizes) {
     EXPECT_THAT(refusal(straight_view(), 0, 9), testing::HasSubstr("0 x 9 pixels"));
     EXPECT_THAT(refusal(straight_view(), 16, -1), testing::HasSubstr("16 x -1 pixels"));

@@ -167,6 +167,12 @@ TEST(Polygon, BowTieGetsItsCrossingAsAVertex) {
     EXPECT_NEAR(o.area(), 4.0 * 2 / 2 + 2.0 * 1 / 2, 1e-5);
 }
 
+// Seen to fail as 'degenerate': a face 4 m wide was said to have no area.
+TEST(Polygon, ThatCrossesItselfIntoNothingIsNotCalledWithoutArea) {
+    EXPECT_EQ(offer({{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {4, 3, 0}}).result, PolygonResult::self_crossing);
+    EXPECT_EQ(offer({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {4, 0, 0}}).result, PolygonResult::self_crossing);
+}
+
 TEST(Polygon, WithoutAreaIsDegenerate) {
     EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).result, PolygonResult::degenerate);
     EXPECT_EQ(offer({{0, 0, 0}, {1, 1, 1}, {1, 1, 1}}).result, PolygonResult::degenerate);

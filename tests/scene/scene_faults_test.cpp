@@ -27,6 +27,10 @@ Scene valid_scene() {
     return scene;
 }
 
+void scale(Scene& scene, float factor) {
+    for (V3f& x : scene.vertices) x *= factor;
+}
+
 struct Fault {
     const char* name;
     std::function<void(Scene&)> make;
@@ -76,18 +80,52 @@ INSTANTIATE_TEST_SUITE_P(
                   s.patches[2].vertices = {0, 1, 1, none};
               },
               "patch 2 has no area"},
+        Fault{"far_vertex", [](Scene& s) { s.vertices[1].y = 1e38f; },
+              "vertex 1 is (0.5, 1e+38, 0), farther than 1e+15"},
+        Fault{"far_origin", [](Scene& s) { s.origin.z = -1e16; }, "the origin is (0, 0, -1e+16), farther than 1e+15"},
+        Fault{"nan_origin", [](Scene& s) { s.origin.z = std::nan(""); }, "the origin is not finite"},
+        Fault{"far_contact",
+              [](Scene& s) {
+                  s.contacts = {{{0, 0, 0}, {0, 2e15f, 0}}};
+              },
+              "contact 0 is ("},
+        Fault{"wide_patch", [](Scene& s) { scale(s, 1e7f); }, "patch 0 is 1.12e+07 m wide; at most 1e+07 m"},
+        Fault{"tiny_patch",
+              [](Scene& s) {
+                  s.vertices.push_back({1e-10f, 0, 0}), s.vertices.push_back({0, 1e-10f, 0});
+                  s.patches[0].vertices = {0, 6, 7, none};
+              },
+              "patch 0 has an area of 5e-21 m2; at least 1e-18"},
+        Fault{"narrow_scene", [](Scene& s) { scale(s, 5e-7f); }, "the scene is only 7.07e-07 m wide"},
+        Fault{"weak_exitance", [](Scene& s) { s.materials[0].exitance = Rgb(9e-10f); }, "'material 0': exitance"},
+        Fault{"strong_exitance", [](Scene& s) { s.materials[0].exitance.y = 1.1e10f; }, "'material 0': exitance"},
         Fault{"missing_material", [](Scene& s) { s.patches[0].material = 1; }, "patch 0: there is no material 1"},
         Fault{"missing_object", [](Scene& s) { s.patches[0].object = 1; }, "patch 0: there is no object 1"},
         Fault{"missing_other_side", [](Scene& s) { s.patches[2].other_side = 4; }, "patch 2: its other side 4"},
         Fault{"wrong_other_side", [](Scene& s) { s.patches[0].other_side = 2; }, "patch 0: its other side 2"},
         Fault{"itself_as_other_side", [](Scene& s) { s.patches[0].other_side = 0; }, "patch 0: its other side 0"},
         Fault{"view_without_field", [](Scene& s) { s.views[0].fov = 0; }, "view ''"},
-        Fault{"view_from_nowhere", [](Scene& s) { s.views[0].eye.z = std::nanf(""); }, "view ''"}),
+        Fault{"view_from_nowhere", [](Scene& s) { s.views[0].eye.z = std::nanf(""); }, "view ''"},
+        Fault{"view_from_afar", [](Scene& s) { s.views[0].eye.x = 1e19; }, "view '': (1e+19, 0, 0) is farther than"},
+        Fault{"view_of_itself", [](Scene& s) { s.views[0].look_at = s.views[0].eye; }, "view '': eye and look-at"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(SceneFaults, OfAValidSceneAreNone) {
     EXPECT_EQ(scene_faults(valid_scene()), std::vector<std::string>());
     EXPECT_EQ(scene_faults(Scene()), std::vector<std::string>());
+}
+
+TEST(SceneFaults, AreNoneAtTheLimits) {
+    Scene widest = valid_scene(), narrowest = valid_scene(), far = valid_scene();
+    scale(widest, 8.9e6f), scale(narrowest, 7.2e-7f);
+    far.origin = Imath::V3d(-1e15, 1e15, 0);
+    far.views[0].eye = Imath::V3d(1e15, 0, 0);
+    far.views[0].look_at = Imath::V3d(-1e15, 0, 0);
+    for (Scene* const scene : {&widest, &narrowest, &far})
+        for (const float exitance : {0.0f, 1e-9f, 1e10f}) {
+            scene->materials[0].exitance = Rgb(exitance, 0, 0);
+            EXPECT_EQ(scene_faults(*scene), std::vector<std::string>()) << exitance;
+        }
 }
 
 TEST(SceneFaults, AreListedUpToTwenty) {

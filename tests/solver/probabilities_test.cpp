@@ -56,6 +56,14 @@ TEST_F(Weights, OfPowerAreTheSumOfTheChannelsTimesTheArea) {
     EXPECT_THAT(of_leaves(&Sampled::power), ElementsAre(6, 6, 0, 3, 6));
 }
 
+TEST_F(Weights, OfWhatIsNotFiniteAreZeroAndItIsTold) {
+    irradiance_[2].y = std::numeric_limits<float>::infinity();
+    irradiance_[5].x = std::nanf("");
+    const Light light(surfaces_, irradiance_);
+    EXPECT_THAT(of_leaves(&Sampled::power), ElementsAre(6, 0, 0, 3, 0));
+    for (std::uint32_t e = 0; e < 6; ++e) EXPECT_EQ(light.is_lost(forest_, e), e == 2 || e == 5) << e;
+}
+
 TEST_F(Weights, OfPowerAreFiniteForEveryFiniteRadiosity) {
     irradiance_.assign(6, Rgb(std::numeric_limits<float>::max()));
     for (const double w : of_leaves(&Sampled::power)) EXPECT_TRUE(std::isfinite(w));

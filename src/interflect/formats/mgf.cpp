@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <unordered_map>
@@ -15,8 +14,12 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/mgf_contexts.h"
 #include "interflect/formats/mgf_curves.h"
+#include "interflect/formats/mgf_faults.h"
+#include "interflect/formats/mgf_objects.h"
 #include "interflect/formats/mgf_scene_builder.h"
+#include "interflect/formats/mgf_sources.h"
 #include "interflect/formats/mgf_transform.h"
+#include "interflect/formats/mgf_work.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
 
@@ -28,10 +31,6 @@ namespace fs = std::filesystem;
 using Imath::M44d;
 using Imath::V3d;
 using Words = std::span<const std::string_view>;
-
-/// What arrays and includes may make the reader go over, in words: a two-sided quadrilateral that defines its own
-/// vertices takes 33. It stops files that nest copies of nothing.
-constexpr std::uint64_t repeated_words = 100'000, repeated_words_per_patch = 25;
 
 /// What is wrong with the line being read; where it is read, file and line are added.
 using Fault = std::invalid_argument;
@@ -55,12 +54,6 @@ bool has_three_distinct(Words words) {
     return std::any_of(second, words.end(), [&](auto w) { return w != words.front() && w != *second; });
 }
 
-struct SourceFile {
-    SourceFile(fs::path p, std::string t) : path(std::move(p)), text(std::move(t)) {}
-    fs::path path;
-    std::string text;
-};
-
 /// A file in the middle of being read, with how much was open when it began: it can close no more than it opened.
 struct OpenFile {
     const SourceFile& source;
@@ -80,27 +73,24 @@ struct OpenTransform {
     bool repeating = false;
 };
 
-struct OpenObject {
-    std::string dotted_name;
-    Location opened;
-    bool is_copy = false;                      // of an array: only its `xf` closes it
-    std::optional<std::uint32_t> scene_index;  // in Scene::objects, once a patch was made
-};
-
 class Reader {
   public:
     /// @param origin  What the scene is made relative to.
     Reader(const fs::path& path, const ReadOptions& options, const V3d& origin);
     void read(const fs::path& path, std::string text);
     V3d suitable_origin() const { return scene_.suitable_origin(); }
-    Scene finish() { return scene_.finish(); }
+    Scene finish();
 
   private:
     using Handler = void (Reader::*)(Words);
+    /// What an entity defines, and so what bears its faults: where that is a colour or a material, only its use is
+    /// refused.
+    enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
         std::size_t fewest, most;  // arguments
         const char* usage;
+        Defines defines = Defines::other;
     };
     static const std::unordered_map<std::string_view, Entity>& entities();
 
@@ -108,12 +98,12 @@ class Reader {
     void read_file(const SourceFile& source, Words transform);
     void read_lines();
     void read_line(Words words);
+    void apply(const Entity& entity, Words arguments);
+    void defer(Defines defines, const std::string& message);
     void close_all();
-    const SourceFile& add_source(const fs::path& path, std::string&& text);
-    const SourceFile& included(std::string_view name);
     void refuse_recursion(const SourceFile& source) const;
     Location here() const { return {&file_->source.path, file_->lines.line()}; }
-    void count_repeated(std::size_t words);
+    void count_repeated(std::uint64_t words);
 
     // Entities, as in the table.
     void include(Words words);
@@ -150,6 +140,7 @@ class Reader {
     double fraction(std::string_view word);
     V3d normal_of(std::string_view vertex);
     void add_loop(Words names);
+    std::uint32_t usable_material();
     void add_face();
     void add_mesh(const Mesh& mesh);
     void open_transform(Words words, const LineReader::Position& body);
@@ -157,25 +148,23 @@ class Reader {
     M44d total_transform() const { return transforms_.empty() ? M44d() : transforms_.back().total; }
     void place_copy(OpenTransform& transform);
     bool next_copy(OpenTransform& transform);
-    void open_object(std::string_view name, bool is_copy);
-    void close_objects(std::size_t depth);
-    std::uint32_t current_object();
 
     ReadOptions options_;
-    std::map<fs::path, SourceFile> sources_;  // by canonical path; contexts hold views of the texts
-    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // the same by the path as it was written
+    MgfSources sources_;
     OpenFile* file_ = nullptr;
     int include_depth_ = 0, repeating_arrays_ = 0;
-    std::uint64_t repeated_words_ = 0;
-    ContextTable<Chromaticity> colours_;
+    RepeatedWork repeated_;
+    MgfFaults faults_;
+    ContextTable<MgfColour> colours_;
     ContextTable<MgfMaterial> materials_;
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenTransform> transforms_;
-    std::vector<OpenObject> objects_;
     std::vector<std::vector<std::uint32_t>> loops_;  // of the face being read
     std::vector<V3d> outline_;                       // its first loop, in the world
-    std::string unknown_entity_;                     // message for all of them, with the first one's name
+    // Messages for all of a kind, with the first one's particulars.
+    std::string unknown_entity_, unused_fault_;
     MgfSceneBuilder scene_;
+    MgfObjects objects_;
 };
 
 const std::unordered_map<std::string_view, Reader::Entity>& Reader::entities() {
@@ -184,18 +173,18 @@ const std::unordered_map<std::string_view, Reader::Entity>& Reader::entities() {
         {"i", {&Reader::include, 1, any, "i file [transform]"}},
         {"ies", {&Reader::skip_ies, 0, any, "ies file [-m multiplier] [transform]"}},
         {"c", {&Reader::colour, 0, 3, "c [name [= [template]]]"}},
-        {"cxy", {&Reader::colour_xy, 2, 2, "cxy x y"}},
-        {"cspec", {&Reader::colour_spectrum, 4, any, "cspec shortest longest value1 value2 ..."}},
-        {"cct", {&Reader::colour_temperature, 1, 1, "cct kelvin"}},
-        {"cmix", {&Reader::colour_mix, 4, any, "cmix weight1 colour1 weight2 colour2 ..."}},
+        {"cxy", {&Reader::colour_xy, 2, 2, "cxy x y", Defines::colour}},
+        {"cspec", {&Reader::colour_spectrum, 4, any, "cspec shortest longest value1 value2 ...", Defines::colour}},
+        {"cct", {&Reader::colour_temperature, 1, 1, "cct kelvin", Defines::colour}},
+        {"cmix", {&Reader::colour_mix, 4, any, "cmix weight1 colour1 weight2 colour2 ...", Defines::colour}},
         {"m", {&Reader::material, 0, 3, "m [name [= [template]]]"}},
-        {"sides", {&Reader::sides, 1, 1, "sides 1|2"}},
-        {"rd", {&Reader::diffuse_reflectance, 1, 1, "rd reflectance"}},
-        {"td", {&Reader::diffuse_transmittance, 1, 1, "td transmittance"}},
-        {"rs", {&Reader::specular_reflectance, 2, 2, "rs reflectance roughness"}},
-        {"ts", {&Reader::specular_transmittance, 2, 2, "ts transmittance roughness"}},
-        {"ed", {&Reader::exitance, 1, 1, "ed exitance"}},
-        {"ir", {&Reader::refraction, 2, 2, "ir real imaginary"}},
+        {"sides", {&Reader::sides, 1, 1, "sides 1|2", Defines::material}},
+        {"rd", {&Reader::diffuse_reflectance, 1, 1, "rd reflectance", Defines::material}},
+        {"td", {&Reader::diffuse_transmittance, 1, 1, "td transmittance", Defines::material}},
+        {"rs", {&Reader::specular_reflectance, 2, 2, "rs reflectance roughness", Defines::material}},
+        {"ts", {&Reader::specular_transmittance, 2, 2, "ts transmittance roughness", Defines::material}},
+        {"ed", {&Reader::exitance, 1, 1, "ed exitance", Defines::material}},
+        {"ir", {&Reader::refraction, 2, 2, "ir real imaginary", Defines::material}},
         {"v", {&Reader::vertex, 0, 3, "v [name [= [template]]]"}},
         {"p", {&Reader::point, 3, 3, "p x y z"}},
         {"n", {&Reader::normal, 3, 3, "n x y z"}},
@@ -215,23 +204,34 @@ const std::unordered_map<std::string_view, Reader::Entity>& Reader::entities() {
 
 Reader::Reader(const fs::path& path, const ReadOptions& options, const V3d& origin)
     : options_(options),
+      repeated_(options.max_patches),
       colours_("colour", options.max_name_length),
       materials_("material", options.max_name_length),
       vertices_("vertex", options.max_name_length),
-      scene_(path, options, origin) {}
+      scene_(path, options, origin),
+      objects_(options_, scene_) {}
 
-void Reader::read(const fs::path& path, std::string text) { read_file(add_source(path, std::move(text)), {}); }
+void Reader::read(const fs::path& path, std::string text) {
+    scene_.add_file(path);
+    read_file(sources_.add(path, std::move(text)).first, {});
+}
+
+Scene Reader::finish() {
+    // A file without a face is refused anyway; what is wrong with it says more.
+    if (scene_.patch_count() == 0) faults_.refuse_first();
+    return scene_.finish();
+}
 
 // ---- Files and lines
 
 /// @param transform  What an `i` gives with the file; it is in force until the end of the file, and read again for each
 ///                   copy where it is an array.
 void Reader::read_file(const SourceFile& source, Words transform) {
-    OpenFile file{source, LineReader(source.text), 0, objects_.size(), file_};
+    OpenFile file{source, LineReader(source.text), 0, objects_.depth(), file_};
     const LineReader::Position start = file.lines.position();
     if (!transform.empty()) open_transform(transform, start);
     file.outer_transforms = transforms_.size();
-    file.outer_objects = objects_.size();
+    file.outer_objects = objects_.depth();
     OpenFile* const includer = std::exchange(file_, &file);
     bool again = false;
     do {
@@ -265,20 +265,40 @@ void Reader::read_line(Words words) {
         return;
     }
     const Entity& entity = entry->second;
-    const Words arguments = words.subspan(1);
+    if (entity.defines == Defines::other) {
+        apply(entity, words.subspan(1));
+    } else {
+        try {
+            apply(entity, words.subspan(1));
+        } catch (const Fault& fault) {
+            defer(entity.defines, fault.what());
+        }
+    }
+}
+
+void Reader::apply(const Entity& entity, Words arguments) {
     if (arguments.size() < entity.fewest || arguments.size() > entity.most)
         throw Fault(fmt::format("expected '{}', found {} argument{}", entity.usage, arguments.size(),
                                 arguments.size() == 1 ? "" : "s"));
     (this->*entity.handle)(arguments);
 }
 
-void Reader::count_repeated(std::size_t words) {
-    if (include_depth_ == 0 && repeating_arrays_ == 0) return;
-    repeated_words_ += words;
-    if (repeated_words_ > repeated_words + repeated_words_per_patch * options_.max_patches)
-        throw Fault(
-            fmt::format("arrays and includes repeat more than {} patches could need; --max-patches raises the limit",
-                        options_.max_patches));
+/// Leaves a fault to the colour or material that has it, with a warning in case that no face uses it.
+void Reader::defer(Defines defines, const std::string& message) {
+    if (unused_fault_.empty())
+        unused_fault_ = "fault in a colour or material that no face uses is ignored, such as: " + message;
+    scene_.warn("unused-fault", unused_fault_, here());
+    const std::uint32_t fault = faults_.add(here(), message);
+    if (defines == Defines::colour) {
+        colours_.current() = {{}, fault};
+        return;
+    }
+    MgfMaterial& material = changed_material();
+    if (material.fault == none) material.fault = fault;
+}
+
+void Reader::count_repeated(std::uint64_t words) {
+    if (include_depth_ > 0 || repeating_arrays_ > 0) repeated_.add(words, scene_.patch_count());
 }
 
 /// At the end of a file: what is still open was cut off, or forgotten.
@@ -288,26 +308,7 @@ void Reader::close_all() {
         scene_.warn("unclosed-transform", "transform (xf) is not closed before the end of its file", transform.opened);
         repeating_arrays_ -= transform.repeating;
     }
-    close_objects(file_->outer_objects);
-}
-
-const SourceFile& Reader::add_source(const fs::path& path, std::string&& text) {
-    std::error_code ignored;  // what has no canonical path gets an empty one
-    const auto [source, is_new] = sources_.try_emplace(fs::weakly_canonical(path, ignored), path, std::move(text));
-    if (is_new) scene_.add_file(path);
-    source_of_path_.emplace(path.string(), &source->second);
-    return source->second;
-}
-
-const SourceFile& Reader::included(std::string_view name) {
-    const fs::path path = file_->source.path.parent_path() / name;
-    const auto known = source_of_path_.find(path.string());
-    if (known != source_of_path_.end()) return *known->second;
-    try {
-        return add_source(path, read_text_file(path));
-    } catch (const InputError& unreadable) {
-        throw Fault(unreadable.what());
-    }
+    objects_.close_down_to(file_->outer_objects);
 }
 
 void Reader::refuse_recursion(const SourceFile& source) const {
@@ -323,9 +324,11 @@ void Reader::refuse_recursion(const SourceFile& source) const {
 void Reader::include(Words words) {
     if (include_depth_ >= options_.max_include_depth)
         throw Fault(fmt::format("includes are nested more than {} deep", options_.max_include_depth));
-    const SourceFile& source = included(words[0]);
+    const auto& [source, is_new] = sources_.find(words[0], file_->source);
+    if (is_new) scene_.add_file(source.path);
     refuse_recursion(source);
     ++include_depth_;
+    count_repeated(RepeatedWork::words_per_include);
     read_file(source, words.subspan(1));
     --include_depth_;
 }
@@ -335,25 +338,35 @@ void Reader::skip_ies(Words) { scene_.warn("ies", "luminaire with measured photo
 // ---- Colours
 
 void Reader::colour_xy(Words words) {
+    constexpr double least_y = 1e-6;
     const Chromaticity c{number(words[0]), number(words[1])};
-    if (c.x < 0 || c.y <= 0 || c.x + c.y > 1)
-        throw Fault(fmt::format("({}, {}) is no chromaticity: x >= 0, y > 0, x + y <= 1", c.x, c.y));
-    colours_.current() = c;
+    if (c.x < 0 || c.y < 0 || c.x + c.y > 1)
+        throw Fault(fmt::format("({}, {}) is no chromaticity: x >= 0, y >= 0, x + y <= 1", c.x, c.y));
+    if (c.y < least_y)
+        scene_.warn("no-luminance", "chromaticity without luminance (y = 0) is taken as one with y = 1e-6", here());
+    colours_.current() = {{c.x, std::max(c.y, least_y)}};
 }
 
 void Reader::colour_spectrum(Words words) {
     std::vector<double> values;
     for (const std::string_view word : words.subspan(2)) values.push_back(number(word));
-    colours_.current() = chromaticity_of_spectrum(number(words[0]), number(words[1]), values);
+    colours_.current() = {chromaticity_of_spectrum(number(words[0]), number(words[1]), values)};
 }
 
-void Reader::colour_temperature(Words words) { colours_.current() = chromaticity_of_black_body(number(words[0])); }
+void Reader::colour_temperature(Words words) { colours_.current() = {chromaticity_of_black_body(number(words[0]))}; }
 
 void Reader::colour_mix(Words words) {
     if (words.size() % 2 != 0) throw Fault("cmix takes pairs of a weight and a colour");
     std::vector<MixedColour> parts;
-    for (std::size_t i = 0; i < words.size(); i += 2) parts.push_back({number(words[i]), colours_.find(words[i + 1])});
-    colours_.current() = mix(parts);
+    for (std::size_t i = 0; i < words.size(); i += 2) {
+        const MgfColour& part = colours_.find(words[i + 1]);
+        if (part.fault != none) {
+            colours_.current() = part;
+            return;
+        }
+        parts.push_back({number(words[i]), part.chromaticity});
+    }
+    colours_.current() = {mix(parts)};
 }
 
 // ---- Materials
@@ -435,13 +448,24 @@ void Reader::add_loop(Words names) {
     if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
 
-void Reader::add_face() {
+/// Index of the current material, which a face uses: now its faults count.
+std::uint32_t Reader::usable_material() {
     MgfMaterial& material = materials_.current();
-    scene_.add_face(loops_, scene_.material(material, materials_.current_name()), current_object(), material.two_sided,
-                    here());
+    faults_.refuse_faults_of(material);
+    return scene_.material(material, materials_.current_name());
+}
+
+void Reader::add_face() {
+    const std::uint32_t material = usable_material();
+    scene_.add_face(loops_, material, objects_.current(), materials_.current().two_sided, here());
 }
 
 void Reader::face(Words words) {
+    if (!has_three_distinct(words)) {
+        for (const std::string_view name : words) vertices_.find(name);
+        scene_.leave_out("face with fewer than three different vertices is left out", here());
+        return;
+    }
     loops_.clear();
     add_loop(words);
     add_face();
@@ -462,8 +486,7 @@ void Reader::face_with_holes(Words words) {
 }
 
 void Reader::add_mesh(const Mesh& mesh) {
-    MgfMaterial& material = materials_.current();
-    const std::uint32_t material_index = scene_.material(material, materials_.current_name());
+    const std::uint32_t material = usable_material();
     const M44d to_world = total_transform();
     const bool mirrored = to_world.determinant() < 0;
     count_repeated(mesh.faces.size());
@@ -483,7 +506,7 @@ void Reader::add_mesh(const Mesh& mesh) {
         }
         scene_.place_face(outline_);
         if (mirrored) std::reverse(loops_[0].begin(), loops_[0].end());
-        scene_.add_face(loops_, material_index, current_object(), material.two_sided, here());
+        scene_.add_face(loops_, material, objects_.current(), materials_.current().two_sided, here());
     }
 }
 
@@ -561,9 +584,7 @@ void Reader::open_transform(Words words, const LineReader::Position& body) {
 bool Reader::close_transform() {
     OpenTransform& transform = transforms_.back();
     if (transform.sequence.is_array()) {
-        // The copy's own object, and what was left open in it.
-        auto copy = std::find_if(objects_.rbegin(), objects_.rend(), [](const OpenObject& o) { return o.is_copy; });
-        close_objects(static_cast<std::size_t>(objects_.rend() - copy) - 1);
+        objects_.close_copy();
         if (next_copy(transform)) {
             place_copy(transform);
             file_->lines.seek(transform.body);
@@ -581,7 +602,7 @@ void Reader::place_copy(OpenTransform& transform) {
     if (transforms_.size() > 1) transform.total = transform.total * transforms_[transforms_.size() - 2].total;
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(transform.total[i / 4][i % 4])) throw Fault("the transform is not finite");
-    if (transform.sequence.is_array()) open_object(fmt::format("a{}", fmt::join(transform.copy, ".")), true);
+    if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());
 }
 
 /// Counts on to the next copy, the last array fastest. @return false after the last one
@@ -594,7 +615,7 @@ bool Reader::next_copy(OpenTransform& transform) {
         transform.repeating = true;
         ++repeating_arrays_;
     }
-    count_repeated(1);
+    count_repeated(RepeatedWork::words_per_copy);
     for (std::size_t i = transform.copy.size(); i-- > 0;) {
         if (++transform.copy[i] < transform.sequence.array_sizes()[i]) return true;
         transform.copy[i] = 0;
@@ -605,37 +626,10 @@ bool Reader::next_copy(OpenTransform& transform) {
 // ---- Objects
 
 void Reader::object(Words words) {
-    if (!words.empty()) {
-        open_object(words[0], false);
-    } else if (objects_.size() > file_->outer_objects && !objects_.back().is_copy) {
-        objects_.pop_back();
-    } else {
+    if (!words.empty())
+        objects_.open(words[0], false, here());
+    else if (!objects_.close_innermost(file_->outer_objects))
         scene_.warn("unbalanced-object", "this closes an object (o), but none is open here", here());
-    }
-}
-
-void Reader::open_object(std::string_view name, bool is_copy) {
-    if (objects_.size() >= static_cast<std::size_t>(options_.max_nesting))
-        throw Fault(fmt::format("objects are nested more than {} deep", options_.max_nesting));
-    const std::string outer = objects_.empty() ? "" : objects_.back().dotted_name + '.';
-    if (name.size() > options_.max_name_length || outer.size() + name.size() > 4 * options_.max_name_length)
-        throw Fault(fmt::format("the object's name is too long: at most {} characters, {} with those around it",
-                                options_.max_name_length, 4 * options_.max_name_length));
-    objects_.push_back({outer + std::string(name), here(), is_copy, std::nullopt});
-}
-
-void Reader::close_objects(std::size_t depth) {
-    for (; objects_.size() > depth; objects_.pop_back())
-        if (!objects_.back().is_copy)
-            scene_.warn("unclosed-object", "object (o) is not closed before the end of its file or array",
-                        objects_.back().opened);
-}
-
-std::uint32_t Reader::current_object() {
-    if (objects_.empty()) return 0;
-    std::optional<std::uint32_t>& index = objects_.back().scene_index;
-    if (!index) index = scene_.object(objects_.back().dotted_name);
-    return *index;
 }
 
 ReadOptions checked(const ReadOptions& options) {

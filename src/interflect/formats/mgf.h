@@ -16,6 +16,8 @@ namespace interflect {
 ///   material has `sides 1`, else two. Faces that meet at exactly the same position share a vertex. Vertex normals
 ///   (`n`) orient rings and tori and are not kept otherwise.
 /// * `c cxy cspec cct cmix` give colours in linear Rec. 709 as to_rec709() has it; MGF's neutral is R = G = B.
+///   Spectra and the weights of mixtures may have negative values; chromaticities without luminance count as bluest or
+///   reddest. What lies outside Rec. 709 is desaturated.
 /// * `rd` and `ed` [lm/m^2] become reflectance, each channel at most 0.99, and exitance. `rs td ts` are left out:
 ///   warnings "specular-reflection", "diffuse-transmission", "specular-transmission" tell the share. `ir` is checked
 ///   only.
@@ -28,16 +30,19 @@ namespace interflect {
 /// (origin_for), so that it keeps its precision.
 ///
 /// Scene::files lists the files read. Warnings are counted under these kinds: "unsupported-entity", "ies",
-/// "reflectance-clamped", "out-of-gamut", "degenerate-face" (no wider than the rounding of its vertices),
-/// "unbalanced-object", "unclosed-object", "unclosed-transform" and those above. Time and memory are linear in the
-/// text, with arrays written out.
+/// "reflectance-clamped", "out-of-gamut", "no-luminance", "unused-fault" (in a colour or material that no face uses),
+/// "degenerate-face" (fewer than three different vertices, no wider than their rounding, or nothing left of its area
+/// where its outline crosses itself), "unbalanced-object", "unclosed-object", "unclosed-transform" and those above.
+/// Time and memory are linear in the text, with arrays written out.
 ///
 /// @throws InputError  with file, line and what was expected, where a file cannot be read, an entity lacks arguments,
 /// has a
 ///         number that is not finite in single precision or out of its range, names what is not defined, or goes beyond
-///         a limit of `options`; where a face lies beyond farthest_coordinate, or so far from the others that rounding
-///         would leave nothing of it though it is as large as they are; where a face names fewer than three different
-///         vertices; where a file includes itself; where no face with an area is left.
+///         a limit of `options`, all this in a colour or material only where a face uses it; where a face or an
+///         exitance is beyond what can be computed (limits.h), or a face so far from the others that rounding would
+///         leave nothing of it though it is as large as they are; where a hole names fewer than three different
+///         vertices; where a file includes itself; where arrays and includes go over much more than they make; where no
+///         face with an area is left.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from memory. @param path  Name for messages; its folder is where includes are looked for.

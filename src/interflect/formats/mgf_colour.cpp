@@ -39,6 +39,17 @@ V3d colour_matching_at(double wavelength) {
     return row(colour_matching[i]) * (1 - t) + row(colour_matching[i + 1]) * t;
 }
 
+/// Of its tristimulus values, below which a colour has no luminance, or no chromaticity.
+constexpr double least_share = 1e-6;
+
+/// Tristimulus values may be negative: only their ratio to the luminance counts. @throws std::invalid_argument
+Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
+    const double size = std::abs(xyz.x) + std::abs(xyz.y) + std::abs(xyz.z), total = xyz.x + xyz.y + xyz.z;
+    if (!(std::abs(xyz.y) > least_share * size && std::abs(total) > least_share * size))
+        throw std::invalid_argument(fault);
+    return {xyz.x / total, xyz.y / total};
+}
+
 /// Tristimulus values of a spectrum, scaled so that equal energy gives equal values.
 template <class Spectrum>
 Chromaticity integrate(const Spectrum& spectrum) {
@@ -48,11 +59,7 @@ Chromaticity integrate(const Spectrum& spectrum) {
         sum += weight * spectrum(nm);
         equal_energy += weight;
     }
-    const V3d xyz = sum / equal_energy;
-    const double total = xyz.x + xyz.y + xyz.z;
-    if (!(xyz.x >= 0 && xyz.y > 0 && xyz.z >= 0) || !std::isfinite(total))
-        throw std::invalid_argument("the spectrum has no light between 380 and 780 nm");
-    return {xyz.x / total, xyz.y / total};
+    return chromaticity_of(sum / equal_energy, "the spectrum has no light between 380 and 780 nm");
 }
 
 V3d xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
@@ -122,13 +129,9 @@ Chromaticity chromaticity_of_black_body(double kelvin) {
 
 Chromaticity mix(std::span<const MixedColour> parts) {
     V3d xyz(0);
-    for (const auto& [weight, colour] : parts) {
-        if (!(weight >= 0)) throw std::invalid_argument("a weight must not be negative");
-        xyz += xyz_of(colour.x, colour.y) * weight;
-    }
-    if (!(xyz.y > 0)) throw std::invalid_argument("at least one weight must be positive");
-    const double total = xyz.x + xyz.y + xyz.z;
-    return {xyz.x / total, xyz.y / total};
+    for (const auto& [weight, colour] : parts) xyz += xyz_of(colour.x, colour.y) * weight;
+    if (!(xyz.y > 0)) throw std::invalid_argument("the weights must have a positive sum");
+    return chromaticity_of(xyz, "the mixed colours leave nothing of each other");
 }
 
 Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double largest) {

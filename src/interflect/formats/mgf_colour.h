@@ -6,15 +6,17 @@
 
 namespace interflect {
 
-/// CIE 1931 chromaticity; the default is MGF's neutral, that of a spectrum of equal energy (illuminant E).
+/// CIE 1931 chromaticity; that of a spectrum with negative values may lie outside the triangle of x, y >= 0. The
+/// default is MGF's neutral, that of a spectrum of equal energy (illuminant E).
 struct Chromaticity {
     double x = 1.0 / 3, y = 1.0 / 3;
 };
 
 /// The chromaticity of a spectrum: values at equal steps of wavelength from `first` to `last` [nm], interpolated
-/// linearly, zero elsewhere; only 380 to 780 nm counts. A flat spectrum over that range gives exactly neutral.
+/// linearly, zero elsewhere; only 380 to 780 nm counts. A flat spectrum over that range gives exactly neutral. Values
+/// may be negative, as in a basis of which daylight is mixed: what counts is the ratio of X and Z to Y.
 /// @param values  Two or more, in any unit.
-/// @throws std::invalid_argument  where first >= last, or the spectrum does not sum to positive tristimulus values.
+/// @throws std::invalid_argument  where first >= last, or the spectrum's luminance, or X + Y + Z, is zero.
 Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const double> values);
 
 /// The chromaticity of a black body. @param kelvin  At least 1000, as MGF has it. @throws std::invalid_argument below.
@@ -22,12 +24,12 @@ Chromaticity chromaticity_of_black_body(double kelvin);
 
 /// One part of a mixture.
 struct MixedColour {
-    double weight = 0;  ///< Share of the luminance, >= 0; need not sum to 1.
+    double weight = 0;  ///< Share of the luminance; need not sum to 1, and may be negative.
     Chromaticity colour;
 };
 
 /// MGF's mixture: weights are of luminance, whether the parts were given as spectra or chromaticities, so that only the
-/// parts' chromaticities matter. @throws std::invalid_argument where a weight is negative or all are zero.
+/// parts' chromaticities matter. @throws std::invalid_argument where their sum is not positive.
 Chromaticity mix(std::span<const MixedColour> parts);
 
 /// Bound of every channel of a reflectance that is read: interflection between surfaces that lose nothing would never

@@ -76,13 +76,20 @@ struct Location {
     std::string text() const { return file ? fmt::format("{}:{}", file->string(), line) : std::string(); }
 };
 
+/// MGF's colour.
+struct MgfColour {
+    Chromaticity chromaticity;
+    std::uint32_t fault = none;  ///< In MgfFaults, where what defines it is wrong.
+};
+
 /// MGF's material; black and two-sided by default. Reflectances, transmittances: luminous, 0 to 1.
 struct MgfMaterial {
     bool two_sided = true;
     double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular reflectance and transmittance.
     double ed = 0;                          ///< Exitance [lm/m^2].
-    Chromaticity rd_colour, ed_colour;
+    MgfColour rd_colour, ed_colour;
     Location defined;                  ///< The last line that changed it.
+    std::uint32_t fault = none;        ///< In MgfFaults: the first thing wrong with what defines it.
     std::uint32_t scene_index = none;  ///< In Scene::materials, once a face has used it as it is.
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "interflect/base/error.h"
+#include "interflect/scene/limits.h"
 #include "interflect/scene/polygon.h"
 
 namespace interflect {
@@ -44,46 +45,41 @@ void MgfSceneBuilder::warn(const std::string& kind, const std::string& message, 
 }
 
 void MgfSceneBuilder::require_room(double patches) const {
-    if (static_cast<double>(scene_.patches.size()) + patches > static_cast<double>(options_.max_patches))
+    if (static_cast<double>(scene_.patches.size() + left_out_) + patches > static_cast<double>(options_.max_patches))
         throw std::invalid_argument(
             fmt::format("this would give more than {} patches; --max-patches raises the limit", options_.max_patches));
 }
 
 std::uint32_t MgfSceneBuilder::vertex(const Imath::V3d& position) {
-    if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= farthest_coordinate))
+    if (!is_within_reach(position) || !is_within_reach(position - scene_.origin))
         throw std::invalid_argument(
             fmt::format("the transformed point ({}, {}, {}) is farther than {:g} m from the origin, which is too far",
                         position.x, position.y, position.z, farthest_coordinate));
     return weld_.vertex(V3f(position - scene_.origin));
 }
 
-Rgb MgfSceneBuilder::reflectance(const MgfMaterial& material) {
-    const Rec709Colour colour = to_rec709(material.rd_colour, material.rd, largest_reflectance);
-    if (colour.too_bright)
+Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double largest, const Location& where) {
+    const Rec709Colour result = to_rec709(colour.chromaticity, luminance, largest);
+    if (result.out_of_gamut && luminance > 0)
+        warn("out-of-gamut", "colour outside Rec. 709 is desaturated, its luminance is kept", where);
+    if (result.too_bright)
         warn("reflectance-clamped",
-             "diffuse reflectance above 0.99, at least in one colour channel, is reduced to 0.99", material.defined);
-    if (colour.out_of_gamut && material.rd > 0)
-        warn("out-of-gamut", "colour outside Rec. 709 is desaturated, its luminance is kept", material.defined);
-    return colour.rgb;
-}
-
-Rgb MgfSceneBuilder::exitance(const MgfMaterial& material) {
-    const Rec709Colour colour = to_rec709(material.ed_colour, material.ed, std::numeric_limits<float>::max());
-    if (colour.too_bright)
-        throw std::invalid_argument(
-            fmt::format("the exitance of {} lm/m2 is not finite in single precision", material.ed));
-    if (colour.out_of_gamut && material.ed > 0)
-        warn("out-of-gamut", "colour outside Rec. 709 is desaturated, its luminance is kept", material.defined);
-    return colour.rgb;
+             "diffuse reflectance above 0.99, at least in one colour channel, is reduced to 0.99", where);
+    return result.rgb;
 }
 
 std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view name) {
     if (material.scene_index != none) return material.scene_index;
-    const Material converted{std::string(name), reflectance(material), exitance(material)};
+    constexpr double unbounded = std::numeric_limits<float>::max();
+    const Material result{std::string(name),
+                          converted(material.rd_colour, material.rd, largest_reflectance, material.defined),
+                          converted(material.ed_colour, material.ed, unbounded, material.defined)};
+    if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
+        throw InputError(*material.defined.file, material.defined.line, fault);
     const auto [entry, is_new] =
-        material_index_.try_emplace(identity(converted), static_cast<std::uint32_t>(scene_.materials.size()));
+        material_index_.try_emplace(identity(result), static_cast<std::uint32_t>(scene_.materials.size()));
     if (is_new) {
-        scene_.materials.push_back(converted);
+        scene_.materials.push_back(result);
         used_materials_.push_back(material);
     }
     return material.scene_index = entry->second;
@@ -111,11 +107,26 @@ void MgfSceneBuilder::place_face(std::span<const Imath::V3d> outline) {
 void MgfSceneBuilder::add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                                std::uint32_t object, bool two_sided, const Location& where) {
     require_room(two_sided ? 2 : 1);
-    if (add_polygon(scene_, loops, material, object, two_sided) == PolygonResult::degenerate) {
-        warn("degenerate-face", "face without area is left out", where);
+    const std::size_t before = scene_.patches.size();
+    const PolygonResult result = add_polygon(scene_, loops, material, object, two_sided);
+    require_room(0);  // one face may have become many patches
+    if (result == PolygonResult::self_crossing)
+        leave_out(
+            "face whose outline crosses itself or runs back along itself, so that its areas cancel, is left out; split "
+            "it",
+            where);
+    if (result == PolygonResult::degenerate) {
+        leave_out("face without area is left out", where);
         if (placed_.size > lost_.size) lost_ = {placed_.size, placed_.centre, where};
     }
-    require_room(0);  // one face may have become many patches
+    for (std::size_t i = before; i < scene_.patches.size(); ++i)
+        if (const std::string fault = patch_fault(scene_, scene_.patches[i]); !fault.empty())
+            throw std::invalid_argument("this face " + fault);
+}
+
+void MgfSceneBuilder::leave_out(const std::string& message, const Location& where) {
+    warn("degenerate-face", message, where);
+    if (left_out_++ == 0) first_left_out_ = {message, where};
 }
 
 void MgfSceneBuilder::warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share) {
@@ -144,11 +155,31 @@ void MgfSceneBuilder::require_precision() const {
                     lost_.size, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
 }
 
+/// That the scene is not too small: by the faces as they were, where rounding left nothing of them.
+void MgfSceneBuilder::require_width() const {
+    double width = scene_width(scene_);
+    if (scene_.patches.empty()) {
+        if (sample_.faces().empty()) return;
+        const Core core = core_of(sample_.faces());
+        width = 2 * core.reach;
+    }
+    if (const std::string fault = scene_width_fault(width); !fault.empty())
+        throw InputError(scene_.name, 0, "the scene " + fault);
+}
+
+void MgfSceneBuilder::require_patches() const {
+    if (!scene_.patches.empty()) return;
+    if (left_out_ > 0)
+        throw InputError(*first_left_out_.where.file, first_left_out_.where.line,
+                         fmt::format("no usable face is left: {} are left out, and this is the first of them: {}",
+                                     left_out_, first_left_out_.message));
+    throw InputError(scene_.name, 0, "no usable face is left: the scene is empty");
+}
+
 Scene MgfSceneBuilder::finish() {
+    require_width();
     require_precision();
-    if (scene_.patches.empty())
-        throw InputError(scene_.name, 0,
-                         "no usable face is left: the scene is empty, or none of its faces has an area");
+    require_patches();
     warn_of_lost("specular-reflection", "specular reflectance (rs)", &MgfMaterial::rs);
     warn_of_lost("diffuse-transmission", "diffuse transmittance (td)", &MgfMaterial::td);
     warn_of_lost("specular-transmission", "specular transmittance (ts)", &MgfMaterial::ts);

@@ -26,7 +26,7 @@ class MgfSceneBuilder {
     void add_file(const std::filesystem::path& file) { scene_.files.push_back(file.string()); }
 
     std::uint64_t patch_count() const { return scene_.patches.size(); }
-    /// @throws std::invalid_argument  where `patches` more would pass the limit.
+    /// @throws std::invalid_argument  where `patches` more would pass the limit, to which faces left out count as well.
     void require_room(double patches) const;
 
     /// Index of the vertex at `position` in the world [m].
@@ -37,9 +37,12 @@ class MgfSceneBuilder {
     std::uint32_t object(const std::string& name);
     /// Tells where the outline of the face that is added next lies in the world, before rounding.
     void place_face(std::span<const Imath::V3d> outline);
-    /// Adds a face; one without area is a counted warning.
+    /// Adds a face; one without area is left out.
     void add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
                   bool two_sided, const Location& where);
+
+    /// Counts a face that is left out. @param message  Says what kind of face.
+    void leave_out(const std::string& message, const Location& where);
 
     /// The origin that suits the faces added so far: where it is not the present one, the file should be read again.
     Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
@@ -49,8 +52,8 @@ class MgfSceneBuilder {
     Scene finish();
 
   private:
-    Rgb reflectance(const MgfMaterial& material);
-    Rgb exitance(const MgfMaterial& material);
+    /// @param largest  Bound of every channel: largest_reflectance, or the largest float for an exitance.
+    Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
     /// A face of which rounding leaves nothing.
@@ -59,12 +62,20 @@ class MgfSceneBuilder {
         Imath::V3d centre{0, 0, 0};
         Location where;
     };
+    struct LeftOut {
+        std::string message;
+        Location where;
+    };
+    void require_width() const;
     void require_precision() const;
+    void require_patches() const;
 
     Scene scene_;
     FaceSample sample_;
     LostFace placed_;  // the face that is added next; size 0 where its shape leaves nothing even before rounding
     LostFace lost_;    // the largest of them
+    LeftOut first_left_out_;
+    std::uint64_t left_out_ = 0;
     ReadOptions options_;
     VertexWeld weld_;
     std::unordered_map<std::string, std::uint32_t> material_index_, object_index_;

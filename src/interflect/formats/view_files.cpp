@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "interflect/base/error.h"
+#include "interflect/formats/json_text.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
+#include "interflect/scene/view.h"
 
 namespace interflect {
 
@@ -20,18 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::json;
-
-/// What is wrong with a view, or nullptr: it needs a direction, an up that is not along it, and an opening.
-const char* fault_of(const View& view) {
-    const Imath::V3d direction = view.look_at - view.eye, up(view.up);
-    constexpr double parallel = 1e-6;  // sine of the angle
-    if (!(direction.length() > 0)) return "the eye is where it looks at";
-    if (!(up.length() > 0)) return "up has no length";
-    if (!(up.normalized().cross(direction.normalized()).length() > parallel))
-        return "up is along the direction of view";
-    if (!(view.fov > 0 && view.fov < 180)) return "the field of view is not between 0 and 180 degrees";
-    return nullptr;
-}
 
 // ---- JSON
 
@@ -78,16 +67,6 @@ class Members {
     std::set<std::string> asked_for_;
 };
 
-json parse_json(const fs::path& path) {
-    const std::string text = read_text_file(path);
-    try {
-        return json::parse(text);
-    } catch (const json::parse_error& error) {
-        const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-        throw InputError(path, 1 + std::count(text.begin(), end, '\n'), fmt::format("no valid JSON: {}", error.what()));
-    }
-}
-
 View parse_view(const json& value, std::size_t index, const fs::path& path) {
     Members members(value, fmt::format("view {}", index + 1), path);
     View view;
@@ -99,7 +78,7 @@ View parse_view(const json& value, std::size_t index, const fs::path& path) {
     if (const json* up = members.find("up")) view.up = V3f(members.vector(*up, "up"));
     if (const json* fov = members.find("fov")) view.fov = static_cast<float>(members.number(*fov, "fov"));
     members.reject_others();
-    if (const char* fault = fault_of(view)) members.fail(fault);
+    if (const std::string fault = view_fault(view); !fault.empty()) members.fail(fault);
     return view;
 }
 
@@ -161,7 +140,7 @@ bool starts_a_view(std::string_view word) { return !word.starts_with('-') && !pa
 fs::path view_list_path(const fs::path& scene_path) { return fs::path(scene_path).replace_extension(".views.json"); }
 
 std::vector<View> read_view_list(const fs::path& path) {
-    const json document = parse_json(path);
+    const json document = parse_json(read_text_file(path), path);
     Members members(document, "the file", path);
     const json& list = members.require("views");
     if (!list.is_array()) members.fail("'views' must be a list");
@@ -206,7 +185,7 @@ View read_radiance_view(const fs::path& path) {
         throw InputError(path, 0, "this is no view: expected 'rvu -vtv -vp x y z -vd x y z -vu x y z -vh h -vv v'");
     View view = radiance_view.view();
     view.name = path.stem().string();
-    if (const char* fault = fault_of(view)) throw InputError(path, 0, fault);
+    if (const std::string fault = view_fault(view); !fault.empty()) throw InputError(path, 0, fault);
     return view;
 }
 

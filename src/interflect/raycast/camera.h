@@ -11,9 +11,8 @@ class Camera {
   public:
     /// Made before a solve, it finds all that render() could object to in a view and a size.
     /// @param origin  Scene::origin: its rays are relative to it, which is where views stop being in world coordinates.
-    /// @throws InputError, naming the view, where it defines no picture: a number that is not finite, eye or look-at
-    ///         farther than farthest_coordinate (scene.h) from 0, eye == look_at, `up` zero or along the direction of
-    ///         view, fov outside (0, 180). InputError where width or height is < 1 or there are more than
+    /// @throws InputError, naming the view, where it has a view_fault() (scene/view.h), or where its pixels are finer
+    ///         than the directions of rays, 2^-22 rad. InputError where width or height is < 1 or there are more than
     ///         most_image_pixels (base/image_size.h).
     Camera(const View& view, int width, int height, const Imath::V3d& origin);
 

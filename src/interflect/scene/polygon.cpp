@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "interflect/scene/limits.h"
 #include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
@@ -51,6 +52,7 @@ struct Frame {
     double size = 0;      ///< Diagonal of the bounding box [m].
     double rounding = 0;  ///< Heights below this are noise [m].
     bool degenerate = true;
+    bool self_crossing = false;  ///< Degenerate only since the outline goes round both ways.
 
     Frame(const Scene& scene, const Loop& outline) {
         if (outline.size() < 3) return;
@@ -66,6 +68,20 @@ struct Frame {
         const V3d area = doubled_area(scene, outline);
         degenerate = area.length() <= rounding * size;
         normal = area.normalized();
+        self_crossing = degenerate && width(scene, outline) > rounding;
+    }
+
+  private:
+    /// How far the outline reaches from the line through two of its vertices that are far apart.
+    static double width(const Scene& scene, const Loop& outline) {
+        const V3d start = position(scene, outline[0]);
+        V3d chord(0);
+        for (const std::uint32_t v : outline)
+            if ((position(scene, v) - start).length() > chord.length()) chord = position(scene, v) - start;
+        double width = 0;
+        for (const std::uint32_t v : outline)
+            width = std::max(width, (position(scene, v) - start).cross(chord.normalized()).length());
+        return width;
     }
 };
 
@@ -96,7 +112,7 @@ class PatchAdder {
         Patch front = front_;
         front.vertices = {a, b, c, d};
         // The rest of the program computes in single precision: its word counts.
-        if (!(patch_area(scene_, front) > 0)) return;
+        if (!(patch_area(scene_, front) >= smallest_face_area)) return;
         if (two_sided_) front.other_side = index + 1;
         scene_.patches.push_back(front);
         added_ = true;
@@ -198,7 +214,7 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
     if (clean.empty()) return PolygonResult::degenerate;
     const Loop& outline = clean[0];
     const Frame frame(scene, outline);
-    if (frame.degenerate) return PolygonResult::degenerate;
+    if (frame.degenerate) return frame.self_crossing ? PolygonResult::self_crossing : PolygonResult::degenerate;
 
     PatchAdder patches(scene, material, object, two_sided);
     if (clean.size() == 1 && outline.size() == 3) {

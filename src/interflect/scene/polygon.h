@@ -10,8 +10,9 @@ namespace interflect {
 
 /// What became of a polygon that was offered to a scene.
 enum class PolygonResult {
-    added,       ///< At least one patch was added.
-    degenerate,  ///< Nothing was added: the polygon is no wider than the rounding of its vertices.
+    added,          ///< At least one patch was added.
+    degenerate,     ///< Nothing was added: the polygon is no wider than the rounding of its vertices.
+    self_crossing,  ///< Nothing was added: its outline crosses itself, and the areas cancel, so that it has no front.
 };
 
 /// Adds a polygon, as a file gives it, to `scene`: a triangle as one patch, a convex quadrilateral that is planar to 1%

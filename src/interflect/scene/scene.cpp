@@ -5,7 +5,8 @@
 #include <algorithm>
 
 #include "interflect/base/error.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/scene/limits.h"
+#include "interflect/scene/view.h"
 
 namespace interflect {
 
@@ -15,50 +16,81 @@ constexpr std::size_t listed_faults = 20;
 
 bool is_reflectance(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0 && largest_channel(c) < 1; }
 
+/// The faults found so far, up to as many as are listed.
+class Faults {
+  public:
+    template <class Describe>
+    void check(bool holds, const Describe& describe) {
+        if (!holds && list_.size() < listed_faults) list_.push_back(describe());
+    }
+    /// @param fault  Empty where there is none.
+    template <class Name>
+    void add(const std::string& fault, const Name& name) {
+        check(fault.empty(), [&] { return name() + fault; });
+    }
+    std::vector<std::string> take() { return std::move(list_); }
+
+  private:
+    std::vector<std::string> list_;
+};
+
+bool has_vertices(const Scene& scene, const Patch& patch) {
+    return std::all_of(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(),
+                       [&](std::uint32_t v) { return v < scene.vertices.size(); });
+}
+
+void check_points(const Scene& scene, Faults& faults) {
+    const auto check = [&](const Imath::V3d& x, const auto& name) {
+        faults.check(is_finite(x), [&] { return name() + " is not finite"; });
+        faults.check(!is_finite(x) || is_within_reach(x), [&] {
+            return fmt::format("{} is ({:g}, {:g}, {:g}), farther than {:g} m from the origin", name(), x.x, x.y, x.z,
+                               farthest_coordinate);
+        });
+    };
+    check(scene.origin, [] { return std::string("the origin"); });
+    for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+        check(Imath::V3d(scene.vertices[i]), [&] { return fmt::format("vertex {}", i); });
+    for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+        for (const V3f& end : {scene.contacts[i].a, scene.contacts[i].b})
+            check(Imath::V3d(end), [&] { return fmt::format("contact {}", i); });
+}
+
+void check_material(const Material& m, Faults& faults) {
+    const Rgb& r = m.reflectance;
+    faults.check(is_reflectance(r), [&] {
+        return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
+    });
+    faults.add(exitance_fault(m.exitance), [&] { return fmt::format("material '{}': ", m.name); });
+}
+
+void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
+    const Patch& p = scene.patches[i];
+    if (has_vertices(scene, p))
+        faults.add(patch_fault(scene, p), [&] { return fmt::format("patch {} ", i); });
+    else
+        faults.check(false, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
+    faults.check(p.material < scene.materials.size(),
+                 [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
+    faults.check(p.object < scene.objects.size(),
+                 [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
+    const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
+    faults.check(
+        p.other_side == none ||
+            (are_neighbours && p.other_side < scene.patches.size() && scene.patches[p.other_side].other_side == i),
+        [&] { return fmt::format("patch {}: its other side {} is no neighbour that points back", i, p.other_side); });
+}
+
 }  // namespace
 
 std::vector<std::string> scene_faults(const Scene& scene) {
-    std::vector<std::string> faults;
-    const auto check = [&](bool holds, const auto& describe) {
-        if (!holds && faults.size() < listed_faults) faults.push_back(describe());
-    };
-    check(is_finite(scene.origin), [] { return std::string("the origin is not finite"); });
-    for (std::size_t i = 0; i < scene.vertices.size(); ++i)
-        check(is_finite(scene.vertices[i]), [&] { return fmt::format("vertex {} is not finite", i); });
-    for (std::size_t i = 0; i < scene.contacts.size(); ++i)
-        check(is_finite(scene.contacts[i].a) && is_finite(scene.contacts[i].b),
-              [&] { return fmt::format("contact {} is not finite", i); });
-    for (const Material& m : scene.materials) {
-        const Rgb &r = m.reflectance, &e = m.exitance;
-        check(is_reflectance(r), [&] {
-            return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
-        });
-        check(is_finite(e) && std::min({e.x, e.y, e.z}) >= 0, [&] {
-            return fmt::format("material '{}': exitance ({}, {}, {}) is negative or not finite", m.name, e.x, e.y, e.z);
-        });
-    }
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const Patch& p = scene.patches[i];
-        const bool vertices_exist = std::all_of(p.vertices.begin(), p.vertices.begin() + p.vertex_count(),
-                                                [&](std::uint32_t v) { return v < scene.vertices.size(); });
-        check(vertices_exist, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
-        check(!vertices_exist || patch_area(scene, p) > 0, [&] { return fmt::format("patch {} has no area", i); });
-        check(p.material < scene.materials.size(),
-              [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
-        check(p.object < scene.objects.size(),
-              [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
-        const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
-        check(p.other_side == none || (are_neighbours && p.other_side < scene.patches.size() &&
-                                       scene.patches[p.other_side].other_side == i),
-              [&] {
-                  return fmt::format("patch {}: its other side {} is no neighbour that points back", i, p.other_side);
-              });
-    }
-    for (const View& v : scene.views)
-        check(is_finite(v.eye) && is_finite(v.look_at) && is_finite(v.up) && v.fov > 0 && v.fov < 180, [&] {
-            return fmt::format("view '{}' is not finite, or its field of view not between 0 and 180 degrees", v.name);
-        });
-    return faults;
+    Faults faults;
+    check_points(scene, faults);
+    for (const Material& m : scene.materials) check_material(m, faults);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
+    if (!scene.patches.empty())
+        faults.add(scene_width_fault(scene_width(scene)), [] { return std::string("the scene "); });
+    for (const View& v : scene.views) faults.add(view_fault(v), [&] { return fmt::format("view '{}': ", v.name); });
+    return faults.take();
 }
 
 void require_no_faults(const std::vector<std::string>& faults, const std::string& purpose, const Scene& scene) {

@@ -14,9 +14,6 @@ namespace interflect {
 /// Index that points nowhere.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
-/// Farthest coordinate of a face or a view, in the world [m]: there, double precision still tells an eighth of a metre.
-inline constexpr double farthest_coordinate = 1e15;
-
 /// What a surface does with light; the same on both sides of a two-sided face.
 struct Material {
     std::string name;
@@ -69,7 +66,8 @@ struct Scene {
 };
 
 /// Every fault of `scene` that would break an invariant above (index out of range, non-finite number, reflectance
-/// outside [0, 1), negative exitance, degenerate patch), a sentence each; empty for a valid scene. Lists at most 20.
+/// outside [0, 1), negative exitance, degenerate patch, a view that shows nothing) or is beyond what can be computed
+/// (limits.h), a sentence each; empty for a valid scene. Lists at most 20.
 std::vector<std::string> scene_faults(const Scene& scene);
 
 /// @param purpose  What the scene cannot be used for then: "cannot solve".

@@ -1,11 +1,57 @@
 #include "interflect/scene/view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "interflect/base/error.h"
 #include "interflect/scene/core.h"
+#include "interflect/scene/limits.h"
 
 namespace interflect {
+
+namespace {
+
+using V3d = Imath::V3d;
+
+/// Sine of the angle between `up` and the direction of view below which the picture's upright is rounding error.
+constexpr double smallest_up_sine = 1e-5;
+
+/// Distance from eye to look-at, over the largest coordinate, below which the coordinates leave their direction
+/// uncertain by more than 1e-4 rad.
+constexpr double smallest_relative_distance = 1e-12;
+
+template <class T>
+std::string text(const Imath::Vec3<T>& v) {
+    return fmt::format("({}, {}, {})", v.x, v.y, v.z);
+}
+
+double largest_coordinate(const V3d& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); }
+
+}  // namespace
+
+std::string view_fault(const View& view) {
+    if (!is_finite(view.eye) || !is_finite(view.look_at) || !is_finite(view.up))
+        return fmt::format("eye {}, look-at {} and up {} must be finite", text(view.eye), text(view.look_at),
+                           text(view.up));
+    for (const V3d& x : {view.eye, view.look_at})
+        if (!is_within_reach(x))
+            return fmt::format("{} is farther than {:g} m from the origin, beyond which nothing is computed", text(x),
+                               farthest_coordinate);
+    if (!(view.fov > 0 && view.fov < 180))
+        return fmt::format("the vertical field of view is {} degrees, expected between 0 and 180", view.fov);
+    const V3d direction = view.look_at - view.eye;
+    if (view.eye == view.look_at)
+        return fmt::format("eye and look-at are the same point {}, so there is no direction to look in",
+                           text(view.eye));
+    if (direction.length() < smallest_relative_distance * largest_coordinate(view.eye))
+        return fmt::format("look-at is only {:.3g} m from the eye {}: their direction is lost to rounding",
+                           direction.length(), text(view.eye));
+    if (!(direction.normalized().cross(V3d(view.up).normalized()).length() > smallest_up_sine))
+        return fmt::format("up {} is zero or parallel to the direction from eye to look-at", text(view.up));
+    return {};
+}
 
 const View& find_view(const Scene& scene, const std::string& name) {
     const auto view =

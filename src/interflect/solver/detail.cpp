@@ -197,7 +197,7 @@ float Detail::shrinkage() const { return spread > noise ? 1 - noise / spread : 0
 
 float Detail::risk() const {
     // Of y = signal + noise in d = 3 dimensions, reduced by the factor 1 - d sigma^2 / |y|^2 or to zero.
-    return spread > noise ? noise + noise * noise / (3 * spread) : spread - noise;
+    return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
 
 Detail detail_of(const Run& run, std::uint32_t first) {

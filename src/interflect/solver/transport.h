@@ -84,12 +84,13 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
 /// The variance of the area-weighted mean of elements whose values are independent, from the leaves up.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
-        float sum = 0, area = 0;
+        double sum = 0, area = 0;  // squares of areas soon leave the range of a float
         for (std::uint32_t e = first; e < first + 4; ++e) {
-            sum += variance[e] * forest.area(e) * forest.area(e);
-            area += forest.area(e);
+            const double part = forest.area(e);
+            sum += variance[e] * part * part;
+            area += part;
         }
-        variance[forest.parent(first)] = sum / (area * area);
+        variance[forest.parent(first)] = static_cast<float>(sum / (area * area));
     });
 }
 

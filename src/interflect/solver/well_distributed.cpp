@@ -46,7 +46,7 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size())};
     for (std::size_t e = 0; e < arrived_.size(); ++e) {
         fresh.irradiance[e] = quantum * received.irradiance[e];
-        fresh.variance[e] = quantum * quantum * received.variance[e];
+        fresh.variance[e] = quantum * (quantum * received.variance[e]);  // the square may be out of range
         arrived_[e] += received.irradiance[e];
     }
     pull(*run.forest, arrived_);

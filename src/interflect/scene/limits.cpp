@@ -1,0 +1,65 @@
+#include "interflect/scene/limits.h"
+
+#include <fmt/format.h>
+
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect {
+
+namespace {
+
+void extend(Imath::Box3d& box, const Scene& scene, const Patch& patch) {
+    for (int k = 0; k < patch.vertex_count(); ++k) {
+        const std::uint32_t vertex = patch.vertices[static_cast<std::size_t>(k)];
+        if (vertex < scene.vertices.size()) box.extendBy(Imath::V3d(scene.vertices[vertex]));
+    }
+}
+
+}  // namespace
+
+bool is_within_reach(const Imath::V3d& point) {
+    return std::abs(point.x) <= farthest_coordinate && std::abs(point.y) <= farthest_coordinate &&
+           std::abs(point.z) <= farthest_coordinate;
+}
+
+double scene_width(const Scene& scene) {
+    Imath::Box3d box;
+    for (const Patch& patch : scene.patches) extend(box, scene, patch);
+    return box.isEmpty() ? 0 : box.size().length();
+}
+
+std::string patch_fault(const Scene& scene, const Patch& patch) {
+    Imath::Box3d box;
+    extend(box, scene, patch);
+    const double width = box.size().length();
+    if (!(width <= widest_face))
+        return fmt::format("is {:.3g} m wide; at most {:g} m can be computed", width, widest_face);
+    const float area = patch_area(scene, patch);
+    if (!(area > 0)) return "has no area";
+    if (area < smallest_face_area)
+        return fmt::format("has an area of {:.3g} m2; at least {:g} m2 can be computed", area, smallest_face_area);
+    return {};
+}
+
+std::string scene_width_fault(double width) {
+    if (width >= narrowest_scene) return {};
+    return fmt::format("is only {:.3g} m wide; at least {:g} m can be computed", width, narrowest_scene);
+}
+
+std::string exitance_fault(const Rgb& e) {
+    const auto text = [&](const std::string& fault) {
+        return fmt::format("exitance ({}, {}, {}) {}", e.x, e.y, e.z, fault);
+    };
+    if (!is_finite(e) || std::min({e.x, e.y, e.z}) < 0) return text("is negative or not finite");
+    const float strongest = largest_channel(e);
+    if (strongest == 0 || (strongest >= weakest_exitance && strongest <= strongest_exitance)) return {};
+    return text(
+        fmt::format("cannot be computed: expected 0, or {:g} to {:g} lm/m2", weakest_exitance, strongest_exitance));
+}
+
+}  // namespace interflect
