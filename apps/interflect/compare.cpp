@@ -94,9 +94,9 @@ void warn_of_unlike_values(const CompareArguments& options) {
 void run(const CompareArguments& options) {
     std::optional<PendingFile> difference_file;
     if (options.difference) {
-        for (const auto& [name, path] :
-             {std::pair("the image", options.image), std::pair("the reference", options.reference)})
-            require_distinct_files(std::array<NamedFile, 2>{{{name, path}, {"--difference", *options.difference}}});
+        require_distinct_files(
+            std::array<NamedFile, 2>{{{"the image", options.image}, {"the reference", options.reference}}},
+            std::array<NamedFile, 1>{{{"--difference", *options.difference}}});
         if (!is_tone_mapped(*options.difference))
             throw InputError(*options.difference, 0, "the difference is drawn to be looked at: expected .png or .jpg");
         difference_file.emplace(*options.difference);

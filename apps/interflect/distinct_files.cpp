@@ -22,15 +22,16 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-void require_distinct_files(std::span<const NamedFile> files) {
-    for (std::size_t i = 0; i < files.size(); ++i)
-        for (std::size_t j = i + 1; j < files.size(); ++j) {
-            const auto& [first, a] = files[i];
-            const auto& [second, b] = files[j];
-            if (!a.empty() && !b.empty() && is_same_file(a, b))
-                throw InputError(fmt::format("{} and {} are the same file, '{}': one would overwrite the other", first,
-                                             second, b.string()));
-        }
+void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs) {
+    const auto require_distinct = [](const NamedFile& a, const NamedFile& b) {
+        if (!a.path.empty() && !b.path.empty() && is_same_file(a.path, b.path))
+            throw InputError(fmt::format("{} and {} are the same file, '{}': one would overwrite the other", a.argument,
+                                         b.argument, b.path.string()));
+    };
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        for (const NamedFile& input : inputs) require_distinct(input, outputs[i]);
+        for (std::size_t j = 0; j < i; ++j) require_distinct(outputs[j], outputs[i]);
+    }
 }
 
 }  // namespace interflect::command

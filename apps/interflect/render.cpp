@@ -214,8 +214,8 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     else
         refuse_path_options(command);
     warn_of_tone_options(options, command);
-    require_distinct_files(std::array<NamedFile, 4>{{{"the scene", options.scene.path},
-                                                     {"--output", options.output},
+    require_distinct_files(input_files(options.scene, options.view),
+                           std::array<NamedFile, 3>{{{"--output", options.output},
                                                      {"--stats", options.solver.stats},
                                                      {"--error-image", options.path.error_image}}});
     PendingFile output(options.output);

@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -115,6 +116,9 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
 
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,
                    const SolverOptions& command) {
+    for (const std::string& file : scene.files)
+        require_distinct_files(std::array<NamedFile, 1>{{{"a file of the scene", file}}},
+                               std::array<NamedFile, 1>{{{"--stats", command.stats}}});
     std::optional<PendingFile> stats;
     if (!command.stats.empty()) stats.emplace(command.stats);
     warn_of_covered_emission(scene, ray_caster);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/formats/view_files.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/scene/contacts.h"
 #include "interflect/scene/split.h"
@@ -92,6 +93,12 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     if (eye) views.push_back({"command line", *eye, *look_at, up, fov});
     for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses what defines no picture
     return views;
+}
+
+std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view) {
+    std::vector<NamedFile> files = {{"the scene", scene.path}, {"the scene's views", view_list_path(scene.path)}};
+    for (const std::filesystem::path& file : view.files) files.push_back({"--view-file", file});
+    return files;
 }
 
 void add_threads(CLI::App& app, int& threads) {

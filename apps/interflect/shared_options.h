@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
 #include "interflect/formats/load_scene.h"
 #include "interflect/scene/scene.h"
@@ -47,6 +48,9 @@ struct ViewOptions {
     /// nothing.
     std::vector<View> views(const Scene& scene) const;
 };
+
+/// The files that these name.
+std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view);
 
 /// How to solve.
 struct SolverOptions {

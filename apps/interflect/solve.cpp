@@ -39,8 +39,9 @@ void add_solve(CLI::App& app, int& exit_code) {
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
         require_solution_name(options->output);
-        require_distinct_files(std::array<NamedFile, 3>{
-            {{"the scene", options->scene.path}, {"--output", options->output}, {"--stats", options->solver.stats}}});
+        require_distinct_files(
+            input_files(options->scene, options->view),
+            std::array<NamedFile, 2>{{{"--output", options->output}, {"--stats", options->solver.stats}}});
         PendingFile output(options->output);
         Scene scene = options->scene.load();
         const std::vector<View> views = options->view.views(scene);

@@ -4,7 +4,7 @@ import json
 import pathlib
 import unittest
 
-from command import BAD_INPUT, DONE, LAMP, PAINT, CommandTest, room, vertices
+from command import BAD_INPUT, DONE, LAMP, PAINT, VIEWS, CommandTest, room, vertices
 
 TRIANGLE = vertices((0, 0, 0), (1, 0, 0), (1, 1, 0))  # six lines
 AT_ONCE = 20  # [s]: far less than the solve would take, far more than any machine needs to refuse it
@@ -98,6 +98,13 @@ class SameFiles(CommandTest):
         self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--stats", "room.mgf")
         self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--stats", "./out.h5")
         self.assert_refused("solve", "link.mgf", "-o", "out.h5", "--stats", "room.mgf")
+        self.write("room.views.json", json.dumps(VIEWS))
+        self.write("door.vf", "rview -vtv -vp 0.3 0.2 1.6 -vd 1 3 0\n")
+        self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--stats", "room.views.json")
+        self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--view-file", "door.vf", "--stats", "door.vf")
+        self.write("wall.mgf", "")
+        self.write("two.mgf", "i wall.mgf\n" + room())
+        self.assert_refused("solve", "two.mgf", "-o", "out.h5", "--stats", "wall.mgf")
 
     def test_but_not_the_same_device(self):
         self.write("room.mgf", room())

@@ -74,8 +74,8 @@ class Limits(CommandTest):
             (1e-12, 1000, "room.mgf: the scene is only"),
             (WIDEST * 1.1, 1000, "m wide; at most 1e+07 m"),
             (1e12, 1000, "m wide; at most 1e+07 m"),
-            (1, WEAKEST / 1.2, "exitance"),
-            (1, 1e-40, "exitance"),
+            (1, WEAKEST / 1.2, "room.mgf: the scene emits only"),
+            (1, 1e-40, "room.mgf: the scene emits only"),
             (1, STRONGEST * 1.1, "exitance"),
             (1, 1e30, "exitance"),
         ):

@@ -6,7 +6,7 @@ import re
 import subprocess
 import unittest
 
-from command import BAD_INPUT, COMMAND, DONE, SMALL, VIEWS, WRONG_USAGE, CommandTest, room
+from command import BAD_INPUT, COMMAND, DONE, SMALL, VIEW, VIEWS, WRONG_USAGE, CommandTest, room
 
 LATIN_1, ESCAPED = "büro\x1b[31m.mgf".encode("latin-1"), r"b\xfcro\x1b[31m.mgf"
 COARSE = ("--rays", "10k", "--mesh-size", "none", "--method", "srr")
@@ -71,8 +71,8 @@ class Names(CommandTest):
 
     def test_lists_of_faults_keep_their_lines(self):
         self.write("room.mgf", room())
-        result = self.interflect("solve", "room.mgf", "-o", "out.h5", "--max-elements", "1", exit_code=BAD_INPUT)
-        self.assertRegex(result.stderr, r"(?m)^error: .*:\n  most_elements: ")
+        result = self.interflect("solve", "room.mgf", "-o", "out.h5", *VIEW, "--method", "wdrs", "--importance", "full", exit_code=BAD_INPUT)
+        self.assertRegex(result.stderr, r"(?m)^error: .*:\n  importance: ")
 
 
 if __name__ == "__main__":

@@ -69,8 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
 
         BadLine{"ChromaticityBelow", "cxy .4 -.1\nrd .5", "is no chromaticity"},
         BadLine{"ColourOfALamp", "cct 500\ned 5", "at least 1000 K"},
-        BadLine{"HugeEmission", "ed 1e30", "cannot be computed: expected 0, or 1e-09 to 1e+10"},
-        BadLine{"TinyEmission", "ed 1e-40", "cannot be computed: expected 0, or 1e-09 to 1e+10"},
+        BadLine{"HugeEmission", "ed 1e30", "cannot be computed: expected at most 1e+10"},
         BadLine{"Spectrum", "cspec 780 380 1 1\nrd .5", "the shortest wavelength"},
         BadLine{"Temperature", "cct 500\nrd .5", "at least 1000 K"},
         BadLine{"MixOfUndefined", "cmix 1 red 1 blue\nrd .5", "colour 'red' is not defined"},
@@ -146,8 +145,10 @@ TEST(MgfBadInput, FacesThatAreTooWideAndScenesThatAreTooSmall) {
 TEST(MgfBadInput, ExitanceThatCannotBeComputed) {
     for (const char* const exitance : {"0", "1.1e-9", "9.9e9"})
         EXPECT_EQ(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "no error") << exitance;
-    for (const char* const exitance : {"1e-40", "9e-10", "1.1e10", "1e30", "1e38"})
+    for (const char* const exitance : {"1.1e10", "1e30", "1e38"})
         expect_in(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "bad.mgf:9: exitance (");
+    for (const char* const exitance : {"1e-40", "9e-10"})
+        expect_in(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "bad.mgf: the scene emits only");
 }
 
 TEST(MgfBadInput, BinaryJunk) {

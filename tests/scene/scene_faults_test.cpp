@@ -97,7 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
               },
               "patch 0 has an area of 5e-21 m2; at least 1e-18"},
         Fault{"narrow_scene", [](Scene& s) { scale(s, 5e-7f); }, "the scene is only 7.07e-07 m wide"},
-        Fault{"weak_exitance", [](Scene& s) { s.materials[0].exitance = Rgb(9e-10f); }, "'material 0': exitance"},
+        Fault{"weak_exitance", [](Scene& s) { s.materials[0].exitance = Rgb(9e-10f); },
+              "the scene emits only 9e-10 lm/m2"},
         Fault{"strong_exitance", [](Scene& s) { s.materials[0].exitance.y = 1.1e10f; }, "'material 0': exitance"},
         Fault{"missing_material", [](Scene& s) { s.patches[0].material = 1; }, "patch 0: there is no material 1"},
         Fault{"missing_object", [](Scene& s) { s.patches[0].object = 1; }, "patch 0: there is no object 1"},
@@ -121,6 +122,11 @@ TEST(SceneFaults, AreNoneAtTheLimits) {
     far.origin = Imath::V3d(-1e15, 1e15, 0);
     far.views[0].eye = Imath::V3d(1e15, 0, 0);
     far.views[0].look_at = Imath::V3d(-1e15, 0, 0);
+    Scene contrast = valid_scene();
+    contrast.materials.push_back(contrast.materials[0]);
+    contrast.materials[1].exitance = Rgb(1e-30f);
+    contrast.materials[0].exitance = Rgb(1);
+    EXPECT_EQ(scene_faults(contrast), std::vector<std::string>()) << "weak beside what is brighter";
     for (Scene* const scene : {&widest, &narrowest, &far})
         for (const float exitance : {0.0f, 1e-9f, 1e10f}) {
             scene->materials[0].exitance = Rgb(exitance, 0, 0);

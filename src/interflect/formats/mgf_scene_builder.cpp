@@ -167,6 +167,12 @@ void MgfSceneBuilder::require_width() const {
         throw InputError(scene_.name, 0, "the scene " + fault);
 }
 
+/// That the scene is dark or bright enough.
+void MgfSceneBuilder::require_brightness() const {
+    if (const std::string fault = brightness_fault(strongest_exitance_in(scene_)); !fault.empty())
+        throw InputError(scene_.name, 0, "the scene " + fault);
+}
+
 void MgfSceneBuilder::require_patches() const {
     if (!scene_.patches.empty()) return;
     if (left_out_ > 0)
@@ -178,6 +184,7 @@ void MgfSceneBuilder::require_patches() const {
 
 Scene MgfSceneBuilder::finish() {
     require_width();
+    require_brightness();
     require_precision();
     require_patches();
     warn_of_lost("specular-reflection", "specular reflectance (rs)", &MgfMaterial::rs);

@@ -67,6 +67,7 @@ class MgfSceneBuilder {
         Location where;
     };
     void require_width() const;
+    void require_brightness() const;
     void require_precision() const;
     void require_patches() const;
 

@@ -56,10 +56,20 @@ std::string exitance_fault(const Rgb& e) {
         return fmt::format("exitance ({}, {}, {}) {}", e.x, e.y, e.z, fault);
     };
     if (!is_finite(e) || std::min({e.x, e.y, e.z}) < 0) return text("is negative or not finite");
-    const float strongest = largest_channel(e);
-    if (strongest == 0 || (strongest >= weakest_exitance && strongest <= strongest_exitance)) return {};
-    return text(
-        fmt::format("cannot be computed: expected 0, or {:g} to {:g} lm/m2", weakest_exitance, strongest_exitance));
+    if (largest_channel(e) <= strongest_exitance) return {};
+    return text(fmt::format("cannot be computed: expected at most {:g} lm/m2", strongest_exitance));
+}
+
+std::string brightness_fault(float strongest) {
+    if (strongest == 0 || strongest >= weakest_exitance) return {};
+    return fmt::format("emits only {:.3g} lm/m2 where it is brightest; at least {:g} lm/m2 can be computed", strongest,
+                       weakest_exitance);
+}
+
+float strongest_exitance_in(const Scene& scene) {
+    float strongest = 0;
+    for (const Material& m : scene.materials) strongest = std::max(strongest, largest_channel(m.exitance));
+    return strongest;
 }
 
 }  // namespace interflect

@@ -21,7 +21,8 @@ inline constexpr double widest_face = 1e7;
 inline constexpr double narrowest_scene = 1e-6;
 inline constexpr float smallest_face_area = 1e-18f;
 
-/// Exitance of what emits, in its strongest channel [lm/m^2 or W/m^2]: the Sun has 6 * 10^9 lm/m^2.
+/// Exitance of any channel [lm/m^2 or W/m^2]: the Sun has 6 * 10^9 lm/m^2. What is brightest in a scene must not be
+/// weaker than `weakest_exitance`, but may be dark.
 inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
 
 /// Whether every coordinate of a point is finite and at most farthest_coordinate.
@@ -37,5 +38,10 @@ std::string patch_fault(const Scene& scene, const Patch& patch);
 /// @param width  Diagonal of the bounding box of all faces [m], scene_width().
 std::string scene_width_fault(double width);
 std::string exitance_fault(const Rgb& exitance);
+/// @param strongest  Largest channel of all exitances [lm/m^2 or W/m^2].
+std::string brightness_fault(float strongest);
+
+/// Largest channel of all materials' exitances [lm/m^2 or W/m^2]; 0 where there is none.
+float strongest_exitance_in(const Scene& scene);
 
 }  // namespace interflect

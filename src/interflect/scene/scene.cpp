@@ -87,8 +87,9 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     check_points(scene, faults);
     for (const Material& m : scene.materials) check_material(m, faults);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
-    if (!scene.patches.empty())
-        faults.add(scene_width_fault(scene_width(scene)), [] { return std::string("the scene "); });
+    const auto the_scene = [] { return std::string("the scene "); };
+    if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), the_scene);
+    faults.add(brightness_fault(strongest_exitance_in(scene)), the_scene);
     for (const View& v : scene.views) faults.add(view_fault(v), [&] { return fmt::format("view '{}': ", v.name); });
     return faults.take();
 }
