@@ -22,6 +22,12 @@ std::string control_group() {
     return {};
 }
 
+std::size_t memory_in_use() {
+    std::size_t reserved = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> reserved >> resident;
+    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
 /// The least limit of memory of the control group and those that it is in.
 std::size_t control_group_memory() {
     const std::filesystem::path root = "/sys/fs/cgroup";
@@ -43,7 +49,7 @@ std::size_t machine_memory() {
 
 std::size_t addressable_memory() {
     const std::size_t free = free_address_space();
-    return free == std::numeric_limits<std::size_t>::max() ? free : free / 2;
+    return free == std::numeric_limits<std::size_t>::max() ? free : memory_in_use() + free / 2;
 }
 
 }  // namespace interflect::command

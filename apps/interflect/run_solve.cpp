@@ -99,9 +99,13 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
     if (options.most_elements < scene.patches.size())
         throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
                                      options.most_elements, scene.patches.size(), scene.name));
-    const std::size_t bytes = std::min(memory > 0 ? memory : machine_memory() / 10 * 9, addressable_memory());
-    options.most_elements =
-        std::min(options.most_elements, elements_within(memory_need(scene, ray_caster), bytes, scene));
+    const std::size_t there_is = std::min(machine_memory() / 10 * 9, addressable_memory());
+    const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
+    const MemoryNeed need = memory_need(scene, ray_caster);
+    if (need.with(scene.patches.size()) > there_is)  // no fault of what was asked for
+        throw std::runtime_error(fmt::format("{} needs {} MiB of memory; this process may have {} MiB", scene.name,
+                                             (need.with(scene.patches.size()) >> 20) + 1, there_is >> 20));
+    options.most_elements = std::min(options.most_elements, elements_within(need, bytes, scene));
     return options;
 }
 

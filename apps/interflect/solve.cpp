@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <memory>
 
@@ -17,6 +19,15 @@ namespace {
 void require_solution_name(const std::filesystem::path& path) {
     if (path.extension() != ".h5")
         throw InputError(path, 0, "a solution file is HDF5: expected a name that ends in .h5");
+}
+
+void write(PendingFile& output, const Scene& scene, const Solution& solution) {
+    try {
+        write_solution(output.temporary_path(), scene, solution);
+    } catch (const std::exception& e) {
+        throw std::runtime_error(fmt::format("cannot write '{}': {}", output.final_path().string(), e.what()));
+    }
+    output.commit();
 }
 
 }  // namespace
@@ -51,8 +62,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         const Solution solution = run_solve(scene, ray_caster, solve_options, options->solver);
         // What was asked for comes first: `render` takes the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
-        write_solution(output.temporary_path(), scene, solution);
-        output.commit();
+        write(output, scene, solution);
         if (is_stop_requested()) exit_code = interrupted;
     });
 }

@@ -102,7 +102,7 @@ class SameFiles(CommandTest):
         self.write("door.vf", "rview -vtv -vp 0.3 0.2 1.6 -vd 1 3 0\n")
         self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--stats", "room.views.json")
         self.assert_refused("solve", "room.mgf", "-o", "out.h5", "--view-file", "door.vf", "--stats", "door.vf")
-        self.write("wall.mgf", "")
+        self.write("wall.mgf", PAINT)
         self.write("two.mgf", "i wall.mgf\n" + room())
         self.assert_refused("solve", "two.mgf", "-o", "out.h5", "--stats", "wall.mgf")
 

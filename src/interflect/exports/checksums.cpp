@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -126,7 +128,7 @@ void write_checksums(const fs::path& path, std::vector<FileRange> ranges) {
     block += own_checksum(block);
     std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
     file.write(block.data(), static_cast<std::streamsize>(block.size()));
-    if (!file.flush()) throw std::runtime_error("cannot write the checksums");
+    if (!file.flush()) throw std::runtime_error(std::string("cannot write the checksums: ") + std::strerror(errno));
 }
 
 bool has_checksums(const fs::path& path) {

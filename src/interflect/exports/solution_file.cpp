@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <span>
@@ -43,8 +45,21 @@ class Handle {
     herr_t (*close_)(hid_t);
 };
 
+/// To be called before all else: errors become exceptions, not text on stderr. The handler at the process's end is left
+/// out, since it crashes where a file could not be written.
+void prepare_hdf5() {
+    [[maybe_unused]] static const herr_t first_of_all = H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+/// What the system last said of a disk that takes no more; empty where it said something else.
+std::string reason_of_disk() {
+    const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
+    return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
+}
+
 void require(herr_t status, const std::string& what) {
-    if (status < 0) throw std::runtime_error("HDF5: " + what);
+    if (status < 0) throw std::runtime_error("HDF5: " + what + reason_of_disk());
 }
 
 /// Memory and file type of what one array entry is made of.
@@ -263,7 +278,7 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
     // HDF5 would look for its beginning farther on; a file without checksums begins with it.
     const bool checked = !has_hdf5_signature(path, 0);
     if (checked) verify_checksums(path);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
+    prepare_hdf5();
     const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
     SolvedScene solved;
     const std::vector<char> text = read_array<char>(file, "/description", 1);
@@ -299,6 +314,8 @@ std::vector<FileRange> write_arrays(hid_t file, const std::string& description, 
 /// An HDF5 file that begins with an empty block for checksums.
 std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
                                   const Solution& solution) {
+    prepare_hdf5();
+    errno = 0;
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make properties");
     require(H5Pset_userblock(creation, checksum_block_size), "cannot set a user block");
     const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose,

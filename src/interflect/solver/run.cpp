@@ -88,9 +88,9 @@ void grow_with_forest(Run& run, std::uint32_t first) {
 }
 
 void look_closer(Run& run) {
-    constexpr std::int64_t rays_per_eye_ray = 64, enough_eye_rays = 1 << 22;
+    constexpr std::int64_t rays_per_eye_ray = 64;
     if (run.view.empty()) return;
-    const std::int64_t wanted = std::min(run.schedule.averaged_rays() / rays_per_eye_ray, enough_eye_rays);
+    const std::int64_t wanted = std::min<std::int64_t>(run.schedule.averaged_rays() / rays_per_eye_ray, most_eye_rays);
     if (wanted < 2 * run.view.rays()) return;
     run.view.look(*run.forest, run.ray_caster, static_cast<int>((wanted - run.view.rays()) / run.view.views()));
     run.solution.view_importance = run.view.per_area(*run.forest, !run.options.importance_at_elements);

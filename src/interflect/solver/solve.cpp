@@ -47,7 +47,7 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require(o.inherited_trust >= 0 && o.inherited_trust <= 1, "inherited_trust: expected 0 to 1");
     require(o.importance_smoothing >= 0 && o.importance_smoothing <= 1, "importance_smoothing: expected 0 to 1");
     require(o.importance_exponent >= 0 && o.importance_exponent <= 1, "importance_exponent: expected 0 to 1");
-    require(o.eye_rays > 0 && o.eye_rays <= most_eye_rays, "eye_rays: expected 1 to 2^24");
+    require(o.eye_rays > 0 && o.eye_rays <= most_eye_rays, "eye_rays: expected 1 to 2^22");
     for (const WeightedView& v : o.views)
         require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");

@@ -63,7 +63,7 @@ const Method& find_method(const std::string& name);
 
 /// Beyond that the fixed-point sums of transport would round what single rays carry.
 inline constexpr std::int64_t most_rays_per_iteration = 100'000'000'000;
-inline constexpr int most_eye_rays = 1 << 24;
+inline constexpr int most_eye_rays = 1 << 22;
 
 /// What to compute and when to stop. The run ends at the first limit that is reached.
 struct SolveOptions {

@@ -73,7 +73,9 @@ struct Received {
 /// @param arrivals  Nothing has arrived yet, and nothing has afterwards: for as many elements as the forest may have.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
 /// @throws Interrupted where `stop` is due before the last ray is traced; the forest and the streams are then as
-/// before. Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
+/// before.
+///
+/// Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
 /// received.
 Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop);
