@@ -65,11 +65,11 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
     building::Solids(scene, wall, add_object(scene, "wall"))
         .box({-thickness / 2, -half, 0}, {thickness / 2, half, height}, white);
     if (options.furniture) {
-        const building::Solids cabinet(scene, wall, add_object(scene, "cabinets"));
+        const building::Solids cabinets(scene, wall, add_object(scene, "cabinets"));
         for (const float side : {-1.0f, 1.0f})
             for (const float along : {-1.1f, 0.3f}) {
                 const float front = side * (thickness / 2 + 0.5f), back = side * thickness / 2;
-                cabinet.box({std::min(front, back), along, 0}, {std::max(front, back), along + 0.9f, 1.2f}, wood);
+                cabinets.box({std::min(front, back), along, 0}, {std::max(front, back), along + 0.9f, 1.2f}, wood);
             }
         building::Solids(scene, wall, add_object(scene, "paper"))
             .box({-0.4f, 0.5f, 1.2f}, {-0.19f, 0.797f, 1.201f}, white);
