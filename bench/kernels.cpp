@@ -12,8 +12,8 @@
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/maze.h"
 #include "interflect/solver/arrivals.h"
-#include "interflect/solver/light.h"
 #include "interflect/solver/probabilities.h"
+#include "interflect/solver/radiosity.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/solve.h"
@@ -32,7 +32,7 @@ void count_items(benchmark::State& state, std::size_t items_each) {
 /// A furnished maze of nine rooms that has been solved with few rays: mesh, light and importance are there.
 struct SolvedMaze {
     Scene scene = make_maze({.rooms = 9, .furniture = true});
-    Surfaces surfaces{scene};
+    Materials materials{scene};
     RayCaster ray_caster{scene};
     Solution solution = solve(scene, ray_caster, options());
     ElementForest& forest = const_cast<ElementForest&>(*solution.forest);  // it does not grow any further, see step()
@@ -45,11 +45,11 @@ struct SolvedMaze {
         return o;
     }
     TransportStep step(std::int64_t rays, bool refines) {
-        TransportStep step = power_step(surfaces, solution, Light(surfaces, solution.irradiance),
-                                        power_driver(solution, Neighbourhoods(forest)), true, rays)
+        TransportStep step = power_step(materials, solution, Radiosity(materials, solution.irradiance),
+                                        importance_weights(solution, Neighbourhoods(forest)), true, rays)
                                  .step;
         if (refines) step.oracle = make_oracle(solution, solution.options.rays, 1e-6);
-        step.oracle.most_elements = forest.size();
+        step.oracle.max_elements = forest.size();
         return step;
     }
 };
@@ -81,8 +81,8 @@ void shoot_rays_from_a_patch(benchmark::State& state) {
     std::vector<Parameters> origins(rays_each);
     std::uint64_t first = 0;
     for (auto _ : state) {
-        shoot_rays(m.forest.geometry(0), Cell(), m.ray_caster.lift(0), PointSet::sobol, 1, first += rays_each, points,
-                   rays, origins);
+        shoot_rays(m.forest.geometry(0), Cell(), m.ray_caster.ray_offset(0), PointSet::sobol, 1, first += rays_each,
+                   points, rays, origins);
         benchmark::DoNotOptimize(rays.back());
     }
     count_items(state, rays_each);
@@ -111,15 +111,15 @@ void add_arrivals(benchmark::State& state) {
     const auto elements = static_cast<std::uint32_t>(state.range(0));
     Arrivals arrivals(elements);
     arrivals.begin(elements);
-    Arrivals::Sorter sorter(arrivals);
+    Arrivals::ScatterBuffer buffer(arrivals);
     std::uint32_t random = 1;
     for (auto _ : state) {
-        const std::uint32_t source = sorter.add_source({1, 2, 3, 4});
+        const std::uint32_t source = buffer.add_source({1, 2, 3, 4});
         for (std::size_t i = 0; i < block; ++i) {
             random = random * 1664525u + 1013904223u;
-            sorter.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), source, true, true);
+            buffer.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), source, true, true);
         }
-        sorter.forget_sources();
+        buffer.release_sources();
     }
     count_items(state, block);
 }
@@ -130,7 +130,7 @@ void transport_a_million_rays(benchmark::State& state) {
     SampleStreams streams(PointSet::sobol, 1);
     for (auto _ : state) {
         const TransportStep step = m.step(1'000'000, state.range(0) != 0);
-        benchmark::DoNotOptimize(transport(m.surfaces, m.forest, m.ray_caster, step, streams).shot_power);
+        benchmark::DoNotOptimize(transport(m.materials, m.forest, m.ray_caster, step, streams).shot_power);
     }
     count_items(state, 1'000'000);
 }

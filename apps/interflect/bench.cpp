@@ -60,25 +60,25 @@ double median(std::vector<double> values) {
 /// What the solver traces when the light has already spread through the scene and the mesh is there.
 struct Workload {
     Workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options)
-        : surfaces(scene, ray_caster),
+        : materials(scene, ray_caster),
           solution(solve(scene, ray_caster, options)),
           forest(std::const_pointer_cast<ElementForest>(solution.forest)),
           streams(options.points, options.seed) {
         if (!(channel_sum(solution.emitted_power) > 0))
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
-        const Light light(surfaces, solution.irradiance);
-        const PowerDriver driver = power_driver(solution, Neighbourhoods(*forest));
-        step = power_step(surfaces, solution, light, driver, combined, options.rays).step;
+        const Radiosity light(materials, solution.irradiance);
+        const ImportanceWeights driver = importance_weights(solution, Neighbourhoods(*forest));
+        step = power_step(materials, solution, light, driver, combined, options.rays).step;
         if (options.method.refines && !refines_by_variance(options))
-            step.oracle = make_oracle(solution, options.rays, options.smallest_area);
-        step.oracle.most_elements = forest->size();
+            step.oracle = make_oracle(solution, options.rays, options.min_area);
+        step.oracle.max_elements = forest->size();
         rays = transport_rays(*forest, ray_caster, step, streams);
     }
     Workload(const Workload&) = delete;  // the step refers to it
     Workload& operator=(const Workload&) = delete;
 
-    Surfaces surfaces;
+    Materials materials;
     Solution solution;
     std::shared_ptr<ElementForest> forest;  // the solution's, which no step makes larger
     TransportStep step;
@@ -110,7 +110,7 @@ void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_or
     TransportStep step = work.step;
     step.oracle.refines = with_oracle && work.step.oracle.refines;
     SampleStreams streams = work.streams;
-    transport(work.surfaces, *work.forest, ray_caster, std::move(step), streams);
+    transport(work.materials, *work.forest, ray_caster, std::move(step), streams);
 }
 
 /// Everything in one run, one after the other, since the speed of a machine changes with its load.

@@ -5,7 +5,7 @@
 
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
-#include "interflect/image/eye_samples.h"
+#include "interflect/image/camera_samples.h"
 
 namespace interflect::command {
 

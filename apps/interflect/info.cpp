@@ -18,8 +18,8 @@
 #include "interflect/exports/solution_file.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
-#include "interflect/solver/surfaces.h"
 
 namespace interflect::command {
 
@@ -43,7 +43,7 @@ struct Summary {
 
 Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
     Summary s;
-    const Surfaces surfaces(scene, ray_caster);
+    const Materials materials(scene, ray_caster);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         const double area = patch_area(scene, patch);
@@ -52,7 +52,7 @@ Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
             s.bounds.extendBy(scene.origin + Imath::V3d(scene.vertices[patch.vertices[k]]));
         s.triangles += patch.is_triangle();
         s.two_sided += patch.other_side != none;
-        const Rgb& exitance = surfaces.exitance(i);
+        const Rgb& exitance = materials.exitance(i);
         if (!(channel_sum(exitance) > 0)) continue;
         Emitter& emitter = s.emitters[patch.material];
         ++emitter.patches;

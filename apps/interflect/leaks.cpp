@@ -10,8 +10,8 @@
 #include "interflect/base/random.h"
 #include "interflect/scene/core.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/ray_source.h"
-#include "interflect/solver/surfaces.h"
 
 namespace interflect::command {
 
@@ -26,12 +26,12 @@ constexpr std::size_t rays_beside = 8;
 
 /// Systematic samples of the patches, in proportion to the power that leaves them.
 std::vector<std::uint32_t> sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    const Surfaces surfaces(scene, ray_caster);
+    const Materials materials(scene, ray_caster);
     std::vector<double> cumulative;
     cumulative.reserve(scene.patches.size());
     double sum = 0;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const float b = channel_sum(surfaces.exitance(i) + surfaces.reflectance(i) * solution.irradiance[i]);
+        const float b = channel_sum(materials.exitance(i) + materials.reflectance(i) * solution.irradiance[i]);
         if (std::isfinite(b)) sum += static_cast<double>(b * solution.forest->area(i));
         cumulative.push_back(sum);
     }
@@ -70,7 +70,7 @@ Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solu
     for (const std::uint32_t patch : sources(scene, ray_caster, solution)) {
         Ray ray;
         Parameters origin;
-        shoot_rays(solution.forest->geometry(patch), Cell(), ray_caster.lift(patch), PointSet::random, leak_seed,
+        shoot_rays(solution.forest->geometry(patch), Cell(), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
                    static_cast<std::uint64_t>(escapes.rays++), points, {&ray, 1}, {&origin, 1});
         Hit hit;
         ray_caster.trace({&ray, 1}, {&hit, 1});

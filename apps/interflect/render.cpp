@@ -117,8 +117,8 @@ int legend_rows(const RenderArguments& options) {
 std::optional<Picture> draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                                      const RenderArguments& options) {
     const int rows = legend_rows(options);
-    const EyeSampling sampling{options.size.width, options.size.height - rows, options.render.samples,
-                               options.render.seed};
+    const CameraSampling sampling{options.size.width, options.size.height - rows, options.render.samples,
+                                  options.render.seed};
     DrawingProgress progress;
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
     if (progress.interrupted()) return {};
@@ -240,7 +240,7 @@ void add_render(CLI::App& app, int& exit_code) {
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command.add_option("--samples", options->samples, "Eye rays a pixel (default: 16; with --shading path 64)")
+    command.add_option("--samples", options->samples, "Camera rays a pixel (default: 16; with --shading path 64)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,

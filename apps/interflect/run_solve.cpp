@@ -20,8 +20,8 @@
 #include "interflect/base/pending_file.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
-#include "interflect/solver/surfaces.h"
 
 namespace interflect::command {
 
@@ -89,23 +89,23 @@ void log_outcome(const Solution& solution) {
                      : "");
     if (!solution.options.views.empty() && !std::isfinite(last.error_estimate) && solution.iterations.size() > 2)
         spdlog::warn("no view shows a lit surface that reflects light: the error is not known");
-    if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.most_elements)
+    if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.max_elements)
         spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements or --memory",
                      last.elements);
 }
 
 /// With as many elements at most as memory and addresses are there for. @param memory  As asked for, or 0.
 SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, SolveOptions options, std::size_t memory) {
-    if (options.most_elements < scene.patches.size())
-        throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
-                                     options.most_elements, scene.patches.size(), scene.name));
+    if (options.max_elements < scene.patches.size())
+        throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}", options.max_elements,
+                                     scene.patches.size(), scene.name));
     const std::size_t there_is = std::min(machine_memory() / 10 * 9, addressable_memory());
     const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
     const MemoryNeed need = memory_need(scene, ray_caster);
     if (need.with(scene.patches.size()) > there_is)  // no fault of what was asked for
         throw std::runtime_error(fmt::format("{} needs {} MiB of memory; this process may have {} MiB", scene.name,
                                              (need.with(scene.patches.size()) >> 20) + 1, there_is >> 20));
-    options.most_elements = std::min(options.most_elements, elements_within(need, bytes, scene));
+    options.max_elements = std::min(options.max_elements, elements_within(need, bytes, scene));
     return options;
 }
 

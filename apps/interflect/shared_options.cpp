@@ -182,7 +182,7 @@ void SolverOptions::add_refinement(CLI::App& app) {
                                  "Elements are split by what rays tell of them, or pairs by power (Eq. 14, 15)")
               ->default_str("variance"));
     group(
-        app.add_flag("--shrinkage,!--no-shrinkage", solve_.shrinks,
+        app.add_flag("--shrinkage,!--no-shrinkage", solve_.shrinkage,
                      "Reduce differences of neighbouring elements that are mostly noise (with --refinement variance)"));
     group(app.add_option("--epsilon", solve_.epsilon,
                          "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
@@ -197,12 +197,12 @@ void SolverOptions::add_refinement(CLI::App& app) {
             ->capture_default_str()
             ->check(number_between(0, 1)));
     group(
-        app.add_option("--min-area", solve_.smallest_area,
+        app.add_option("--min-area", solve_.min_area,
                        "No element smaller than this [m2]; 0: what a pixel shows of what is seen, else (5 mm)2 or less")
             ->type_name("AREA")
             ->capture_default_str()
             ->check(number_between(0, 1e9)));
-    group(add_parsed(app, "--max-elements", solve_.most_elements, parse_element_count, "Refinement ends there")
+    group(add_parsed(app, "--max-elements", solve_.max_elements, parse_element_count, "Refinement ends there")
               ->type_name("COUNT")
               ->default_str("67M"));
     group(add_parsed(app, "--memory", memory, parse_memory,
@@ -211,7 +211,7 @@ void SolverOptions::add_refinement(CLI::App& app) {
               ->default_str("9/10 of the machine's"));
     group(app.add_flag("--defer-refinement", solve_.defer_refinement,
                        "No refinement during the warm-up ('dr'); there is one with --warm-up"));
-    group(app.add_option("--inherited-trust", solve_.inherited_trust,
+    group(app.add_option("--inherited-weight", solve_.inherited_weight,
                          "How much its parent's past counts for a new element; 1: as in the paper")
               ->type_name("SHARE")
               ->capture_default_str()
@@ -253,10 +253,10 @@ void SolverOptions::add_importance(CLI::App& app) {
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--eye-rays", solve_.eye_rays,
+    group(app.add_option("--camera-rays", solve_.camera_rays,
                          "Rays that find what a view shows at first, per view; more follow as rays are averaged")
               ->capture_default_str()
-              ->check(CLI::Range(1, most_eye_rays)));
+              ->check(CLI::Range(1, most_camera_rays)));
 }
 
 SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {

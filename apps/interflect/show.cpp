@@ -78,7 +78,7 @@ void add_show(CLI::App& app, Shown& shown) {
 }
 
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                              const EyeSampling& sampling, const PictureMonitor& monitor) {
+                              const CameraSampling& sampling, const PictureMonitor& monitor) {
     const std::vector<float> values = values_of(shown, solved.solution);
     Quantity quantity = described(shown);
     quantity.values = values;

@@ -27,7 +27,7 @@ constexpr bool is_quantity(Shown shown) { return shown != Shown::light && shown 
 
 /// A picture of such a number. @throws InputError where the solution does not have it.
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                              const EyeSampling& sampling, const PictureMonitor& monitor);
+                              const CameraSampling& sampling, const PictureMonitor& monitor);
 
 /// Its name and unit, for the metadata of a picture.
 std::string label_of(Shown shown);

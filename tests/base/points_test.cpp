@@ -1,4 +1,4 @@
-// Stratification and uniformity of the points that rays are made from. Seen to fail (scripts/plant-faults) when all
+// Stratification and uniformity of the points that rays are made from. Seen to fail (scripts/mutation-test) when all
 // dimensions share one scrambling.
 
 #include "interflect/base/points.h"

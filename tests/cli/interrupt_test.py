@@ -172,7 +172,7 @@ class Interrupt(CommandTest):
         return sorted(path.name for path in self.temporary_folder.iterdir())
 
     def test_a_reader_of_messages_that_goes_away_ends_nothing(self):
-        process = self.start("solve", "room.mgf", "-o", "out.h5", "--rays", "3M", *SHORT_ITERATIONS)
+        process = self.start("solve", "room.mgf", "-o", "out.h5", "--rays", "500k", *SHORT_ITERATIONS)
         self.assertIn("rays", process.stderr.readline())
         process.stderr.close()
         self.assertEqual(process.wait(timeout=SOON), DONE)

@@ -54,10 +54,10 @@ class WrongUsage(CommandTest):
             "--min-area": ("-1", "nan"),
             "--max-elements": ("0", "5G"),
             "--memory": ("0", "-1G", "1X", "many"),
-            "--inherited-trust": ("-0.1", "1.1"),
+            "--inherited-weight": ("-0.1", "1.1"),
             "--alpha": ("-0.1", "1.1", "nan"),
             "--beta": ("-0.1", "1.1"),
-            "--eye-rays": ("0",),
+            "--camera-rays": ("0",),
         }.items():
             for value in values:
                 self.assert_wrong([*SOLVE, f"{option}={value}"], option)

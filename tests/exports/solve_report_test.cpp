@@ -22,18 +22,18 @@ SolveOptions unusual_options() {
     o.iterations = 4;
     o.rays_per_iteration = 500;
     o.refinement = Refinement::power;
-    o.shrinks = false;
+    o.shrinkage = false;
     o.epsilon = 1e-3;
     o.epsilon_decay = 0.5;
-    o.smallest_area = 1e-4;
-    o.inherited_trust = 0.25;
+    o.min_area = 1e-4;
+    o.inherited_weight = 0.25;
     o.defer_refinement = o.separate_iterations = o.total_importance = true;
     o.importance_at_elements = false;
     o.importance_smoothing = 0.3;
     o.importance_exponent = 0.6;
     o.alpha = 0.2;
     o.beta = 0.4;
-    o.eye_rays = 99;
+    o.camera_rays = 99;
     return o;
 }
 
@@ -54,11 +54,11 @@ TEST(SolveReport, HasEveryOption) {
     EXPECT_EQ(read.iterations, o.iterations);
     EXPECT_EQ(read.rays_per_iteration, o.rays_per_iteration);
     EXPECT_EQ(read.refinement, o.refinement);
-    EXPECT_EQ(read.shrinks, o.shrinks);
+    EXPECT_EQ(read.shrinkage, o.shrinkage);
     EXPECT_EQ(read.epsilon, o.epsilon);
     EXPECT_EQ(read.epsilon_decay, o.epsilon_decay);
-    EXPECT_EQ(read.smallest_area, o.smallest_area);
-    EXPECT_EQ(read.inherited_trust, o.inherited_trust);
+    EXPECT_EQ(read.min_area, o.min_area);
+    EXPECT_EQ(read.inherited_weight, o.inherited_weight);
     EXPECT_EQ(read.defer_refinement, o.defer_refinement);
     EXPECT_EQ(read.separate_iterations, o.separate_iterations);
     EXPECT_EQ(read.importance_at_elements, o.importance_at_elements);
@@ -67,7 +67,7 @@ TEST(SolveReport, HasEveryOption) {
     EXPECT_EQ(read.importance_exponent, o.importance_exponent);
     EXPECT_EQ(read.alpha, o.alpha);
     EXPECT_EQ(read.beta, o.beta);
-    EXPECT_EQ(read.eye_rays, o.eye_rays);
+    EXPECT_EQ(read.camera_rays, o.camera_rays);
     EXPECT_EQ(read.method.importance, o.method.importance);
     ASSERT_EQ(read.views.size(), 1u);
     EXPECT_EQ(read.views[0].view.eye, o.views[0].view.eye);

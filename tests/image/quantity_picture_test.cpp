@@ -33,7 +33,7 @@ struct HalfPicture {
         return made;
     }
     QuantityPicture picture(const std::vector<float>& values, Spacing spacing = Spacing::linear,
-                            EyeSampling sampling = {.width = 4, .height = 2}) const {
+                            CameraSampling sampling = {.width = 4, .height = 2}) const {
         return render_quantity(scene, forest, ray_caster, view, {"level", "", values, spacing}, sampling);
     }
 };

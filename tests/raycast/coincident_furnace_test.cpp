@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Copies, DoubledWalls,
                          testing::Values(Copy::same_corners, Copy::other_first_corner, Copy::in_quarters));
 
 // B = M / (1 - rho) on what answers, whichever of the two that is, and no power is emitted but that of one of them.
-// Seen to fail, with twice the light, where Surfaces does not ask for uncovered_share().
+// Seen to fail, with twice the light, where Materials does not ask for uncovered_share().
 TEST_P(DoubledWalls, OfAFurnaceEmitOnce) {
     Scene scene = closed_box({1, 2, 3}, 1, {wall});
     double_walls(scene, GetParam());

@@ -155,7 +155,7 @@ struct DecalOnTable {
     Target table, decal;
     std::uint32_t table_face = 0, decal_face = 0;
 
-    /// @param offset  Of the decal above the table, in lifts of the decal.
+    /// @param offset  Of the decal above the table, in ray offsets of the decal.
     DecalOnTable(unsigned position, float offset, bool decal_first) {
         std::mt19937 random(position);
         std::uniform_real_distribution<float> uniform(-1, 1);
@@ -174,16 +174,16 @@ struct DecalOnTable {
         for (const V3f& x :
              {decal.corner, decal.corner + decal.u, decal.corner + decal.v, decal.corner + decal.u + decal.v})
             largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-        const float lift = 0x1p-17f * largest;
-        decal.corner += offset * lift * n;
+        const float ray_offset = 0x1p-17f * largest;
+        decal.corner += offset * ray_offset * n;
         if (decal_first)
-            for (int i : {0, 1, 2, 3}) scene.vertices[static_cast<std::size_t>(i)] += offset * lift * n;
+            for (int i : {0, 1, 2, 3}) scene.vertices[static_cast<std::size_t>(i)] += offset * ray_offset * n;
         else
             decal_face = add_rectangle(scene, decal.corner, decal.u, decal.v, paper, 1, 1, true);
     }
 };
 
-class Decal : public testing::TestWithParam<float> {};  // offset, in lifts
+class Decal : public testing::TestWithParam<float> {};  // offset, in ray offsets
 INSTANTIATE_TEST_SUITE_P(OffsetInLifts, Decal, testing::Values(0.0f, 0.1f, -0.1f, 0.2f, -0.2f));
 
 TEST_P(Decal, AnswersEveryRayThatMeetsTheTableWithinIt) {
@@ -390,7 +390,7 @@ TEST(Neighbours, ThatShareEdgesOnlyAreNotContested) {
     add_rectangle(scene, {3, -2, 1}, {6, 0, 8}, {-0.8f, 10, 0.6f}, 0, 300, 300);  // rounding moves every corner
     std::vector<float> tolerance;
     const RayCaster ray_caster(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) tolerance.push_back(0.25f * ray_caster.lift(i));
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) tolerance.push_back(0.25f * ray_caster.ray_offset(i));
     const CoincidentFaces faces(scene, tolerance);
     EXPECT_EQ(faces.pair_count(), 0u);
     EXPECT_EQ(faces.hidden_count(), 0u);

@@ -1,5 +1,5 @@
 // What rays meet: closed rooms hold them in, each face answers with the side that is seen.
-// Seen to fail (scripts/plant-faults) when the backs of two-sided faces answer as their fronts, backs of one-sided
+// Seen to fail (scripts/mutation-test) when the backs of two-sided faces answer as their fronts, backs of one-sided
 // faces stop rays, rays are not lifted off the surface that they leave.
 
 #include "interflect/raycast/ray_caster.h"
@@ -145,18 +145,20 @@ TEST_P(ClosedBox, LetsNoRayOutThatStartsOnAWall) {
     const RayCaster ray_caster(scene);
     Random random(3);
     std::vector<Ray> rays;
-    float lift = 0;
+    float offset = 0;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         const PatchGeometry geometry(scene, scene.patches[p]);
-        lift = std::max(lift, ray_caster.lift(p));
+        offset = std::max(offset, ray_caster.ray_offset(p));
         for (int i = 0; i < 1000; ++i) {
             const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
-            rays.push_back({x + geometry.normal() * ray_caster.lift(p), direction_above(geometry.normal(), random)});
+            rays.push_back(
+                {x + geometry.normal() * ray_caster.ray_offset(p), direction_above(geometry.normal(), random)});
         }
     }
     const std::vector<Hit> hits = traced(ray_caster, rays);
-    // Of rays that start within `lift` of an edge some begin beyond the next wall: lift / 0.3 m of them at the worst.
-    const double behind_a_wall = lift / 0.3 * static_cast<double>(rays.size());
+    // Of rays that start within `offset` of an edge some begin beyond the next wall: offset / 0.3 m of them at the
+    // worst.
+    const double behind_a_wall = offset / 0.3 * static_cast<double>(rays.size());
     EXPECT_LE(static_cast<double>(count_escaped(hits)), behind_a_wall / 2);
 }
 
@@ -273,7 +275,7 @@ TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
             const PatchGeometry geometry(scene, scene.patches[p]);
             for (int i = 0; i < 500; ++i) {
                 const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
-                const V3f origin = x + geometry.normal() * ray_caster.lift(p);
+                const V3f origin = x + geometry.normal() * ray_caster.ray_offset(p);
                 rays.push_back({origin, direction_above(geometry.normal(), random)});
             }
         }
@@ -290,7 +292,8 @@ std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
         const PatchGeometry geometry(scene, scene.patches[p]);
         for (int i = 0; i < rays_per_patch; ++i) {
             const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
-            rays.push_back({x + geometry.normal() * ray_caster.lift(p), direction_above(geometry.normal(), random)});
+            rays.push_back(
+                {x + geometry.normal() * ray_caster.ray_offset(p), direction_above(geometry.normal(), random)});
         }
     }
     return count_escaped(traced(ray_caster, rays));
@@ -315,7 +318,7 @@ TEST(RayOffset, DependsOnNothingFarAway) {
     with_stray.vertices.emplace_back(-1e8f, 0.0f, 0.0f);  // of no face
     EXPECT_EQ(escaped_from(box, 1000), 0);
     const RayCaster alone(box), together(with_stray);
-    for (std::uint32_t p = 0; p < box.patches.size(); ++p) EXPECT_EQ(alone.lift(p), together.lift(p));
+    for (std::uint32_t p = 0; p < box.patches.size(); ++p) EXPECT_EQ(alone.ray_offset(p), together.ray_offset(p));
 }
 
 // The shadow at the foot of a screen: rays from the floor, a tenth of a millimetre beside it, meet it.
@@ -325,7 +328,7 @@ TEST(RayOffset, KeepsContactShadows) {
     const std::uint32_t screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 0.01f}, 0, 1, 1, true);
     add_rectangle(scene, {-1e5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     const RayCaster ray_caster(scene);
-    const V3f start(1.9999f, 2, ray_caster.lift(floor));
+    const V3f start(1.9999f, 2, ray_caster.ray_offset(floor));
     const Hit hit = traced(ray_caster, {{start, V3f(1, 0, 2).normalized()}})[0];
     EXPECT_TRUE(hit.patch == screen || hit.patch == screen + 1) << hit.patch;
 }
@@ -344,7 +347,7 @@ TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
         for (int i = 0; i < 10'000; ++i) {
             const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
             rays.push_back(
-                {x + geometry.normal() * ray_caster.lift(decal), direction_above(geometry.normal(), random)});
+                {x + geometry.normal() * ray_caster.ray_offset(decal), direction_above(geometry.normal(), random)});
         }
         EXPECT_EQ(count_escaped(traced(ray_caster, rays)), static_cast<std::ptrdiff_t>(rays.size())) << tilt;
     }

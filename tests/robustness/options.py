@@ -35,7 +35,7 @@ TYPICAL = {
     "UINT": ("0", "1", "4294967295", "18446744073709551615"),
     "WxH": ("1x1", "1x16384", "16384x1", "64x3", "16384x16384"),
 }
-MUCH_WORK = ("--rays-per-iteration=1e11", "--rays-per-iteration=1e9", "--eye-rays=4194304")
+MUCH_WORK = ("--rays-per-iteration=1e11", "--rays-per-iteration=1e9", "--camera-rays=4194304")
 MUCH_WORK += ("--warm-up=1000000", "--min-area=1e-12")
 COORDINATES = ("0", "1", "-1", "1.3", "0.3", "1e-45", "1e-30", "1e-6", "1e3", "1e7", "-1e10", "1e14", "1e15")
 BEYOND = ("1e16", "1e18", "1e30", "1e38", "-3.4e38", "1e39", "1e300")  # for the eye of a camera

@@ -219,7 +219,7 @@ TEST_P(MadeScenes, NoRayEscapes) {
         V3f direction = uniform_direction(2, i);
         if (direction.dot(geometry.normal()) < 0) direction = -direction;
         const V3f origin = geometry.point(geometry.uniform_parameters(unit_float(words[1]), unit_float(words[2])));
-        rays.push_back({origin + ray_caster.lift(index) * geometry.normal(), direction});
+        rays.push_back({origin + ray_caster.ray_offset(index) * geometry.normal(), direction});
     }
     std::vector<Hit> hits(rays.size());
     ray_caster.trace(rays, hits);

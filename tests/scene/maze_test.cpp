@@ -56,7 +56,7 @@ TEST(Maze, ThingsAreFartherApartThanRaysAreLifted) {
     // Else a ray from the underside of a thing would start below what it stands on.
     const Scene scene = make_maze({.rooms = MazeOptions::most_rooms});
     const RayCaster ray_caster(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.lift(i), building::gap);
+    for (std::uint32_t i = 0; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.ray_offset(i), building::gap);
 }
 
 TEST(Maze, FirstRoomsHaveViews) {

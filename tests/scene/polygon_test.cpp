@@ -90,7 +90,7 @@ TEST(Polygon, EveryTriangleOfATwoSidedPolygonIsFollowedByItsOtherSide) {
 }
 
 TEST(Polygon, SlightlyWarpedQuadrilateralStaysStronglyWarpedIsTriangulated) {
-    // The corners are 1/4 of the lift off the mean plane; the limit is 1% of the diagonal, 0.014.
+    // The corners are 1/4 of the offset off the mean plane; the limit is 1% of the diagonal, 0.014.
     EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.04f}, {0, 1, 0}}).scene.patches.size(), 1u);
     EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.08f}, {0, 1, 0}}).scene.patches.size(), 2u);
 }

@@ -11,42 +11,44 @@
 namespace interflect {
 namespace {
 
-using Load = Arrivals::Load;
+using Contribution = Arrivals::Contribution;
 
-TEST(Arrivals, GivesEachElementThePartsOfTheLoadsThatArriveThere) {
+TEST(Arrivals, GivesEachElementThePartsOfContributionsThatArriveThere) {
     Arrivals arrivals(5);
     arrivals.begin(3);
-    Arrivals::Sorter sorter(arrivals);
-    const std::uint32_t a = sorter.add_source({1, 10, 100, 5, 1000}), b = sorter.add_source({2, 20, 200, 7, 2000});
-    sorter.add(0, a, true, true);
-    sorter.add(0, b, true, false);
-    sorter.add(2, b, false, true);
-    sorter.add(4, a, true, false);  // made since the step began
-    sorter.hand_on_all();
-    EXPECT_EQ(arrivals.take(0), (Load{3, 30, 300, 12, 1000}));
-    EXPECT_EQ(arrivals.take(1), (Load{0, 0, 0, 0, 0}));
-    EXPECT_EQ(arrivals.take(2), (Load{0, 0, 0, 0, 2000}));
-    EXPECT_EQ(arrivals.take(4), (Load{1, 10, 100, 5, 0}));
-    EXPECT_EQ(arrivals.take(4), Load{}) << "taken";
+    Arrivals::ScatterBuffer buffer(arrivals);
+    const std::uint32_t a = buffer.add_source({1, 10, 100, 5, 1000}), b = buffer.add_source({2, 20, 200, 7, 2000});
+    buffer.add(0, a, true, true);
+    buffer.add(0, b, true, false);
+    buffer.add(2, b, false, true);
+    buffer.add(4, a, true, false);  // made since the step began
+    buffer.flush_all();
+    EXPECT_EQ(arrivals.take(0), (Contribution{3, 30, 300, 12, 1000}));
+    EXPECT_EQ(arrivals.take(1), (Contribution{0, 0, 0, 0, 0}));
+    EXPECT_EQ(arrivals.take(2), (Contribution{0, 0, 0, 0, 2000}));
+    EXPECT_EQ(arrivals.take(4), (Contribution{1, 10, 100, 5, 0}));
+    EXPECT_EQ(arrivals.take(4), Contribution{}) << "taken";
 }
 
 TEST(Arrivals, AreTheSameWhateverThreadsBringThem) {
     constexpr std::size_t elements = 1000, sources = 7, rays = 200'000;
-    std::vector<Load> loads;
-    for (std::int64_t s = 0; s < static_cast<std::int64_t>(sources); ++s) loads.push_back({s, 3 * s, -s, s * s, 1 + s});
-    std::vector<Load> expected(elements, Load{});
+    std::vector<Contribution> contributions;
+    for (std::int64_t s = 0; s < static_cast<std::int64_t>(sources); ++s)
+        contributions.push_back({s, 3 * s, -s, s * s, 1 + s});
+    std::vector<Contribution> expected(elements, Contribution{});
     Arrivals arrivals(elements);
     arrivals.begin(elements);
     const auto element = [](std::size_t ray) { return static_cast<std::uint32_t>(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
-        for (std::size_t c = 0; c < loads[0].size(); ++c) expected[element(ray)][c] += loads[ray % sources][c];
+        for (std::size_t c = 0; c < contributions[0].size(); ++c)
+            expected[element(ray)][c] += contributions[ray % sources][c];
     parallel_for_ranges(rays, 10'000, [&](std::size_t begin, std::size_t end) {
-        Arrivals::Sorter sorter(arrivals);
+        Arrivals::ScatterBuffer buffer(arrivals);
         for (std::size_t ray = begin; ray < end; ++ray) {
-            sorter.add(element(ray), sorter.add_source(loads[ray % sources]), true, true);
-            sorter.forget_sources();
+            buffer.add(element(ray), buffer.add_source(contributions[ray % sources]), true, true);
+            buffer.release_sources();
         }
-        sorter.hand_on_all();
+        buffer.flush_all();
     });
     for (std::size_t e = 0; e < elements; ++e) EXPECT_EQ(arrivals.take(e), expected[e]) << e;
 }

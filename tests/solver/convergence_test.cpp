@@ -1,5 +1,5 @@
 // How the error falls with the number of rays N, and whether the solver's own estimate of it can be trusted.
-// Seen to fail (scripts/plant-faults) when streams do not advance, and with every bias that dense_test.cpp names but
+// Seen to fail (scripts/mutation-test) when streams do not advance, and with every bias that dense_test.cpp names but
 // those that need openings or two-sided faces.
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // many seeds must be its solution. In an empty box the form factors are exact; in a furnished room they come from an
 // independent ray tracer, whose own noise enters the test.
 //
-// Seen to fail (scripts/plant-faults) when radiosity lacks rho, irradiance or power lacks the area, a quantum lacks q,
+// Seen to fail (scripts/mutation-test) when radiosity lacks rho, irradiance or power lacks the area, a quantum lacks q,
 // rays are allocated uniformly, 0.5% of the power is lost, directions lack the cosine or turn over 6 radians, origins
 // crowd near the centre, escaped rays land on a patch, backs of faces answer as their fronts, rays are not lifted off
 // their surface.

@@ -2,7 +2,7 @@
 // finds, Stein's estimate of the error after shrinkage, means that are merged, and where elements are split.
 // Statistical tests have fixed seeds; correct code fails each with a chance of 0.001 (statistics.h).
 //
-// Seen to fail (scripts/plant-faults): noise that forgets how few rays the iteration has, one scale for all elements,
+// Seen to fail (scripts/mutation-test): noise that forgets how few rays the iteration has, one scale for all elements,
 // inner elements without the factor 3/4; risk without its last term, or checked by the mean itself instead of the next
 // iteration; differences merged with the tau of the patches; new elements that trust in full what they inherit; a split
 // criterion without noise, or without signal.
@@ -34,14 +34,14 @@ struct Setting {
     RayCaster ray_caster;
     SolveOptions options;
     Monitor monitor;
-    Run run;
+    SolverState state;
     std::mt19937_64 random{1};
 
     Setting(int n, int levels, float exitance = 1)
         : scene(closed_box({1, 1, 1}, n, {{"wall", Rgb(0.5f), Rgb(exitance)}})),
           ray_caster(scene),
           options(hierarchical()),
-          run(scene, ray_caster, options, monitor) {
+          state(scene, ray_caster, options, monitor) {
         for (int level = 0; level < levels; ++level) divide();
     }
     static SolveOptions hierarchical() {
@@ -50,11 +50,11 @@ struct Setting {
         return options;
     }
     void divide() {
-        const std::uint32_t before = run.forest->size();
-        for (const std::uint32_t leaf : run.forest->leaves()) run.forest->subdivide(leaf);
-        run.forest->put_in_order(before);
-        grow_with_forest(run, before);
-        run.streams.used.resize(run.forest->size(), 0);
+        const std::uint32_t before = state.forest->size();
+        for (const std::uint32_t leaf : state.forest->leaves()) state.forest->subdivide(leaf);
+        state.forest->put_in_order(before);
+        grow_with_forest(state, before);
+        state.streams.used.resize(state.forest->size(), 0);
     }
 
     /// An iteration of so many rays. Siblings differ from their parent by the signal and by noise that has, before the
@@ -62,7 +62,7 @@ struct Setting {
     /// to level; the model is told the same without the factor.
     template <class Signal>
     FreshEstimate iteration(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
-        const ElementForest& forest = *run.forest;
+        const ElementForest& forest = *state.forest;
         FreshEstimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)), std::vector<float>(forest.size(), 0.0f)};
         const auto independent = [&](int level) { return variance / rays * std::pow(4.0f, static_cast<float>(level)); };
         for (std::uint32_t e = 0; e < forest.size(); ++e) fresh.variance[e] = independent(forest.level(e));
@@ -85,9 +85,9 @@ struct Setting {
     void iterate(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
         const FreshEstimate fresh = iteration(rays, factor, variance, signal);
         const IterationPlan plan{static_cast<std::int64_t>(rays), false};
-        estimate_noise(run, fresh, plan.rays);
-        merge_details(run, run.solution.irradiance, fresh.irradiance, plan);
-        remember(run, plan, run.forest->size());
+        estimate_noise(state, fresh, plan.rays);
+        merge_details(state, state.solution.irradiance, fresh.irradiance, plan);
+        update_history(state, plan, state.forest->size());
     }
 };
 
@@ -98,7 +98,7 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
     const std::vector<float> factor{3, 1, 0.1f};
     constexpr float variance = 3;  // of one ray, on a patch
     for (int k = 0; k < 12; ++k) {
-        EXPECT_EQ(s.run.noise.is_known(), k > 1) << k;
+        EXPECT_EQ(s.state.noise.is_known(), k > 1) << k;
         s.iterate(1e5f * static_cast<float>(1 + k), factor, variance, no_signal);
     }
     const std::array<std::uint32_t, 3> first{0, 600, 3000};
@@ -106,10 +106,10 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
         // Three of four siblings are independent; four iterations count, by the model's memory.
         const double expected = variance * std::pow(4.0, level) * factor[level] * (level == 0 ? 1 : 0.75);
         const double freedom = 4.0 * (level == 0 ? 600 : 0.75 * (level == 1 ? 2400 : 9600));
-        const double found = s.run.noise.variance(*s.run.forest, s.run.solution.irradiance, first[level], 1);
+        const double found = s.state.noise.variance(*s.state.forest, s.state.solution.irradiance, first[level], 1);
         EXPECT_NEAR(found / expected, 1, sure * std::sqrt(2 / freedom)) << "level " << level;
         EXPECT_GT(std::abs(found / (1.5 * expected) - 1), sure * std::sqrt(2 / freedom)) << "would notice a half more";
-        const double with_ten = s.run.noise.variance(*s.run.forest, s.run.solution.irradiance, first[level], 10);
+        const double with_ten = s.state.noise.variance(*s.state.forest, s.state.solution.irradiance, first[level], 10);
         EXPECT_NEAR(with_ten / found, 0.1, 1e-5) << "falls with the rays";
     }
 }
@@ -117,13 +117,13 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
 /// What reduced differences are off by in the mean over all siblings, if they should be `signal`.
 template <class Signal>
 double true_risk(const Setting& s, const Signal& signal) {
-    const ElementForest& forest = *s.run.forest;
+    const ElementForest& forest = *s.state.forest;
     double sum = 0, groups = 0;
     for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4, ++groups)
         for (std::uint32_t k = 0; k < 4; ++k) {
-            const float y = luminance(s.run.solution.irradiance[first + k]) -
-                            luminance(s.run.solution.irradiance[forest.parent(first)]);
-            sum += std::pow(detail_of(s.run, first).shrinkage() * y - signal(first, k), 2) / 4;
+            const float y = luminance(s.state.solution.irradiance[first + k]) -
+                            luminance(s.state.solution.irradiance[forest.parent(first)]);
+            sum += std::pow(detail_of(s.state, first).shrinkage() * y - signal(first, k), 2) / 4;
         }
     return sum / groups;
 }
@@ -135,10 +135,10 @@ TEST(RiskCheck, MeasuresTheErrorOfReducedDifferences) {
     double measured = 0, expected = 0;
     for (int k = 0; k < 8; ++k) {
         const double risk = 6 * true_risk(s, signal);  // times the area of the walls [m^2]
-        s.run.risk_check = {};
+        s.state.risk_check = {};
         s.iterate(1000, {0, 1}, 0.1f, signal);
-        measured += s.run.risk_check.measured / risk / 8;
-        expected += s.run.risk_check.expected / risk / 8;
+        measured += s.state.risk_check.measured / risk / 8;
+        expected += s.state.risk_check.expected / risk / 8;
     }
     // 2400 products with a noise of four times the risk, in eight iterations of which each shares most with the next.
     EXPECT_NEAR(measured, 1, 0.1);
@@ -152,11 +152,11 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     SolveOptions options = Setting::hierarchical();
     options.views.push_back({{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}});
     const Monitor monitor;
-    interflect::Run run(scene, ray_caster, options, monitor);
-    run.solution.view_importance.assign(run.forest->size(), 1.0f);
-    run.solution.irradiance[0] = {3, -0.89f, 0.2f};  // of luminance 0.02, but what is reflected has 0.4
-    EXPECT_LE(error_weight(run, 0), 0.8 * 0.8);
-    EXPECT_GE(error_weight(run, 0), 0.1 * 0.1);
+    interflect::SolverState state(scene, ray_caster, options, monitor);
+    state.solution.view_importance.assign(state.forest->size(), 1.0f);
+    state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // of luminance 0.02, but what is reflected has 0.4
+    EXPECT_LE(error_weight(state, 0), 0.8 * 0.8);
+    EXPECT_GE(error_weight(state, 0), 0.1 * 0.1);
 }
 
 class Risk : public testing::TestWithParam<double> {};
@@ -198,17 +198,18 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
     Setting s(2, 2);
     std::uniform_real_distribution<float> history(0, 1000);
     for (int k = 0; k < 5; ++k) {
-        for (float& h : s.run.history) h = history(s.random);
-        for (std::uint32_t e = 0; e < s.run.forest->size(); ++e)
-            if (e >= s.run.forest->patch_count() && (e - s.run.forest->patch_count()) % 4 != 0)
-                s.run.history[e] = s.run.history[e - (e - s.run.forest->patch_count()) % 4];  // as siblings have it
+        for (float& h : s.state.history) h = history(s.random);
+        for (std::uint32_t e = 0; e < s.state.forest->size(); ++e)
+            if (e >= s.state.forest->patch_count() && (e - s.state.forest->patch_count()) % 4 != 0)
+                s.state.history[e] =
+                    s.state.history[e - (e - s.state.forest->patch_count()) % 4];  // as siblings have it
         const FreshEstimate fresh = s.iteration(100, {1, 1, 1}, 2, no_signal);
-        merge_details(s.run, s.run.solution.irradiance, fresh.irradiance, {100, false});
+        merge_details(s.state, s.state.solution.irradiance, fresh.irradiance, {100, false});
     }
-    std::vector<Rgb> means = s.run.solution.irradiance;
-    pull(*s.run.forest, means);
+    std::vector<Rgb> means = s.state.solution.irradiance;
+    pull(*s.state.forest, means);
     for (std::uint32_t e = 0; e < means.size(); ++e)
-        EXPECT_NEAR(means[e].x, s.run.solution.irradiance[e].x, 1e-5f) << e;
+        EXPECT_NEAR(means[e].x, s.state.solution.irradiance[e].x, 1e-5f) << e;
 }
 
 /// Mean over trials of how young siblings are found, of which the first alone is lit, and each estimate of that is
@@ -219,17 +220,17 @@ std::array<std::vector<double>, 4> young_siblings(const Merge& merge_one) {
     std::array<std::vector<double>, 4> found;
     std::bernoulli_distribution hit(0.2);
     for (int trial = 0; trial < 2000; ++trial) {
-        std::vector<Rgb>& mean = s.run.solution.irradiance;
+        std::vector<Rgb>& mean = s.state.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));  // inherited: four for the first of the siblings, none for the others
-        for (std::uint32_t e = 0; e < mean.size(); ++e) s.run.history[e] = e < 6 ? 1000.0f : 0.0f;
+        for (std::uint32_t e = 0; e < mean.size(); ++e) s.state.history[e] = e < 6 ? 1000.0f : 0.0f;
         for (int k = 0; k < 2; ++k) {
             std::vector<Rgb> received(mean.size(), Rgb(0));
             for (std::uint32_t first = 6; first < mean.size(); first += 4)
                 received[first] = Rgb(hit(s.random) ? 20 : 0);
-            pull(*s.run.forest, received);
+            pull(*s.state.forest, received);
             const IterationPlan plan{100, false};
-            merge_one(s.run, mean, received, plan);
-            remember(s.run, plan, s.run.forest->size());
+            merge_one(s.state, mean, received, plan);
+            update_history(s.state, plan, s.state.forest->size());
         }
         for (std::uint32_t k = 0; k < 4; ++k) found[k].push_back(mean[6 + k].x);
     }
@@ -237,8 +238,9 @@ std::array<std::vector<double>, 4> young_siblings(const Merge& merge_one) {
 }
 
 TEST(MergeDetails, IsUnbiasedForYoungSiblings) {
-    const auto merged = young_siblings([](const interflect::Run& run, auto&&... a) { merge_details(run, a...); });
-    const auto scaled = young_siblings([](const interflect::Run& run, auto&&... a) { merge(run, a...); });
+    const auto merged =
+        young_siblings([](const interflect::SolverState& state, auto&&... a) { merge_details(state, a...); });
+    const auto scaled = young_siblings([](const interflect::SolverState& state, auto&&... a) { merge(state, a...); });
     for (std::size_t k = 0; k < 4; ++k) {
         EXPECT_GT(4 * t_test(merged[k], k == 0 ? 4 : 0), false_alarm) << k;
         EXPECT_LT(4 * t_test(merged[k], k == 0 ? 4.3 : 0.3), false_alarm) << k << ": would notice 0.3";
@@ -251,14 +253,15 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
     const IterationPlan plan{100, false};
     for (const float trust : {0.0f, 0.1f, 1.0f}) {
         Setting s(1, 1);
-        s.options.inherited_trust = trust;
-        std::vector<Rgb>& mean = s.run.solution.irradiance;
+        s.options.inherited_weight = trust;
+        std::vector<Rgb>& mean = s.state.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));
-        remember(s.run, plan, patches);  // what the first iteration brought; elements below the patches were made in it
+        update_history(s.state, plan,
+                       patches);  // what the first iteration brought; elements below the patches were made in it
         std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
         for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
-        pull(*s.run.forest, received);
-        merge(s.run, mean, received, plan);
+        pull(*s.state.forest, received);
+        merge(s.state, mean, received, plan);
         EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
         const float missed = trust / (1 + trust), others = (trust + 4.0f / 3) / (1 + trust);
         EXPECT_NEAR(mean[patches].x, missed, 1e-5);
@@ -271,11 +274,11 @@ template <class Signal>
 double share_split(const Signal& signal) {
     Setting s(10, 1);
     for (int k = 0; k < 6; ++k) s.iterate(1000, {1, 1}, 10, signal);
-    const auto leaves = static_cast<double>(s.run.forest->leaves().size());
-    const std::uint32_t before = s.run.forest->size();
-    refine_by_variance(s.run);
-    for (std::uint32_t e = before; e < s.run.forest->size(); ++e) EXPECT_EQ(s.run.history[e], 0) << "measured anew";
-    return (s.run.forest->size() - before) / 4 / leaves;
+    const auto leaves = static_cast<double>(s.state.forest->leaves().size());
+    const std::uint32_t before = s.state.forest->size();
+    refine_by_variance(s.state);
+    for (std::uint32_t e = before; e < s.state.forest->size(); ++e) EXPECT_EQ(s.state.history[e], 0) << "measured anew";
+    return (s.state.forest->size() - before) / 4 / leaves;
 }
 
 TEST(VarianceRefinement, SeldomSplitsPureNoise) {
@@ -305,15 +308,15 @@ TEST(VarianceRefinement, KeepsItsLimitsAndLeavesWhatIsMeasuredTooLittle) {
     Setting s(4, 1);
     const auto edge = [](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.3f : -0.3f; };
     for (int k = 0; k < 4; ++k) s.iterate(1000, {1, 1}, 10, edge);
-    s.options.most_elements = s.run.forest->size() + 21;
-    const std::uint32_t before = s.run.forest->size();
-    refine_by_variance(s.run);
-    EXPECT_EQ(s.run.forest->size(), before + 20);
-    s.options.most_elements = 1 << 20;
-    for (float& h : s.run.history) h = 0;
-    const std::uint32_t then = s.run.forest->size();
-    refine_by_variance(s.run);
-    EXPECT_EQ(s.run.forest->size(), then) << "nothing was measured";
+    s.options.max_elements = s.state.forest->size() + 21;
+    const std::uint32_t before = s.state.forest->size();
+    refine_by_variance(s.state);
+    EXPECT_EQ(s.state.forest->size(), before + 20);
+    s.options.max_elements = 1 << 20;
+    for (float& h : s.state.history) h = 0;
+    const std::uint32_t then = s.state.forest->size();
+    refine_by_variance(s.state);
+    EXPECT_EQ(s.state.forest->size(), then) << "nothing was measured";
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ TEST(ElementFloor, IsWhatAPixelShows) {
     EXPECT_NEAR(floor.pixel_area({0, 2, 0}, facing), 0.0016f, 1e-9f) << "grows with the square of the distance";
     EXPECT_NEAR(floor.pixel_area({0, 2, 0}, oblique), 0.0032f, 1e-8f) << "and with the obliquity,";
     EXPECT_NEAR(floor.pixel_area({0, 2, 0}, grazing), 0.016f, 1e-8f) << "but tenfold at most";
-    EXPECT_EQ(floor.smallest_area({0, 2, 0}, facing, true), floor.pixel_area({0, 2, 0}, facing));
-    EXPECT_EQ(floor.smallest_area({0, 2, 0}, facing, false), floor.unseen());
+    EXPECT_EQ(floor.min_area({0, 2, 0}, facing, true), floor.pixel_area({0, 2, 0}, facing));
+    EXPECT_EQ(floor.min_area({0, 2, 0}, facing, false), floor.unseen());
 }
 
 TEST(ElementFloor, IsThatOfTheNearestViewInWorldCoordinates) {
@@ -54,16 +54,16 @@ TEST(ElementFloor, IsThatOfTheNearestViewInWorldCoordinates) {
 TEST(ElementFloor, WithoutAViewIsThatOfUnseenElements) {
     const ElementFloor floor(room(), {});
     EXPECT_TRUE(std::isinf(floor.pixel_area({0, 1, 0}, {0, -1, 0})));
-    EXPECT_EQ(floor.smallest_area({0, 1, 0}, {0, -1, 0}, true), floor.unseen());
+    EXPECT_EQ(floor.min_area({0, 1, 0}, {0, -1, 0}, true), floor.unseen());
 }
 
 TEST(ElementFloor, GivenByTheCallerHoldsEverywhere) {
     SolveOptions options;
     options.views = {from({0, 0, 0})};
-    options.smallest_area = 0.25;
+    options.min_area = 0.25;
     const ElementFloor floor(room(), options);
     EXPECT_EQ(floor.unseen(), 0.25f);
-    EXPECT_EQ(floor.smallest_area({0, 1, 0}, {0, -1, 0}, true), 0.25f);
+    EXPECT_EQ(floor.min_area({0, 1, 0}, {0, -1, 0}, true), 0.25f);
 }
 
 TEST(ElementFloor, DoesNotDependOnTheSizeOfTheWorld) {

@@ -81,12 +81,12 @@ TEST(AlphaOne, LeavesLightAsThePreparationFoundIt) {
 }
 
 /// Two iterations of single bounces, few enough rays that each misses some leaves. All is divided in the first.
-Solution two_iterations_trusting(double inherited_trust) {
+Solution two_iterations_trusting(double inherited_weight) {
     SolveOptions options = options_of("hsrr");
     options.views.clear();
     options.rays_per_iteration = 1000;
     options.complete_passes = false;
-    options.inherited_trust = inherited_trust;
+    options.inherited_weight = inherited_weight;
     divide_everything(options, 0.03);  // m^2; the walls have 2, 3 and 6: three levels
     return solve_until(2, furnace(1), options);
 }

@@ -1,7 +1,7 @@
 // Form factors from ray counts against Howell's closed forms; first the closed forms themselves against figures that
 // anyone can look up, and the independent ray tracer of tests/support against the closed forms.
 //
-// Seen to fail (scripts/plant-faults) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
+// Seen to fail (scripts/mutation-test) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
 // directions lack the cosine, origins crowd near the centre, the seed is ignored.
 
 #include "tests/support/form_factors.h"
@@ -54,13 +54,13 @@ double received_share(const Pair& pair, PointSet set, std::uint64_t seed, std::i
     const Scene scene = scene_of(pair);
     ElementForest forest(scene, 2);
     SampleStreams streams(set, seed);
-    const Surfaces surfaces(scene);
+    const Materials materials(scene);
     const std::vector<Rgb> darkness(2, Rgb(0));
     TransportStep step;  // the squares are of 1 m^2: power and radiosity are the same number
     step.q = {1, 0};
     step.rays = rays;
-    step.light = Light(surfaces, darkness);
-    return transport(surfaces, forest, RayCaster(scene), step, streams).irradiance[1].x;
+    step.light = Radiosity(materials, darkness);
+    return transport(materials, forest, RayCaster(scene), step, streams).irradiance[1].x;
 }
 
 TEST_P(TwoSquares, RandomRaysHitWithTheFormFactorsProbability) {

@@ -3,7 +3,7 @@
 // exact answer. The box is 1 x 2 x 3 m, 3 x 3 patches a wall: in a cube of 2 x 2 all 24 patches are congruent, and
 // wrong directions or starting points pass unseen.
 //
-// Seen to fail (scripts/plant-faults) when radiosity lacks rho, the incremental start has rho twice, irradiance or
+// Seen to fail (scripts/mutation-test) when radiosity lacks rho, the incremental start has rho twice, irradiance or
 // power lacks the area, a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost, directions lack the
 // cosine or turn over 6 radians, origins crowd near the centre, tau is always 1/2, streams do not advance.
 
@@ -12,8 +12,8 @@
 #include <cmath>
 
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
-#include "interflect/solver/surfaces.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -145,7 +145,7 @@ TEST(Furnace, WeighsEveryIterationByItsRays) {
 TEST(Furnace, RadiosityOfBlackWallsIsTheirExitanceExactly) {
     const Scene scene = furnace(0);
     const Solution solution = solve(scene, RayCaster(scene), paper_options(1));
-    for (const Rgb& b : radiosity(Surfaces(scene), *solution.forest, solution.irradiance))
+    for (const Rgb& b : radiosity(Materials(scene), *solution.forest, solution.irradiance))
         EXPECT_EQ(b, Rgb(static_cast<float>(exitance)));
 }
 

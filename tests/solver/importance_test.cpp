@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
-#include "interflect/solver/surfaces.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -41,7 +41,7 @@ double sum_over_leaves(const Solution& s, const std::vector<float>& per_area) {
 
 /// sum v P: what the view measures, from the light.
 double measured_by_light(const Scene& scene, const Solution& s) {
-    const std::vector<Rgb> b = radiosity(Surfaces(scene), *s.forest, s.irradiance);
+    const std::vector<Rgb> b = radiosity(Materials(scene), *s.forest, s.irradiance);
     double sum = 0;
     for (const std::uint32_t e : s.forest->leaves())
         sum += static_cast<double>(s.view_importance[e]) * s.forest->area(e) * b[e].x;
@@ -53,7 +53,7 @@ double measured_by_importance(const Scene& scene, const Solution& s) {
     double sum = 0;
     for (const std::uint32_t e : s.forest->leaves())
         sum += static_cast<double>(s.view_importance[e] + s.indirect_importance[e]) * s.forest->area(e) *
-               Surfaces(scene).exitance(s.forest->patch(e)).x;
+               Materials(scene).exitance(s.forest->patch(e)).x;
     return sum;
 }
 
@@ -94,7 +94,7 @@ TEST_P(Duality, LightAndImportanceMeasureTheSame) {
         SolveOptions options = on_a_fixed_mesh(GetParam(), seed);
         options.rays_per_iteration = 12'000;
         options.alpha = 0.5;
-        if (!options.importance_at_elements) options.smallest_area = left_whole;
+        if (!options.importance_at_elements) options.min_area = left_whole;
         const Solution s = solve(scene, ray_caster, options);
         ASSERT_EQ(s.non_finite, 0);
         const double light = measured_by_light(scene, s);

@@ -22,7 +22,7 @@
 
 #include "interflect/base/error.h"
 #include "interflect/solver/exchange.h"
-#include "interflect/solver/surfaces.h"
+#include "interflect/solver/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"
@@ -168,11 +168,11 @@ TEST(LinkRadiosity, IsTheDenseSolutionOfAFurnishedRoom) {
 TEST(LinkRadiosity, CountsWhatEscapesFromAnOpenBox) {
     const Scene scene = open_colourful_box();
     const FormFactors f = exact_form_factors(scene);
-    const Surfaces surfaces(scene);
+    const Materials materials(scene);
     const std::vector<RgbD> exact = dense_irradiance(scene, f);
     RgbD escaping(0, 0, 0);
     for (std::uint32_t i = 0; i < exact.size(); ++i)
-        escaping += (RgbD(surfaces.exitance(i)) + RgbD(surfaces.reflectance(i)) * exact[i]) *
+        escaping += (RgbD(materials.exitance(i)) + RgbD(materials.reflectance(i)) * exact[i]) *
                     (static_cast<double>(patch_area(scene, scene.patches[i])) * (1 - f.row_sum(i)));
     const RgbD escaped = solve_scene(scene, unrefined()).iterations.back().escaped_power;
     for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(escaped[channel] / escaping[channel], 1, 2e-3);
@@ -212,7 +212,7 @@ TEST(LinkRadiosity, OfCoincidentFacesOneIsLit) {
     Scene scene = lamp_over_floor();
     add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 2);  // paper on the floor
     SolveOptions options = refined_to(1e-4);
-    options.smallest_area = 0.01;
+    options.min_area = 0.01;
     const Solution s = solve_scene(scene, options);
     const ElementForest& forest = *s.forest;
     EXPECT_EQ(s.irradiance[forest.leaf_at(1, {0.5f, 0.5f})], Rgb(0)) << "the floor below the paper";
@@ -292,11 +292,11 @@ TEST(LinkRadiosity, RefinesMoreAsEpsilonFallsAndOnlyWhereAsked) {
 TEST(LinkRadiosity, RefinementKeepsItsLimits) {
     const Scene scene = colourful_box();
     SolveOptions options = refined_to(1e-5);
-    options.most_elements = 200;
+    options.max_elements = 200;
     EXPECT_LE(solve_scene(scene, options).forest->size(), 200u);
 
     options = refined_to(1e-5);
-    options.smallest_area = 0.02;
+    options.min_area = 0.02;
     const Solution coarse = solve_scene(scene, options);
     for (std::uint32_t e = 0; e < coarse.forest->size(); ++e) ASSERT_GE(coarse.forest->area(e), 0.02f);
 
@@ -402,7 +402,7 @@ std::uint32_t elements_of_patches(const Solution& s, std::uint32_t first, std::u
 
 /// sum v P: what the view measures.
 double measured(const Scene& scene, const Solution& s) {
-    return sum_over_leaves(s, s.view_importance, radiosity(Surfaces(scene), *s.forest, s.irradiance));
+    return sum_over_leaves(s, s.view_importance, radiosity(Materials(scene), *s.forest, s.irradiance));
 }
 
 TEST(LinkRadiosityWithImportance, RefinesWhatIsSeenAndLeavesTheRest) {
@@ -423,7 +423,7 @@ TEST(LinkRadiosityWithImportance, LightAndImportanceMeasureTheSameOnAnyMesh) {
         std::vector<float> psi = s.view_importance;
         for (std::size_t e = 0; e < psi.size(); ++e) psi[e] += s.indirect_importance[e];
         const std::vector<Rgb> dark(s.forest->size(), Rgb(0));
-        const double by_importance = sum_over_leaves(s, psi, radiosity(Surfaces(scene), *s.forest, dark));
+        const double by_importance = sum_over_leaves(s, psi, radiosity(Materials(scene), *s.forest, dark));
         EXPECT_NEAR(by_importance / measured(scene, s), 1, 1e-4) << "epsilon " << epsilon;
     }
 }

@@ -67,7 +67,7 @@ Leaves leaves_of(const char* method, const Room& room) {
     options.epsilon = room.epsilon;
     options.epsilon_decay = room.epsilon_decay;
     options.refinement = Refinement::power;  // Eq. 14 and 15 as published
-    options.smallest_area = std::pow(0.02 * room.metre, 2);
+    options.min_area = std::pow(0.02 * room.metre, 2);
     options.seed = room.seed;
     const Solution solution = solve(scene, RayCaster(scene), options);
     const std::uint32_t first_cellar = solution.forest->patch_count() - cellar_walls;

@@ -1,5 +1,5 @@
 // Means over neighbouring patches, which keep a small lamp from being taken for unimportant.
-// Seen to fail (scripts/plant-faults) when patches are not weighed by area, or neighbourhoods do not pass on what they
+// Seen to fail (scripts/mutation-test) when patches are not weighed by area, or neighbourhoods do not pass on what they
 // have from the next larger ones.
 
 #include "interflect/solver/neighbourhoods.h"

@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing_support;
 
-Party party(const Rectangle& r) {
+ElementProxy proxy(const Rectangle& r) {
     return {V3f(r.corner + 0.5 * (r.u + r.v)), V3f(r.normal()), static_cast<float>(r.area())};
 }
 
@@ -40,28 +40,28 @@ INSTANTIATE_TEST_SUITE_P(Pairs, FormFactorEstimate,
 
 TEST_P(FormFactorEstimate, IsAnUpperEstimateOfTheRightSize) {
     const double exact = form_factor(GetParam().receiver, GetParam().shooter);
-    const float estimate = form_factor_estimate(party(GetParam().shooter), party(GetParam().receiver));
+    const float estimate = form_factor_estimate(proxy(GetParam().shooter), proxy(GetParam().receiver));
     EXPECT_GT(estimate, 0.9 * exact);  // it may fall short by some percent where the two lie aside
     EXPECT_LT(estimate, 1.5 * exact);
 }
 
 TEST_P(FormFactorEstimate, DoesNotDependOnTheUnitOfLength) {
-    const auto scaled = [](Party p) {
+    const auto scaled = [](ElementProxy p) {
         p.centre *= 1024;
         p.area *= 1024 * 1024;
         return p;
     };
-    const Party shooter = party(GetParam().shooter), receiver = party(GetParam().receiver);
+    const ElementProxy shooter = proxy(GetParam().shooter), receiver = proxy(GetParam().receiver);
     EXPECT_FLOAT_EQ(form_factor_estimate(scaled(shooter), scaled(receiver)), form_factor_estimate(shooter, receiver));
 }
 
 TEST(FormFactorEstimates, AreFiniteWhereTheCentresMeet) {
-    EXPECT_FLOAT_EQ(form_factor_estimate(party(floor_tile), party(floor_tile)), 1);
+    EXPECT_FLOAT_EQ(form_factor_estimate(proxy(floor_tile), proxy(floor_tile)), 1);
 }
 
 class Accepts : public testing::Test {
   protected:
-    const Party shooter_ = party(ceiling_at(1)), receiver_ = party(floor_tile);
+    const ElementProxy shooter_ = proxy(ceiling_at(1)), receiver_ = proxy(floor_tile);
     const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // of what 7 lm/m^2 bring to 1 m^2
     bool accepts(double threshold, float importance) const {
         Oracle oracle;

@@ -16,8 +16,8 @@
 #include "interflect/base/error.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/image/render.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
-#include "interflect/solver/surfaces.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -88,12 +88,12 @@ Measured measure(const Placement& place, std::uint64_t seed) {
     options.rays = 150'000;
     options.seed = seed;
     const Solution solution = solve(scene, ray_caster, options);
-    const Surfaces surfaces(scene, ray_caster);
+    const Materials materials(scene, ray_caster);
     Measured result;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
-        result.absorbed +=
-            static_cast<double>((1 - surfaces.reflectance(i).x) * solution.irradiance[i].x * solution.forest->area(i)) /
-            solution.emitted_power.x;
+        result.absorbed += static_cast<double>((1 - materials.reflectance(i).x) * solution.irradiance[i].x *
+                                               solution.forest->area(i)) /
+                           solution.emitted_power.x;
     View view{"room", place({0.2, 0.2, 1.6}), place({3, 2.5, 0.8}), V3f(place({0, 0, 1}) - place({0, 0, 0})), 70};
     const Image image = render(scene, *solution.forest, ray_caster, view, solution.irradiance,
                                {.width = 32, .height = 24, .samples = 4, .shading = Shading::flat, .seed = seed})

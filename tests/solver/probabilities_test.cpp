@@ -33,8 +33,8 @@ class Weights : public testing::Test {
         testing_support::add_rectangle(scene, {5, 0, 0}, {2, 0, 0}, {0, 1, 0}, 1);
         return scene;
     }
-    Sampled sampled() const {
-        return {surfaces_, forest_, Light(surfaces_, irradiance_), Importance(importance_), importance_, nearby_};
+    SamplingWeights sampled() const {
+        return {materials_, forest_, Radiosity(materials_, irradiance_), Importance(importance_), importance_, nearby_};
     }
     template <class Weight>
     std::vector<double> of_leaves(const Weight& weight) const {
@@ -44,7 +44,7 @@ class Weights : public testing::Test {
     }
 
     const Scene scene_ = two_squares();
-    const Surfaces surfaces_{scene_};
+    const Materials materials_{scene_};
     ElementForest forest_{scene_, 6};
     // By element: the divided square, the black one, the parts of the first.
     std::vector<Rgb> irradiance_{Rgb(9), Rgb(2), Rgb(4, 4, 4), Rgb(0), Rgb(0, 0, 4), Rgb(4)};
@@ -53,28 +53,28 @@ class Weights : public testing::Test {
 };
 
 TEST_F(Weights, OfPowerAreTheSumOfTheChannelsTimesTheArea) {
-    EXPECT_THAT(of_leaves(&Sampled::power), ElementsAre(6, 6, 0, 3, 6));
+    EXPECT_THAT(of_leaves(&SamplingWeights::power), ElementsAre(6, 6, 0, 3, 6));
 }
 
 TEST_F(Weights, OfWhatIsNotFiniteAreZeroAndItIsTold) {
     irradiance_[2].y = std::numeric_limits<float>::infinity();
     irradiance_[5].x = std::nanf("");
-    const Light light(surfaces_, irradiance_);
-    EXPECT_THAT(of_leaves(&Sampled::power), ElementsAre(6, 0, 0, 3, 0));
+    const Radiosity light(materials_, irradiance_);
+    EXPECT_THAT(of_leaves(&SamplingWeights::power), ElementsAre(6, 0, 0, 3, 0));
     for (std::uint32_t e = 0; e < 6; ++e) EXPECT_EQ(light.is_lost(forest_, e), e == 2 || e == 5) << e;
 }
 
 TEST_F(Weights, OfPowerAreFiniteForEveryFiniteRadiosity) {
     irradiance_.assign(6, Rgb(std::numeric_limits<float>::max()));
-    for (const double w : of_leaves(&Sampled::power)) EXPECT_TRUE(std::isfinite(w));
+    for (const double w : of_leaves(&SamplingWeights::power)) EXPECT_TRUE(std::isfinite(w));
 }
 
 TEST_F(Weights, OfImportanceAreWhatIsReflectedOfIt) {
-    EXPECT_THAT(of_leaves(&Sampled::importance), ElementsAre(0, 1.5, 1.5, 0, 0.375));
+    EXPECT_THAT(of_leaves(&SamplingWeights::importance), ElementsAre(0, 1.5, 1.5, 0, 0.375));
 }
 
 TEST_F(Weights, OfPowerThatIsDrivenAreTheProduct) {
-    EXPECT_THAT(of_leaves(&Sampled::driven_power), ElementsAre(6, 18, 0, 0, 4.5));
+    EXPECT_THAT(of_leaves(&SamplingWeights::weighted_power), ElementsAre(6, 18, 0, 0, 4.5));
 }
 
 TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
@@ -82,7 +82,7 @@ TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
     EXPECT_THAT(mixture(sampled(), {.power = 0.42}).q,
                 ElementsAre(0, FloatNear(0.12f, 1e-7f), FloatNear(0.12f, 1e-7f), 0, FloatNear(0.06f, 1e-7f),
                             FloatNear(0.12f, 1e-7f)));
-    const std::vector<float> q = mixture(sampled(), {.power = 0.21, .driven_power = 0.285, .importance = 0.3375}).q;
+    const std::vector<float> q = mixture(sampled(), {.power = 0.21, .weighted_power = 0.285, .importance = 0.3375}).q;
     EXPECT_THAT(
         q, ElementsAre(0, FloatNear(0.06f + 0.06f, 1e-7f), FloatNear(0.06f + 0.18f + 0.15f, 1e-7f),
                        FloatNear(0.15f, 1e-7f), FloatNear(0.03f, 1e-7f), FloatNear(0.06f + 0.045f + 0.0375f, 1e-7f)));
@@ -90,7 +90,7 @@ TEST_F(Weights, AreMixedInTheirSharesAndNoneForInnerElements) {
 
 TEST_F(Weights, AreDrivenByTheImportanceNearbyOfWholePatches) {
     using testing::FloatNear;
-    EXPECT_THAT(of_leaves(&Sampled::power_nearby), ElementsAre(30, 12, 0, 6, 12));
+    EXPECT_THAT(of_leaves(&SamplingWeights::power_nearby), ElementsAre(30, 12, 0, 6, 12));
     EXPECT_THAT(mixture(sampled(), {.power = 0.21, .power_nearby = 0.6}).q,
                 ElementsAre(0, FloatNear(0.06f + 0.3f, 1e-7f), FloatNear(0.06f + 0.12f, 1e-7f), 0,
                             FloatNear(0.03f + 0.06f, 1e-7f), FloatNear(0.06f + 0.12f, 1e-7f)));
@@ -98,7 +98,7 @@ TEST_F(Weights, AreDrivenByTheImportanceNearbyOfWholePatches) {
 
 TEST_F(Weights, ThatAre0EverywhereLeaveTheirShareToTheOthers) {
     importance_.assign(6, 0.0f);
-    EXPECT_EQ(mixture(sampled(), {.power = 0.5, .driven_power = 0.3, .importance = 0.2}).q,
+    EXPECT_EQ(mixture(sampled(), {.power = 0.5, .weighted_power = 0.3, .importance = 0.2}).q,
               mixture(sampled(), {.power = 0.5}).q);
 }
 
@@ -118,12 +118,12 @@ TEST_F(Weights, AreFiniteShares) {
 }
 
 TEST_F(Weights, AreDrivenByImportanceAsItIsUnlessItIsSmoothed) {
-    EXPECT_EQ(driving_importance(forest_, Importance(importance_), 0, 1), importance_);
-    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
-    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
-    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 1, 0.75),
+    EXPECT_EQ(importance_weight(forest_, Importance(importance_), 0, 1), importance_);
+    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
+    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
+    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 1, 0.75),
                 Each(AnyOf(FloatEq(std::pow(9.0f, 0.75f)), 1)));
-    EXPECT_THAT(driving_importance(forest_, Importance(importance_), 0.5, 0.5),
+    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 0.5, 0.5),
                 ElementsAre(3, 1, std::sqrt(6.0f), std::sqrt(6.0f), std::sqrt(4.5f), std::sqrt(4.875f)));
 }
 

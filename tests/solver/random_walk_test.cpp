@@ -20,8 +20,8 @@
 
 #include "interflect/scene/maze.h"
 #include "interflect/scene/patch_geometry.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
-#include "interflect/solver/surfaces.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
@@ -125,7 +125,7 @@ TEST_P(RandomWalks, CountsWhatLeavesAnOpenScene) {
     const std::vector<RgbD> exact = dense_irradiance(scene, f);
     RgbD escaping(0, 0, 0);
     for (std::uint32_t i = 0; i < exact.size(); ++i) {
-        const RgbD radiosity = RgbD(Surfaces(scene).exitance(i)) + RgbD(Surfaces(scene).reflectance(i)) * exact[i];
+        const RgbD radiosity = RgbD(Materials(scene).exitance(i)) + RgbD(Materials(scene).reflectance(i)) * exact[i];
         escaping += radiosity * (patch_area(scene, scene.patches[i]) * (1 - f.row_sum(i)));
     }
     const Runs sample(scene, [](std::uint64_t seed) { return walk_options(GetParam(), seed); });
@@ -174,7 +174,7 @@ TEST(RandomWalk, KeepsEnergy) {
         for (std::uint32_t i = 0; i < s.forest->size(); ++i) {
             const Rgb power = s.irradiance[i] * s.forest->area(i);
             received += channel_sum(power);
-            reflected += channel_sum(Surfaces(scene).reflectance(i) * power);
+            reflected += channel_sum(Materials(scene).reflectance(i) * power);
         }
         const double emitted = channel_sum(s.emitted_power), escaped = channel_sum(s.iterations.back().escaped_power);
         EXPECT_NEAR((received + escaped) / (emitted + reflected), 1, 2e-3);
@@ -233,13 +233,13 @@ TEST(RandomWalk, MeasuresTheSameByLightAndByImportance) {
     for (const float rho : {0.2f, 0.7f, 0.5f, 0.4f, 0.8f, 0.3f}) walls.push_back({"wall", Rgb(rho), Rgb(0)});
     walls[5].exitance = Rgb(10);
     const Scene scene = closed_box({1, 2, 3}, 3, walls);
-    const Surfaces surfaces(scene);
+    const Materials materials(scene);
     const Runs sample(scene, [](std::uint64_t seed) { return walk_options(ImportanceUse::full, seed); });
     const auto ratio = [&](const Solution& s) {
         double by_light = 0, by_importance = 0;
         for (std::uint32_t i = 0; i < s.forest->size(); ++i) {
-            const double area = s.forest->area(i), v = s.view_importance[i], exitance = surfaces.exitance(i).x;
-            by_light += area * v * (exitance + surfaces.reflectance(i).x * s.irradiance[i].x);
+            const double area = s.forest->area(i), v = s.view_importance[i], exitance = materials.exitance(i).x;
+            by_light += area * v * (exitance + materials.reflectance(i).x * s.irradiance[i].x);
             by_importance += area * (v + s.indirect_importance[i]) * exitance;
         }
         return by_importance / by_light;
@@ -262,7 +262,7 @@ struct Picture {
 
     Picture(const Scene& scene, const Solution& s) {
         for (std::uint32_t i = 0; i < s.forest->size(); ++i) {
-            luminances.push_back(luminance(Surfaces(scene).reflectance(i) * s.irradiance[i]));
+            luminances.push_back(luminance(Materials(scene).reflectance(i) * s.irradiance[i]));
             shares.push_back(static_cast<double>(s.view_importance[i]) * s.forest->area(i));
         }
     }

@@ -1,7 +1,7 @@
 // The rays that leave a patch: origins uniform on its area, directions with density cos(theta) / pi. Pearson's
 // chi-square test against cell areas found by clipping, which shares nothing with the patch's parametrisation.
 //
-// Seen to fail (scripts/plant-faults) when directions lack the cosine or its root, azimuths turn over 6 radians,
+// Seen to fail (scripts/mutation-test) when directions lack the cosine or its root, azimuths turn over 6 radians,
 // origins crowd near the centre, origins are uniform in the parameters of an irregular quadrilateral.
 
 #include "interflect/solver/ray_source.h"
@@ -26,7 +26,7 @@ using V3d = Imath::V3d;
 using Polygon = std::vector<V2d>;
 
 constexpr std::size_t ray_count = 200'000;
-constexpr float lift = 1e-5f;
+constexpr float offset = 1e-5f;
 
 /// A patch by its corners in the plane, and where the plane lies.
 struct Shape {
@@ -76,7 +76,7 @@ std::vector<Ray> rays_of(const Shape& shape, PointSet set, const Cell& cell = {}
     std::vector<Ray> rays(ray_count);
     std::vector<Parameters> origins(ray_count);
     PointBlock points;
-    shoot_rays(geometry_of(shape), cell, lift * shape.scale, set, 1, 0, points, rays, origins);
+    shoot_rays(geometry_of(shape), cell, offset * shape.scale, set, 1, 0, points, rays, origins);
     return rays;
 }
 
@@ -175,7 +175,7 @@ TEST_P(ShotRays, BeginLiftedAboveThePatchAndNowhereElse) {
     const Plane plane(GetParam());
     const double scale = GetParam().scale, rounding = 1e-6 * (scale + 1);  // of floats, patch within 3 scale + 0.4 m
     for (const Ray& ray : rays_of(GetParam(), PointSet::sobol)) {
-        ASSERT_NEAR((V3d(ray.origin) - plane.origin).dot(plane.normal()), lift * scale, rounding);
+        ASSERT_NEAR((V3d(ray.origin) - plane.origin).dot(plane.normal()), offset * scale, rounding);
         const V2d p = plane.coordinates(ray.origin);
         const Polygon& c = GetParam().corners;
         for (std::size_t i = 0; i < c.size(); ++i)

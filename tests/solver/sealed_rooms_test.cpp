@@ -19,14 +19,14 @@ namespace {
 constexpr float depth = 4, height = 3, thickness = 0.01f, length = 8 + thickness;  // two_rooms.cpp [m]
 
 /// Area-weighted mean irradiance of the dark room over that of the lit one, leaf by leaf.
-double leak(const TwoRoomsOptions& rooms, bool cuts, double smallest_area = 0) {
+double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const Scene whole = make_two_rooms(rooms);
     const auto least_extent = static_cast<float>(2 * default_element_size(whole));
     const Scene scene = cuts ? cut_at_contacts(whole, {.least_extent = least_extent}) : whole;
     SolveOptions options;
     options.method = find_method("hsrr");
     options.rays = 1'000'000;
-    options.smallest_area = smallest_area;
+    options.min_area = min_area;
     const Solution s = solve(scene, RayCaster(scene), options);
     const float radians = rooms.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
@@ -67,12 +67,12 @@ TEST_P(SealedRooms, StayDarkWhenCutAtContacts) {
 TEST_P(SealedRooms, LeakWithoutCuts) {
     // On a fine mesh little: elements that lie on both sides are small. So the mesh is kept coarse. A straight wall
     // stands where elements meet, and hardly leaks even then.
-    constexpr double smallest_area = 0.25;  // [m^2]
+    constexpr double min_area = 0.25;  // [m^2]
     EXPECT_GT(leak(GetParam().rooms, false), 5 * leak(GetParam().rooms, true));
     if (GetParam().rooms.turn != 0) {
-        EXPECT_GT(leak(GetParam().rooms, false, smallest_area), 0.01);
+        EXPECT_GT(leak(GetParam().rooms, false, min_area), 0.01);
     }
-    EXPECT_LT(leak(GetParam().rooms, true, smallest_area), 0.001);
+    EXPECT_LT(leak(GetParam().rooms, true, min_area), 0.001);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "interflect/base/error.h"
-#include "interflect/solver/surfaces.h"
+#include "interflect/solver/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
@@ -105,10 +105,10 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     SolveOptions options;
     options.method = find_method("hsrr");
     options.rays = 60'000;
-    options.most_elements = 3 * scene.patches.size();
+    options.max_elements = 3 * scene.patches.size();
     const Solution expected = solved_on_threads(1, scene, options);
-    EXPECT_LE(expected.forest->size(), options.most_elements);
-    EXPECT_GT(expected.forest->size() + 4, options.most_elements);
+    EXPECT_LE(expected.forest->size(), options.max_elements);
+    EXPECT_GT(expected.forest->size() + 4, options.max_elements);
     for (const int threads : {2, 3}) {
         const Solution s = solved_on_threads(threads, scene, options);
         ASSERT_EQ(s.forest->size(), expected.forest->size());
@@ -128,7 +128,7 @@ TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
                     SolveOptions options = with_rays(rays);
                     options.method = find_method(method);
                     options.views = {{into_the_corner}};
-                    options.eye_rays = 1000;
+                    options.camera_rays = 1000;
                     options.complete_passes = complete_passes;
                     options.rays_per_iteration = per_iteration;
                     const Solution solution = solve(scene, options);
@@ -267,17 +267,17 @@ TEST(Solve, ListsAllOptionsOutOfRange) {
     options.rays_per_iteration = -1;
     options.epsilon = 0;
     options.epsilon_decay = 2;
-    options.smallest_area = -1;
-    options.most_elements = 3;
+    options.min_area = -1;
+    options.max_elements = 3;
     options.alpha = 1.5;
     options.beta = -0.1;
-    options.inherited_trust = 2;
+    options.inherited_weight = 2;
     options.importance_smoothing = options.importance_exponent = -0.5;
-    options.eye_rays = 0;
+    options.camera_rays = 0;
     const std::string message = error_of(colourful_box(), options);
     for (const char* name : {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:",
-                             "epsilon:", "epsilon_decay:", "smallest_area:", "most_elements:", "alpha:", "beta:",
-                             "inherited_trust:", "importance_smoothing:", "importance_exponent:", "eye_rays:"})
+                             "epsilon:", "epsilon_decay:", "min_area:", "max_elements:", "alpha:", "beta:",
+                             "inherited_weight:", "importance_smoothing:", "importance_exponent:", "camera_rays:"})
         EXPECT_THAT(message, HasSubstr(name));
 }
 
@@ -316,9 +316,9 @@ TEST(Solve, RefusesViewsThatCannotBeLookedAtTogether) {
 
 TEST(Solve, SaysHowManyElementsThereMustBe) {
     SolveOptions options = with_rays(1000);
-    options.most_elements = 1;
+    options.max_elements = 1;
     const Scene scene = colourful_box();
-    EXPECT_THAT(error_of(scene, options), HasSubstr("most_elements: 1, expected at least the number of patches, " +
+    EXPECT_THAT(error_of(scene, options), HasSubstr("max_elements: 1, expected at least the number of patches, " +
                                                     std::to_string(scene.patches.size())));
 }
 

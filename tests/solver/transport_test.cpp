@@ -1,6 +1,6 @@
 // One transport step: nothing is lost, nothing depends on the threads, streams go on where they ended; with a mesh and
 // with an oracle that refines as well.
-// Seen to fail (scripts/plant-faults) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
+// Seen to fail (scripts/mutation-test) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
 // streams do not advance, all patches share one sequence of points.
 
 #include "interflect/solver/transport.h"
@@ -27,33 +27,33 @@ struct Room {
     explicit Room(Scene s, std::size_t capacity = 1 << 18) : scene(std::move(s)), forest(scene, capacity) {}
 
     /// What leaves the elements that there are now.
-    Light light() {
+    Radiosity light() {
         irradiance.assign(forest.size(), Rgb(1));
-        return Light(surfaces, irradiance);
+        return Radiosity(materials, irradiance);
     }
     /// A step that shoots by power (Eq. 3).
     TransportStep step() {
         TransportStep step;
         step.light = light();
-        step.q = mixture({surfaces, forest, step.light, {}, {}}, {.power = 1}).q;
+        step.q = mixture({materials, forest, step.light, {}, {}}, {.power = 1}).q;
         step.rays = rays;
         return step;
     }
     /// One that divides everything as far as it may.
-    TransportStep refining_step(float smallest_area) {
+    TransportStep refining_step(float min_area) {
         TransportStep s = step();
         s.oracle.refines = true;
-        s.oracle.smallest_area = smallest_area;
+        s.oracle.min_area = min_area;
         return s;
     }
     Received receive(SampleStreams& streams) { return receive(streams, step()); }
     Received receive(SampleStreams& streams, const TransportStep& step) {
-        return transport(surfaces, forest, ray_caster, step, streams);
+        return transport(materials, forest, ray_caster, step, streams);
     }
     RgbD radiated_power() { return interflect::radiated_power(forest, light()); }
 
     const Scene scene;
-    const Surfaces surfaces{scene};
+    const Materials materials{scene};
     const RayCaster ray_caster{scene};
     ElementForest forest;
     std::vector<Rgb> irradiance;
@@ -83,10 +83,10 @@ TEST(Transport, LosesNothingWhileTheMeshGrowsAndAfterwards) {
         Room room(scene);
         SampleStreams streams = streams_of(1);
         const RgbD radiated = room.radiated_power();
-        for (const float smallest_area : {0.05f, 0.01f, 1.0f}) {
+        for (const float min_area : {0.05f, 0.01f, 1.0f}) {
             const std::uint32_t before = room.forest.size();
-            const Received received = room.receive(streams, room.refining_step(smallest_area));
-            EXPECT_EQ(room.forest.size() > before, smallest_area < 1);
+            const Received received = room.receive(streams, room.refining_step(min_area));
+            EXPECT_EQ(room.forest.size() > before, min_area < 1);
             ASSERT_EQ(received.irradiance.size(), room.forest.size());
             expect_balance(room, received, radiated);
         }
@@ -101,7 +101,7 @@ TEST(Transport, LosesNothingWhereTheMeshMayNotGrowAnyFurther) {
     const RgbD radiated = room.radiated_power();
     for (int i = 0; i < 2; ++i) {
         TransportStep step = room.refining_step(0.01f);
-        step.oracle.most_elements = patches + 9;
+        step.oracle.max_elements = patches + 9;
         expect_balance(room, room.receive(streams, step), radiated);
         EXPECT_EQ(room.forest.size(), patches + 8) << "whole blocks of four";
     }
@@ -143,7 +143,7 @@ TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
     std::vector<double> p_values, p_values_off;  // of the right answer and of one that is two percent off
     for (std::size_t i = 0; i < patches; ++i) {
         double expected = 0;  // R_i / A_i = sum_s F_si P_s / A_i = sum_s F_is B_s
-        for (std::uint32_t s = 0; s < patches; ++s) expected += f(i, s) * step.light.radiosity(room.forest, s).y;
+        for (std::uint32_t s = 0; s < patches; ++s) expected += f(i, s) * step.light.of(room.forest, s).y;
         p_values.push_back(t_test(arrived[i], expected));
         p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
     }
@@ -175,7 +175,7 @@ TEST(Transport, CarriesImportanceWithoutBias) {
     for (std::size_t i = 0; i < patches; ++i) {
         double expected = 0;  // sum_s F_is rho_s psi_s: Eq. 7 without V
         for (std::uint32_t s = 0; s < patches; ++s)
-            expected += f(i, s) * static_cast<double>(room.surfaces.mean_reflectance(s) * step.importance[s]);
+            expected += f(i, s) * static_cast<double>(room.materials.mean_reflectance(s) * step.importance[s]);
         p_values.push_back(t_test(arrived[i], expected));
         p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
     }
@@ -259,12 +259,12 @@ TEST(Transport, ShootsNothingWhereNothingRadiates) {
 TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
     Room room(furnished_room());
     SampleStreams streams = streams_of(1);
-    constexpr float smallest_area = 0.02f;
-    room.receive(streams, room.refining_step(smallest_area));
+    constexpr float min_area = 0.02f;
+    room.receive(streams, room.refining_step(min_area));
     float smallest = 1;
     for (const std::uint32_t e : room.forest.leaves()) smallest = std::min(smallest, room.forest.area(e));
-    EXPECT_GE(smallest, smallest_area * (1 - 1e-6f));
-    EXPECT_LT(smallest, 4 * smallest_area) << "everything is divided as far as it may";
+    EXPECT_GE(smallest, min_area * (1 - 1e-6f));
+    EXPECT_LT(smallest, 4 * min_area) << "everything is divided as far as it may";
 }
 
 /// Elements after a step in a box that radiates so much.
@@ -272,10 +272,10 @@ std::uint32_t elements_under(const Rgb& exitance, float threshold) {
     Room room(closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), exitance}}));
     const std::vector<Rgb> darkness(room.forest.size(), Rgb(0));
     TransportStep step = room.step();
-    step.light = Light(room.surfaces, darkness);
+    step.light = Radiosity(room.materials, darkness);
     step.oracle.refines = true;
     step.oracle.threshold = threshold;
-    step.oracle.smallest_area = 1e-6f;
+    step.oracle.min_area = 1e-6f;
     SampleStreams streams = streams_of(1);
     room.receive(streams, step);
     return room.forest.size();

@@ -79,8 +79,8 @@ std::vector<Variant> extreme_variants() {
     add("alpha_1", [](SolveOptions& o) { o.alpha = 1; });
     add("beta_0", [](SolveOptions& o) { o.beta = 0; });
     add("beta_1", [](SolveOptions& o) { o.beta = 1; });
-    add("inherited_trust_0", [](SolveOptions& o) { o.inherited_trust = 0; });
-    add("inherited_trust_1", [](SolveOptions& o) { o.inherited_trust = 1; });
+    add("inherited_trust_0", [](SolveOptions& o) { o.inherited_weight = 0; });
+    add("inherited_trust_1", [](SolveOptions& o) { o.inherited_weight = 1; });
     add("total_importance", [](SolveOptions& o) { o.total_importance = true, o.beta = 0; });
     // Flat: to what is not seen nothing is important, so it receives as a whole.
     const auto direct = [](SolveOptions& o) { o.method.importance = ImportanceUse::direct; };
@@ -88,9 +88,9 @@ std::vector<Variant> extreme_variants() {
     return variants;
 }
 
-void divide_everything(SolveOptions& options, double smallest_area) {
+void divide_everything(SolveOptions& options, double min_area) {
     options.epsilon = 1e-12;
-    options.smallest_area = smallest_area;
+    options.min_area = min_area;
 }
 
 SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {

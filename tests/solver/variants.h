@@ -36,7 +36,7 @@ extern const View into_the_corner;
 inline constexpr double left_whole = 10, divided_once = 0.05;
 
 /// Makes the oracle divide whatever light and importance reach, down to a smallest area [m^2].
-void divide_everything(SolveOptions& options, double smallest_area);
+void divide_everything(SolveOptions& options, double min_area);
 
 /// Options under which the running means in that box, looked at into_the_corner, have the exact solution as their
 /// expected value. The mesh is made in the warm-up and stays: every patch is divided once; left whole, where refinement

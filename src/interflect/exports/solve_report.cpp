@@ -77,11 +77,11 @@ void for_each_option(Options& o, const Access& access) {
     access.field("rays_per_iteration", o.rays_per_iteration);
     access.choice("refinement", o.refinement,
                   Choices<Refinement>{{{"variance", Refinement::variance}, {"power", Refinement::power}}});
-    access.field("shrinkage", o.shrinks);
+    access.field("shrinkage", o.shrinkage);
     access.field("epsilon", o.epsilon);
     access.field("epsilon_decay", o.epsilon_decay);
-    access.field("min_area", o.smallest_area);
-    access.field("inherited_trust", o.inherited_trust);
+    access.field("min_area", o.min_area);
+    access.field("inherited_weight", o.inherited_weight);
     access.field("defer_refinement", o.defer_refinement);
     access.choice(
         "importance", o.method.importance,
@@ -94,7 +94,7 @@ void for_each_option(Options& o, const Access& access) {
     access.field("importance_exponent", o.importance_exponent);
     access.field("alpha", o.alpha);
     access.field("beta", o.beta);
-    access.field("eye_rays", o.eye_rays);
+    access.field("camera_rays", o.camera_rays);
 }
 
 /// The one list of what is told of an iteration. @param access  Writer or Reader.

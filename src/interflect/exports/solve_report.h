@@ -7,7 +7,7 @@ namespace interflect {
 
 /// How a solution was asked for: the `options` of solution files and of `solve --stats`, under the names of the command
 /// line. A limit that was not given is null. Of SolveOptions it lacks the seed and the method's name, which stand
-/// beside it, and most_elements, which follows the memory of the machine.
+/// beside it, and max_elements, which follows the memory of the machine.
 Json json_of(const SolveOptions& options);
 
 /// Sets what json_of() told. @throws nlohmann::json::exception, InputError where something is missing or unknown.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "interflect/elements/forest.h"
-#include "interflect/image/eye_samples.h"
+#include "interflect/image/camera_samples.h"
 #include "interflect/image/image.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"

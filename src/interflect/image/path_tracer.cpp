@@ -82,7 +82,7 @@ V3f cosine_direction(const V3f& n, float a, float b) {
 /// Where a ray leaves the patch that another has hit at x: on the patch's surface, up by the ray caster's offset.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
-    return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.lift(patch);
+    return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
 }
 
 /// The random numbers of one vertex of a path.

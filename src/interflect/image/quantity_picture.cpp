@@ -38,7 +38,7 @@ ColourScale scale_of(const std::vector<Seen>& pixels, Spacing spacing) {
 }  // namespace
 
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
-                                const View& view, const Quantity& quantity, const EyeSampling& sampling,
+                                const View& view, const Quantity& quantity, const CameraSampling& sampling,
                                 const PictureMonitor& monitor) {
     ray_caster.require_made_for(scene);
     forest.require_made_for(scene);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "interflect/elements/forest.h"
-#include "interflect/image/eye_samples.h"
+#include "interflect/image/camera_samples.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/image.h"
 #include "interflect/raycast/ray_caster.h"
@@ -37,7 +37,7 @@ struct QuantityPicture {
 /// @return          The same bits for the same seed and any number of threads.
 /// @throws InputError as render() does.
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
-                                const View& view, const Quantity& quantity, const EyeSampling& sampling,
+                                const View& view, const Quantity& quantity, const CameraSampling& sampling,
                                 const PictureMonitor& monitor = {});
 
 }  // namespace interflect

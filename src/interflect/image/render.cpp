@@ -58,7 +58,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     Rendering result;
     result.image = Image(options.width, options.height);
     std::atomic<std::int64_t> escaped_rays{0};
-    const EyeSampling sampling{options.width, options.height, options.samples, options.seed};
+    const CameraSampling sampling{options.width, options.height, options.samples, options.seed};
     trace_pixels(camera, ray_caster, sampling, monitor, [&](const PixelSamples& samples) {
         RgbD sum(0, 0, 0);
         std::int64_t escaped = 0;

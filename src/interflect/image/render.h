@@ -4,7 +4,7 @@
 #include <span>
 
 #include "interflect/elements/forest.h"
-#include "interflect/image/eye_samples.h"
+#include "interflect/image/camera_samples.h"
 #include "interflect/image/image.h"
 #include "interflect/image/smooth_surfaces.h"
 #include "interflect/raycast/ray_caster.h"
@@ -21,7 +21,7 @@ enum class Shading {
 struct RenderOptions {
     int width = 1280;                   ///< [pixels], >= 1.
     int height = 720;                   ///< [pixels], >= 1.
-    int samples = 16;                   ///< Eye rays a pixel, >= 1; powers of two are stratified best.
+    int samples = 16;                   ///< Camera rays a pixel, >= 1; powers of two are stratified best.
     Shading shading = Shading::smooth;  ///< See Shading.
     SmoothingOptions smoothing{};       ///< For Shading::smooth.
     std::uint64_t seed = 1;             ///< Of the rays' places within their pixels.

@@ -24,7 +24,7 @@ namespace {
 constexpr float relative_tolerance = 0x1p-19f;
 
 /// The offset of a ray from its patch, over the tolerance within which others coincide with it.
-constexpr float lift_over_tolerance = 4;
+constexpr float offset_over_tolerance = 4;
 
 /// How far a hit is off its face, of the sum of its largest coordinate and its distance (16 roundings).
 constexpr float relative_hit_error = 0x1p-20f;
@@ -133,13 +133,14 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
 }
 
 RayCaster::RayCaster(const Scene& scene)
-    : scene_fingerprint_(geometry_fingerprint(valid(scene))), origin_(scene.origin), lift_(tolerances(scene)) {
-    embree_ = std::make_unique<Embree>(CoincidentFaces(scene, lift_));
+    : scene_fingerprint_(geometry_fingerprint(valid(scene))), origin_(scene.origin), ray_offsets_(tolerances(scene)) {
+    embree_ = std::make_unique<Embree>(CoincidentFaces(scene, ray_offsets_));
     for (const auto& [face, tolerance] : embree_->coincident.reaches()) {
-        lift_[face] = std::max(lift_[face], tolerance);
-        if (const std::uint32_t back = scene.patches[face].other_side; back != none) lift_[back] = lift_[face];
+        ray_offsets_[face] = std::max(ray_offsets_[face], tolerance);
+        if (const std::uint32_t back = scene.patches[face].other_side; back != none)
+            ray_offsets_[back] = ray_offsets_[face];
     }
-    for (float& lift : lift_) lift *= lift_over_tolerance;
+    for (float& offset : ray_offsets_) offset *= offset_over_tolerance;
     Faces faces[2][2];  // [triangle][two-sided]
     for (const bool triangles : {false, true})
         for (const bool two_sided : {false, true}) faces[triangles][two_sided] = {{}, triangles, two_sided};
@@ -179,7 +180,7 @@ bool RayCaster::has_covered_patches() const { return embree_->coincident.has_cov
 
 std::size_t RayCaster::memory() const {
     return static_cast<std::size_t>(embree_->bytes.load()) + embree_->coincident.memory() +
-           lift_.capacity() * sizeof(float);
+           ray_offsets_.capacity() * sizeof(float);
 }
 
 }  // namespace interflect

@@ -10,8 +10,8 @@
 
 namespace interflect {
 
-/// A ray of unit direction. One that leaves a patch starts RayCaster::lift() above it, so that it cannot hit what lies
-/// in the plane that it comes from.
+/// A ray of unit direction. One that leaves a patch starts RayCaster::ray_offset() above it, so that it cannot hit what
+/// lies in the plane that it comes from.
 struct Ray {
     V3f origin;
     V3f direction;
@@ -44,7 +44,7 @@ class RayCaster {
     /// offset is 128 u c = 2^-17 c. Where faces coincide, it is at least 4 times the distance within which they do,
     /// pair_tolerance(), which is 4 u of the larger one's c: 16 u where 8 are needed. What other faces there are, and
     /// where, does not matter.
-    float lift(std::uint32_t patch) const { return lift_[patch]; }
+    float ray_offset(std::uint32_t patch) const { return ray_offsets_[patch]; }
 
     /// The share of a patch's area, in [0, 1], that any ray can hit: below 1 where other faces that coincide with it
     /// answer in its place. Only that much of it may emit.
@@ -67,7 +67,7 @@ class RayCaster {
     std::unique_ptr<Embree> embree_;
     std::uint64_t scene_fingerprint_;
     Imath::V3d origin_;
-    std::vector<float> lift_;
+    std::vector<float> ray_offsets_;
 };
 
 /// The ways in which Embree takes rays.

@@ -9,19 +9,19 @@ void Arrivals::begin(std::size_t elements) {
     region_shift_ = static_cast<int>(std::bit_width(elements / regions));
 }
 
-void Arrivals::Sorter::hand_on(std::size_t region) {
-    Lot& lot = lots_[region];
-    const std::scoped_lock lock(arrivals_->at_work_[region]);
-    for (std::size_t i = 0; i < lot.count; ++i) __builtin_prefetch(&arrivals_->sums_[lot.arrivals[i].element], 1);
-    for (std::size_t i = 0; i < lot.count; ++i) {
-        const Arrival& a = lot.arrivals[i];
-        const Load& load = loads_[a.source];
-        Load& sum = arrivals_->sums_[a.element];
+void Arrivals::ScatterBuffer::flush(std::size_t region) {
+    Bin& bin = bins_[region];
+    const std::scoped_lock lock(arrivals_->region_locks_[region]);
+    for (std::size_t i = 0; i < bin.count; ++i) __builtin_prefetch(&arrivals_->sums_[bin.arrivals[i].element], 1);
+    for (std::size_t i = 0; i < bin.count; ++i) {
+        const Arrival& a = bin.arrivals[i];
+        const Contribution& contribution = contributions_[a.source];
+        Contribution& sum = arrivals_->sums_[a.element];
         const std::int64_t power = -static_cast<std::int64_t>(a.power);  // a mask: all ones or all zeros
-        for (std::size_t c = 0; c < power_terms; ++c) sum[c] += load[c] & power;
-        sum[importance_term] += load[importance_term] & -static_cast<std::int64_t>(a.importance);
+        for (std::size_t c = 0; c < power_terms; ++c) sum[c] += contribution[c] & power;
+        sum[importance_term] += contribution[importance_term] & -static_cast<std::int64_t>(a.importance);
     }
-    lot.count = 0;
+    bin.count = 0;
 }
 
 }  // namespace interflect

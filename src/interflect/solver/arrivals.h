@@ -13,13 +13,13 @@ namespace interflect {
 
 /// What the rays of a step bring to elements, as integers in units of the step's, so that the order of arrival does not
 /// matter: three channels of power, the square of its luminance, then importance. Every thread collects arrivals in a
-/// Sorter of its own, a scatter buffer binned by region of the forest: a full bin is flushed at once, so no addition is
-/// atomic, and those of one bin are close together.
+/// ScatterBuffer of its own, a scatter buffer binned by region of the forest: a full bin is flushed at once, so no
+/// addition is atomic, and those of one bin are close together.
 class Arrivals {
   public:
     static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
-    using Load = std::array<std::int64_t, 5>;
-    static constexpr std::size_t reserved_per_element = sizeof(Load);  ///< Bytes of addresses.
+    using Contribution = std::array<std::int64_t, 5>;
+    static constexpr std::size_t reserved_per_element = sizeof(Contribution);  ///< Bytes of addresses.
 
     /// @param capacity  Most elements ever.
     explicit Arrivals(std::size_t capacity) : sums_(capacity) {}
@@ -27,9 +27,9 @@ class Arrivals {
     /// To be called before a step. @param elements  Of the forest so far.
     void begin(std::size_t elements);
     /// What arrived at an element; nothing has from then on.
-    Load take(std::size_t element) { return std::exchange(sums_[element], {}); }
-    void add(std::size_t element, const Load& load) {
-        for (std::size_t c = 0; c < load.size(); ++c) sums_[element][c] += load[c];
+    Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
+    void add(std::size_t element, const Contribution& contribution) {
+        for (std::size_t c = 0; c < contribution.size(); ++c) sums_[element][c] += contribution[c];
     }
     /// To be called for elements that were taken. Few keep their memory for the next step, since clearing it anew takes
     /// longer than adding to it.
@@ -37,61 +37,61 @@ class Arrivals {
         if (elements_ > most_kept) sums_.release(begin, end);
     }
 
-    class Sorter {
+    class ScatterBuffer {
       public:
-        explicit Sorter(Arrivals& arrivals) : arrivals_(&arrivals) {}
+        explicit ScatterBuffer(Arrivals& arrivals) : arrivals_(&arrivals) {}
 
-        /// @param load  What one ray of the source carries. @return The source's number.
-        std::uint32_t add_source(const Load& load) {
-            loads_.push_back(load);
-            return static_cast<std::uint32_t>(loads_.size() - 1);
+        /// @param contribution  What one ray of the source carries. @return The source's number.
+        std::uint32_t add_source(const Contribution& contribution) {
+            contributions_.push_back(contribution);
+            return static_cast<std::uint32_t>(contributions_.size() - 1);
         }
-        const Load& load(std::uint32_t source) const { return loads_[source]; }
+        const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }
 
         void add(std::uint32_t element, std::uint32_t source, bool power, bool importance) {
             const std::size_t region = element >> arrivals_->region_shift_ & (regions - 1);
-            Lot& lot = lots_[region];
-            lot.arrivals[lot.count++] = {element, source & (most_sources - 1), power, importance};
-            if (lot.count == lot.arrivals.size()) hand_on(region);
+            Bin& bin = bins_[region];
+            bin.arrivals[bin.count++] = {element, source & (most_sources - 1), power, importance};
+            if (bin.count == bin.arrivals.size()) flush(region);
         }
         /// To be called now and then, when no source's number is in use any more: the table of sources stays small.
-        void forget_sources() {
-            if (loads_.size() >= enough_sources) hand_on_all();
+        void release_sources() {
+            if (contributions_.size() >= enough_sources) flush_all();
         }
         /// To be called when all has been added; sources are numbered anew.
-        void hand_on_all() {
-            for (std::size_t region = 0; region < regions; ++region) hand_on(region);
-            loads_.clear();
+        void flush_all() {
+            for (std::size_t region = 0; region < regions; ++region) flush(region);
+            contributions_.clear();
         }
 
       private:
         struct Arrival {
             std::uint32_t element;
             std::uint32_t source : 30;
-            std::uint32_t power : 1, importance : 1;  // what of the load arrives here
+            std::uint32_t power : 1, importance : 1;  // what of the contribution arrives here
         };
-        struct Lot {
+        struct Bin {
             std::size_t count = 0;
             std::array<Arrival, 127> arrivals;
         };
-        void hand_on(std::size_t region);
+        void flush(std::size_t region);
 
         Arrivals* arrivals_;
-        std::vector<Load> loads_;
-        std::vector<Lot> lots_ = std::vector<Lot>(regions);
+        std::vector<Contribution> contributions_;
+        std::vector<Bin> bins_ = std::vector<Bin>(regions);
     };
 
   private:
     static constexpr std::size_t regions = 64;
     static constexpr std::uint32_t most_sources = 1u << 30;  // an Arrival has as many bits for them
-    static constexpr std::size_t enough_sources = 8192;      // their loads fill a quarter of a second-level cache
+    static constexpr std::size_t enough_sources = 8192;  // their contributions fill a quarter of a second-level cache
 
     static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
 
-    StableArray<Load> sums_;
+    StableArray<Contribution> sums_;
     std::size_t elements_ = 0;
     int region_shift_ = 0;
-    std::array<std::mutex, regions> at_work_;
+    std::array<std::mutex, regions> region_locks_;
 };
 
 }  // namespace interflect

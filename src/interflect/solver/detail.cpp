@@ -21,21 +21,21 @@ constexpr float assumed_variation = 0.1f;
 /// half where it has edges; bounds for what is measured.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
-bool shrinks(const Run& run) { return run.options.shrinks && refines_by_variance(run.options); }
+bool uses_shrinkage(const SolverState& state) { return state.options.shrinkage && refines_by_variance(state.options); }
 
 /// The mean square errors that an element has beyond those of its parent.
 struct AddedError {
     float noise = 0, bias = 0;
 };
 
-AddedError added_error(const Run& run, std::uint32_t first) {
-    const Detail detail = detail_of(run, first);
+AddedError added_error(const SolverState& state, std::uint32_t first) {
+    const Detail detail = detail_of(state, first);
     if (detail.noise == unknown) return {};  // they are what their parent is
-    if (!shrinks(run)) return {detail.noise, 0};
+    if (!uses_shrinkage(state)) return {detail.noise, 0};
     const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
     // Four numbers of this mean, none below 0, differ by no more, however noisy they are: else a few elements that one
     // heavy ray met would outweigh all others.
-    const float mean = luminance(run.solution.irradiance[run.forest->parent(first)]), most = 3 * mean * mean;
+    const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(detail.risk() - noise, -most, most)};
 }
 
@@ -61,8 +61,8 @@ float left_of_siblings_by_pixels(float area, float pixel_area) {
 }
 
 /// What is left of the squared error of siblings' differences where it counts.
-float left_of_siblings(const Run& run, std::uint32_t first) {
-    return run.view.empty() ? 1 : left_of_siblings_by_pixels(run.forest->area(first), pixel_area(run, first));
+float left_of_siblings(const SolverState& state, std::uint32_t first) {
+    return state.view.empty() ? 1 : left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
 /// Mean square errors of every element; bias may be negative.
@@ -71,20 +71,20 @@ struct ElementErrors {
 };
 
 /// @param of_pixels  Of what a view shows of the element in its pixels, rather than of the element itself.
-ElementErrors element_errors(const Run& run, bool of_pixels) {
-    const ElementForest& forest = *run.forest;
+ElementErrors element_errors(const SolverState& state, bool of_pixels) {
+    const ElementForest& forest = *state.forest;
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
     for (std::uint32_t root = 0; root < forest.patch_count(); ++root) {
-        const float left = of_pixels ? left_of_patches_by_pixels(forest.area(root), pixel_area(run, root)) : 1;
-        const float rays = std::max(run.history[root], 1.0f);
-        errors.noise[root] = left * run.noise.variance(forest, run.solution.irradiance, root, rays);
+        const float left = of_pixels ? left_of_patches_by_pixels(forest.area(root), pixel_area(state, root)) : 1;
+        const float rays = std::max(state.history[root], 1.0f);
+        errors.noise[root] = left * state.noise.variance(forest, state.solution.irradiance, root, rays);
     }
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const auto [noise, bias] = added_error(run, first);
+        const auto [noise, bias] = added_error(state, first);
         const std::uint32_t parent = forest.parent(first);
-        const float left = of_pixels ? left_of_siblings(run, first) : 1;
+        const float left = of_pixels ? left_of_siblings(state, first) : 1;
         for (std::uint32_t e = first; e < first + 4; ++e) {
             errors.noise[e] = errors.noise[parent] + left * noise;
             errors.bias[e] = errors.bias[parent] + left * bias;
@@ -99,9 +99,9 @@ std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
 }
 
 /// Signal of an element's siblings, 0 where none is known.
-float signal_beside(const Run& run, std::uint32_t e) {
-    if (e < run.forest->patch_count()) return 0;
-    const Detail detail = detail_of(run, first_sibling(*run.forest, e));
+float signal_beside(const SolverState& state, std::uint32_t e) {
+    if (e < state.forest->patch_count()) return 0;
+    const Detail detail = detail_of(state, first_sibling(*state.forest, e));
     return detail.noise == unknown ? 0 : detail.signal();
 }
 
@@ -125,8 +125,8 @@ struct Sums {
 /// about: for an estimate y of a difference d, of which the share k is kept, |k y - d|^2 is in the mean
 /// k^2 |y|^2 + (1 - 2 k) y z with another estimate z that is independent of y. Unlike Stein's estimate it needs no
 /// model of the noise, but it is known of earlier iterations alone.
-RiskCheck check_risk(const Run& run, const FreshEstimate& fresh) {
-    const ElementForest& forest = *run.forest;
+RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
+    const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
     const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
         return luminance(irradiance[e]) - luminance(irradiance[forest.parent(e)]);
@@ -136,17 +136,17 @@ RiskCheck check_risk(const Run& run, const FreshEstimate& fresh) {
             RiskCheck sum;
             for (std::size_t i = begin; i < end; ++i) {
                 const std::uint32_t first = roots + 4 * static_cast<std::uint32_t>(i);
-                const Detail detail = detail_of(run, first);
+                const Detail detail = detail_of(state, first);
                 if (detail.noise == unknown) continue;
                 const std::uint32_t parent = forest.parent(first);
-                const double w = left_of_siblings(run, first) * error_weight(run, parent);
+                const double w = left_of_siblings(state, first) * error_weight(state, parent);
                 if (!(w > 0)) continue;
                 double product = 0;
                 for (std::uint32_t e = first; e < first + 4; ++e)
-                    product += static_cast<double>(forest.area(e) * difference(run.solution.irradiance, e) *
+                    product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
                                                    difference(fresh.irradiance, e));
                 const double k = detail.shrinkage(), area = forest.area(parent);
-                const AddedError expected = added_error(run, first);
+                const AddedError expected = added_error(state, first);
                 sum.measured += w * (k * k * detail.spread * area + (1 - 2 * k) * product);
                 sum.expected += w * area * static_cast<double>(expected.noise + expected.bias);
             }
@@ -159,29 +159,29 @@ double decay_of(const Sums& sums) {
     return std::clamp(sums.signal / sums.signal_of_parent, least_decay, most_decay);
 }
 
-Sums sum_errors(const Run& run, const ElementErrors& errors) {
-    const ElementForest& forest = *run.forest;
+Sums sum_errors(const SolverState& state, const ElementErrors& errors) {
+    const ElementForest& forest = *state.forest;
     return parallel_sum(forest.size(), elements_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
         Sums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
-            const double w = error_weight(run, e) * forest.area(e);
+            const double w = error_weight(state, e) * forest.area(e);
             if (!(w > 0)) continue;
-            const float h = luminance(run.solution.irradiance[e]);
+            const float h = luminance(state.solution.irradiance[e]);
             sums.weight += w;
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
             sums.noise_of_patches += w * errors.noise[forest.patch(e)];
             // What varies within a pixel is no error of the picture.
-            const double resolved = run.view.empty() ? 1 : std::max(0.0f, 1 - pixel_area(run, e) / forest.area(e));
+            const double resolved = state.view.empty() ? 1 : std::max(0.0f, 1 - pixel_area(state, e) / forest.area(e));
             if (e < forest.patch_count()) {
                 sums.assumed += w * resolved * std::pow(assumed_variation * h, 2);
                 continue;
             }
             const std::uint32_t parent = forest.parent(e);
-            const double signal_of_parent = signal_beside(run, parent);
-            const bool is_new = run.history[e] == 0;  // then what is known is how its parent's siblings differ
-            const double signal = is_new ? least_decay * signal_of_parent : signal_beside(run, e);
+            const double signal_of_parent = signal_beside(state, parent);
+            const bool is_new = state.history[e] == 0;  // then what is known is how its parent's siblings differ
+            const double signal = is_new ? least_decay * signal_of_parent : signal_beside(state, e);
             sums.within += w * resolved * signal;
             if (is_new) continue;
             sums.signal += w * signal;
@@ -200,85 +200,85 @@ float Detail::risk() const {
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
 
-Detail detail_of(const Run& run, std::uint32_t first) {
-    const ElementForest& forest = *run.forest;
-    const std::vector<Rgb>& irradiance = run.solution.irradiance;
-    if (run.history[first] == 0) return {0, unknown};
+Detail detail_of(const SolverState& state, std::uint32_t first) {
+    const ElementForest& forest = *state.forest;
+    const std::vector<Rgb>& irradiance = state.solution.irradiance;
+    if (state.history[first] == 0) return {0, unknown};
     const float mean = luminance(irradiance[forest.parent(first)]);
     float area = 0, spread = 0, variance = 0;
     for (std::uint32_t e = first; e < first + 4; ++e) {
         const float difference = luminance(irradiance[e]) - mean, a = forest.area(e);
         area += a;
         spread += a * difference * difference;
-        variance += a * run.noise.variance(forest, irradiance, e, run.history[first]);
+        variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     return {spread / area, variance / area};
 }
 
-void estimate_noise(Run& run, const FreshEstimate& fresh, std::int64_t rays) {
-    const auto weight = [&](std::uint32_t e) { return error_weight(run, e) * run.forest->area(e); };
-    if (shrinks(run) && run.noise.is_known()) run.risk_check.add(check_risk(run, fresh));
-    run.noise.add(*run.forest, fresh, run.solution.irradiance, run.history, static_cast<float>(rays), weight);
+void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t rays) {
+    const auto weight = [&](std::uint32_t e) { return error_weight(state, e) * state.forest->area(e); };
+    if (uses_shrinkage(state) && state.noise.is_known()) state.risk_check.add(check_risk(state, fresh));
+    state.noise.add(*state.forest, fresh, state.solution.irradiance, state.history, static_cast<float>(rays), weight);
 }
 
 double SolutionError::total() const { return std::hypot(noise, discretisation); }
 
-SolutionError solution_error(const Run& run) {
+SolutionError solution_error(const SolverState& state) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double mean = error_reference(run);
-    if (!run.noise.is_known() || !(mean > 0)) return {infinity, infinity};
-    const Sums sums = sum_errors(run, element_errors(run, !run.view.empty()));
+    const double mean = error_reference(state);
+    if (!state.noise.is_known() || !(mean > 0)) return {infinity, infinity};
+    const Sums sums = sum_errors(state, element_errors(state, !state.view.empty()));
     if (!(sums.weight > 0)) return {infinity, infinity};
-    const double total_weight = run.view.empty() ? sums.weight : 1;
+    const double total_weight = state.view.empty() ? sums.weight : 1;
     const double decay = decay_of(sums);
     const double within_leaves = std::max(0.0, sums.within) * decay / (1 - decay) + sums.assumed;
-    const double of_details = run.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
+    const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
     const double all = sums.noise_of_patches + of_details + within_leaves;
-    const double discretisation = run.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
+    const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
     return {std::sqrt(sums.noise / total_weight) / mean, std::sqrt(discretisation / total_weight) / mean};
 }
 
-double error_reference(const Run& run) {
-    const ElementForest& forest = *run.forest;
-    const bool has_view = !run.view.empty();
+double error_reference(const SolverState& state) {
+    const ElementForest& forest = *state.forest;
+    const bool has_view = !state.view.empty();
     double sum = 0, weight = 0;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
-        const double w = has_view ? static_cast<double>(run.solution.view_importance[i]) : 1.0;
-        const Rgb& h = run.solution.irradiance[i];
-        sum += w * forest.area(i) * luminance(has_view ? Rgb(run.surfaces.reflectance(i) * h) : h);
+        const double w = has_view ? static_cast<double>(state.solution.view_importance[i]) : 1.0;
+        const Rgb& h = state.solution.irradiance[i];
+        sum += w * forest.area(i) * luminance(has_view ? Rgb(state.materials.reflectance(i) * h) : h);
         weight += w * forest.area(i);
     }
     return weight > 0 ? sum / weight : 0;
 }
 
-double error_weight(const Run& run, std::uint32_t element) {
-    if (run.view.empty()) return 1;
-    const Rgb& rho = run.surfaces.reflectance(run.forest->patch(element));
-    Rgb h = run.solution.irradiance[element];
+double error_weight(const SolverState& state, std::uint32_t element) {
+    if (state.view.empty()) return 1;
+    const Rgb& rho = state.materials.reflectance(state.forest->patch(element));
+    Rgb h = state.solution.irradiance[element];
     for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences may be less than none
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
-    return static_cast<double>(run.solution.view_importance[element]) * factor * factor;
+    return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
 }
 
-void finish_solution(Run& run) {
-    const ElementForest& forest = *run.forest;
-    Solution& solution = run.solution;
-    const ElementErrors errors = element_errors(run, false);
+void finish_solution(SolverState& state) {
+    const ElementForest& forest = *state.forest;
+    Solution& solution = state.solution;
+    const ElementErrors errors = element_errors(state, false);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_beside(run, e)) / 3;  // a quarter, a sixteenth, ... of it
+        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // a quarter, a sixteenth, ... of it
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }
-    run.streams.used.resize(forest.size(), 0);
-    solution.rays.assign(run.streams.used.begin(), run.streams.used.end());
+    state.streams.used.resize(forest.size(), 0);
+    solution.rays.assign(state.streams.used.begin(), state.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
-        const Detail detail = detail_of(run, first);
-        const float kept = shrinks(run) && detail.noise != unknown ? detail.shrinkage() : 1.0f;
+        const Detail detail = detail_of(state, first);
+        const float kept = uses_shrinkage(state) && detail.noise != unknown ? detail.shrinkage() : 1.0f;
         std::array<Rgb, 4> difference;
         for (std::uint32_t k = 0; k < 4; ++k)
             difference[k] = kept * (solution.irradiance[first + k] - solution.irradiance[parent]);

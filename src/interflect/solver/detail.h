@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 
 namespace interflect {
 
@@ -25,10 +25,10 @@ struct Detail {
 };
 
 /// The detail of the siblings `first` ... `first` + 3.
-Detail detail_of(const Run& run, std::uint32_t first);
+Detail detail_of(const SolverState& state, std::uint32_t first);
 
 /// Enters an iteration of so many rays into the noise model. Call before it is merged with the mean.
-void estimate_noise(Run& run, const FreshEstimate& fresh, std::int64_t rays);
+void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t rays);
 
 /// Estimated errors of a solution, relative to the weighted mean of what counts: IterationReport says what that is.
 struct SolutionError {
@@ -38,17 +38,17 @@ struct SolutionError {
 };
 
 /// @return infinities where nothing is known yet, or nothing that counts is lit.
-SolutionError solution_error(const Run& run);
+SolutionError solution_error(const SolverState& state);
 
 /// The weight of a unit of squared error of the luminance of an element's irradiance, per area: with a view, by how
 /// much of the picture it fills, times the squared luminance of what it reflects; without a view, 1.
-double error_weight(const Run& run, std::uint32_t element);
+double error_weight(const SolverState& state, std::uint32_t element);
 
 /// What errors are relative to: the weighted mean of the luminance of reflected light, or of irradiance.
-double error_reference(const Run& run);
+double error_reference(const SolverState& state);
 
 /// Completes the solution: reduces the differences of siblings by their noise where that is asked for, and tells what
 /// is known of each element beside its irradiance.
-void finish_solution(Run& run);
+void finish_solution(SolverState& state);
 
 }  // namespace interflect

@@ -16,8 +16,8 @@ constexpr float least_cosine = 0.1f;
 
 }  // namespace
 
-ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options) : is_given_(options.smallest_area > 0) {
-    unseen_ = static_cast<float>(is_given_ ? options.smallest_area : std::pow(default_element_size(scene), 2));
+ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options) : is_given_(options.min_area > 0) {
+    unseen_ = static_cast<float>(is_given_ ? options.min_area : std::pow(default_element_size(scene), 2));
     for (const WeightedView& w : options.views) {
         const double height = 2 * std::tan(0.5 * static_cast<double>(w.view.fov) * std::numbers::pi / 180);
         eyes_.push_back({V3f(w.view.eye - scene.origin), static_cast<float>(height / w.pixel_rows)});
@@ -35,7 +35,7 @@ float ElementFloor::pixel_area(const V3f& centre, const V3f& normal) const {
     return smallest;
 }
 
-float ElementFloor::smallest_area(const V3f& centre, const V3f& normal, bool is_seen) const {
+float ElementFloor::min_area(const V3f& centre, const V3f& normal, bool is_seen) const {
     return !is_seen || is_given_ || eyes_.empty() ? unseen_ : pixel_area(centre, normal);
 }
 

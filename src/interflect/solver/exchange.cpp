@@ -149,7 +149,7 @@ struct LinesOfSight {
 
     /// Whether a point of an element is the first that a ray to it, from a point of another, meets.
     bool sees(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
-        const V3f origin = from + normal * ray_caster.lift(forest.patch(source));
+        const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};
         Hit hit;
         ray_caster.trace(std::span(&ray, 1), std::span(&hit, 1));
@@ -178,7 +178,7 @@ bool ExchangeEstimator::face_each_other(const ElementPair& pair) const {
     const auto reaches_above = [&](std::uint32_t e, std::uint32_t ground) {
         const V3d normal(forest_.geometry(forest_.patch(ground)).normal());
         const double height = normal.dot(polygon_of(forest_, ground).corner[0]) +
-                              static_cast<double>(ray_caster_.lift(forest_.patch(ground)));
+                              static_cast<double>(ray_caster_.ray_offset(forest_.patch(ground)));
         const Polygon polygon = polygon_of(forest_, e);
         return std::any_of(polygon.corners().begin(), polygon.corners().end(),
                            [&](const V3d& corner) { return normal.dot(corner) > height; });

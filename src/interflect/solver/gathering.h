@@ -6,8 +6,8 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/stable_array.h"
-#include "interflect/solver/light.h"
-#include "interflect/solver/surfaces.h"
+#include "interflect/solver/materials.h"
+#include "interflect/solver/radiosity.h"
 
 namespace interflect {
 

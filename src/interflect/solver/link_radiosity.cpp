@@ -10,8 +10,8 @@
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/solver/exchange.h"
-#include "interflect/solver/light.h"
-#include "interflect/solver/run.h"
+#include "interflect/solver/radiosity.h"
+#include "interflect/solver/solver_state.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {
@@ -36,7 +36,7 @@ struct Link {
 };
 
 /// Two elements that are to be linked.
-struct Prospect {
+struct LinkCandidate {
     ElementPair ends;
     Effort effort;
 };
@@ -84,13 +84,13 @@ std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, 
 }
 
 /// B of every element; what is not finite is set to 0, so that it is not gathered, and counted.
-std::vector<Rgb> present_radiosity(Run& run) {
-    const Light light(run.surfaces, run.solution.irradiance);
+std::vector<Rgb> present_radiosity(SolverState& state) {
+    const Radiosity light(state.materials, state.solution.irradiance);
     std::vector<Rgb> b;
-    b.reserve(run.forest->size());
-    for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
-        b.push_back(light.radiosity(*run.forest, e));
-        run.solution.non_finite += light.is_lost(*run.forest, e);
+    b.reserve(state.forest->size());
+    for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
+        b.push_back(light.of(*state.forest, e));
+        state.solution.non_finite += light.is_lost(*state.forest, e);
     }
     return b;
 }
@@ -110,11 +110,11 @@ class RelativeChange {
 
 class LinkedElements {
   public:
-    LinkedElements(const Scene& scene, Run& run, std::size_t link_limit)
+    LinkedElements(const Scene& scene, SolverState& state, std::size_t link_limit)
         : scene_(scene),
-          run_(run),
-          forest_(*run.forest),
-          estimator_(*run.forest, run.ray_caster, run.options.seed),
+          state_(state),
+          forest_(*state.forest),
+          estimator_(*state.forest, state.ray_caster, state.options.seed),
           link_limit_(link_limit) {}
 
     /// Links all patches that face each other.
@@ -132,14 +132,14 @@ class LinkedElements {
 
   private:
     void require_room_for(std::size_t more) const;
-    void link(const std::vector<Prospect>& prospects);
+    void link(const std::vector<LinkCandidate>& link_candidates);
     std::vector<RefinementCandidate> refinement_candidates() const;
     bool may_divide(std::uint32_t element) const;
     void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
     void describe_new_elements(std::uint32_t first);
 
     const Scene& scene_;
-    Run& run_;
+    SolverState& state_;
     ElementForest& forest_;
     ExchangeEstimator estimator_;
     std::size_t link_limit_;
@@ -153,7 +153,7 @@ void LinkedElements::require_room_for(std::size_t more) const {
     throw InputError("'" + scene_.name + "' needs more than " + std::to_string(link_limit_) + " links between its " +
                      std::to_string(forest_.patch_count()) + " patches and their elements, " +
                      std::to_string(sizeof(Link)) +
-                     " bytes each: raise epsilon or smallest_area, lower rays, or use a method without links, such as "
+                     " bytes each: raise epsilon or min_area, lower rays, or use a method without links, such as "
                      "hsrr");
 }
 
@@ -162,17 +162,17 @@ void LinkedElements::link_patches() {
     std::vector<Sphere> spheres;
     for (const Patch& patch : scene_.patches) spheres.push_back(sphere_around(scene_, patch));
     for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) surface += forest_.area(i);
-    const auto emits = [&](std::uint32_t i) { return channel_sum(run_.surfaces.exitance(i)) > 0; };
+    const auto emits = [&](std::uint32_t i) { return channel_sum(state_.materials.exitance(i)) > 0; };
     // A reflector as bright as the average sends no more than the threshold over so small an exchange.
     const auto is_weak = [&](std::uint32_t i, std::uint32_t j) {
         return !emits(i) && !emits(j) &&
                largest_exchange(spheres[i], spheres[j], forest_.area(i), forest_.area(j)) <
-                   run_.options.epsilon * surface;
+                   state_.options.epsilon * surface;
     };
 
-    std::vector<std::vector<Prospect>> of_patch(forest_.patch_count());
+    std::vector<std::vector<LinkCandidate>> of_patch(forest_.patch_count());
     std::atomic<std::size_t> count{0};
-    parallel_for_ranges(of_patch.size(), patches_per_task, run_.stop, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(of_patch.size(), patches_per_task, state_.stop, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && count <= link_limit_; ++i) {
             const auto a = static_cast<std::uint32_t>(i);
             for (std::uint32_t b = a + 1; b < forest_.patch_count(); ++b)
@@ -182,22 +182,24 @@ void LinkedElements::link_patches() {
         }
     });
     require_room_for(count);
-    std::vector<Prospect> all;
+    std::vector<LinkCandidate> all;
     all.reserve(count);
-    for (const std::vector<Prospect>& prospects : of_patch) all.insert(all.end(), prospects.begin(), prospects.end());
+    for (const std::vector<LinkCandidate>& link_candidates : of_patch)
+        all.insert(all.end(), link_candidates.begin(), link_candidates.end());
     link(all);
 }
 
 /// Adds links, but none between elements that exchange nothing even unoccluded.
-void LinkedElements::link(const std::vector<Prospect>& prospects) {
-    require_room_for(prospects.size());
+void LinkedElements::link(const std::vector<LinkCandidate>& link_candidates) {
+    require_room_for(link_candidates.size());
     const std::size_t first = links_.size();
-    links_.resize(first + prospects.size());
+    links_.resize(first + link_candidates.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(prospects.size(), pairs_per_task, run_.stop, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(link_candidates.size(), pairs_per_task, state_.stop, [&](std::size_t begin, std::size_t end) {
         std::int64_t used = 0;
         for (std::size_t i = begin; i < end; ++i)
-            links_[first + i] = {prospects[i].ends, estimator_.estimate(prospects[i].ends, prospects[i].effort, used)};
+            links_[first + i] = {link_candidates[i].ends,
+                                 estimator_.estimate(link_candidates[i].ends, link_candidates[i].effort, used)};
         rays += used;
     });
     rays_ += rays;
@@ -205,12 +207,12 @@ void LinkedElements::link(const std::vector<Prospect>& prospects) {
 }
 
 RgbD LinkedElements::gather_light() {
-    const std::vector<Rgb> b = present_radiosity(run_);
+    const std::vector<Rgb> b = present_radiosity(state_);
     const std::vector<RgbD> received = gather(forest_, links_, std::vector<RgbD>(b.begin(), b.end()));
     RelativeChange change;
     RgbD escaped = integral(forest_, b);
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
-        Rgb& irradiance = run_.solution.irradiance[e];
+        Rgb& irradiance = state_.solution.irradiance[e];
         change.add(forest_.area(e), channel_sum(RgbD(irradiance)), channel_sum(received[e]));
         irradiance = Rgb(received[e]);
         if (e < forest_.patch_count()) escaped -= received[e] * static_cast<double>(forest_.area(e));
@@ -220,14 +222,14 @@ RgbD LinkedElements::gather_light() {
 }
 
 void LinkedElements::gather_importance() {
-    const std::vector<float> psi = total_importance(run_.solution);
+    const std::vector<float> psi = total_importance(state_.solution);
     std::vector<double> reflected(psi.size());
     for (std::uint32_t e = 0; e < forest_.size(); ++e)
-        reflected[e] = static_cast<double>(run_.surfaces.mean_reflectance(forest_.patch(e))) * psi[e];
+        reflected[e] = static_cast<double>(state_.materials.mean_reflectance(forest_.patch(e))) * psi[e];
     const std::vector<double> received = gather(forest_, links_, reflected);
     RelativeChange change;
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
-        float& importance = run_.solution.indirect_importance[e];
+        float& importance = state_.solution.indirect_importance[e];
         change.add(forest_.area(e), importance, received[e]);
         importance = static_cast<float>(received[e]);
     }
@@ -260,8 +262,8 @@ double error_bound(const Exchange& exchange, float spread) {
 /// difference between the brightest and the darkest parts of j. Each counts against the element that, divided, amends
 /// it; both directions are looked at, the worse counts.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
-    const Solution& solution = run_.solution;
-    const std::vector<Rgb> b = radiosity(run_.surfaces, forest_, solution.irradiance);
+    const Solution& solution = state_.solution;
+    const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);
     const RadiosityRange range(forest_, b);
     const ImportanceUse use = importance_use(solution);
     const std::vector<float> psi =
@@ -271,8 +273,8 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     std::vector<RefinementCandidate> candidates;
     if (!(threshold > 0)) return candidates;
     const auto weight = [&](std::uint32_t divided, std::uint32_t other) {
-        const Rgb &rho = run_.surfaces.reflectance(forest_.patch(divided)),
-                  &rho_other = run_.surfaces.reflectance(forest_.patch(other));
+        const Rgb &rho = state_.materials.reflectance(forest_.patch(divided)),
+                  &rho_other = state_.materials.reflectance(forest_.patch(other));
         const double as_receiver = largest_channel(rho * b[other]) * psi[divided];
         const double as_source = largest_channel(rho_other * (range.most[divided] - range.least[divided])) * psi[other];
         return may_divide(divided) ? std::max(as_receiver, as_source) : 0.0;
@@ -288,12 +290,12 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
 }
 
 bool LinkedElements::may_divide(std::uint32_t element) const {
-    return forest_.area(element) >= 4.0 * static_cast<double>(run_.floor.unseen());
+    return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.unseen());
 }
 
 /// Where not all can be divided, keeps the worst.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
-    const std::int64_t rays = std::max<std::int64_t>(0, run_.options.rays - rays_);
+    const std::int64_t rays = std::max<std::int64_t>(0, state_.options.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
     if (candidates.size() <= affordable) return;
     const auto comes_first = [](const RefinementCandidate& x, const RefinementCandidate& y) {
@@ -305,18 +307,18 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
 
 /// The elements that came last are their parents' parts: until the next sweep they are as bright.
 void LinkedElements::describe_new_elements(std::uint32_t first) {
-    Solution& solution = run_.solution;
+    Solution& solution = state_.solution;
     inherit(forest_, first, solution.irradiance);
-    if (run_.view.empty()) return;
+    if (state_.view.empty()) return;
     inherit(forest_, first, solution.indirect_importance);
-    solution.view_importance = run_.view.per_area(forest_, !run_.options.importance_at_elements);
+    solution.view_importance = state_.view.per_area(forest_, !state_.options.importance_at_elements);
 }
 
 bool LinkedElements::refine() {
     std::vector<RefinementCandidate> candidates = refinement_candidates();
     keep_affordable(candidates);
     const std::uint32_t before = forest_.size();
-    std::vector<Prospect> prospects;
+    std::vector<LinkCandidate> link_candidates;
     for (const RefinementCandidate& candidate : candidates) {
         Link& link = links_[candidate.link];
         const std::uint32_t divided = candidate.divided;
@@ -325,26 +327,26 @@ bool LinkedElements::refine() {
             forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);
         if (child == none) continue;
         const Effort effort = link.exchange.visibility == 1 ? Effort::quick : Effort::thorough;
-        for (std::uint32_t k = 0; k < 4; ++k) prospects.push_back({{child + k, other}, effort});
+        for (std::uint32_t k = 0; k < 4; ++k) link_candidates.push_back({{child + k, other}, effort});
         link.exchange.area = 0;  // link() removes it
     }
     describe_new_elements(before);
-    link(prospects);
-    return !prospects.empty();
+    link(link_candidates);
+    return !link_candidates.empty();
 }
 
 /// Sweeps until light and links have settled, or a limit is reached. @throws Interrupted in the middle of a sweep
-void sweep(Run& run, LinkedElements& elements) {
+void sweep(SolverState& state, LinkedElements& elements) {
     elements.link_patches();
-    bool refines = run.options.method.refines;
+    bool refines = state.options.method.refines;
     for (int iteration = 1;; ++iteration) {
         const RgbD escaped_power = elements.gather_light();
-        if (importance_use(run.solution) == ImportanceUse::full) elements.gather_importance();
-        run.schedule.done({elements.rays() - run.power_rays, false});
-        run.power_rays = elements.rays();
-        report(run, iteration, escaped_power);
-        if (run.options.iterations > 0 && iteration >= run.options.iterations) return;
-        if (run.stop.is_due()) throw Interrupted();
+        if (importance_use(state.solution) == ImportanceUse::full) elements.gather_importance();
+        state.schedule.done({elements.rays() - state.power_rays, false});
+        state.power_rays = elements.rays();
+        report(state, iteration, escaped_power);
+        if (state.options.iterations > 0 && iteration >= state.options.iterations) return;
+        if (state.stop.is_due()) throw Interrupted();
         if (refines && elements.change() <= settled)
             refines = elements.refine();
         else if (!refines && elements.change() <= negligible_change)
@@ -356,19 +358,19 @@ void sweep(Run& run, LinkedElements& elements) {
 
 Solution solve_by_links(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
                         const Monitor& monitor, std::size_t link_limit) {
-    Run run(scene, ray_caster, options, monitor);
-    run.stop.limit_time(run.start, options.seconds);
-    LinkedElements elements(scene, run, link_limit);
-    const bool is_lit = channel_sum(run.solution.emitted_power) > 0;  // else it is dark, and exactly so
+    SolverState state(scene, ray_caster, options, monitor);
+    state.stop.limit_time(state.start, options.seconds);
+    LinkedElements elements(scene, state, link_limit);
+    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else it is dark, and exactly so
     try {
-        if (is_lit) sweep(run, elements);
+        if (is_lit) sweep(state, elements);
     } catch (const Interrupted&) {
-        run.solution.interrupted = run.stop.is_asked_for();
+        state.solution.interrupted = state.stop.is_asked_for();
     }
-    run.solution.standard_error.assign(run.forest->size(), 0.0f);
-    run.solution.discretisation_error.assign(run.forest->size(), 0.0f);
-    run.solution.rays.assign(run.forest->size(), 0.0f);
-    return std::move(run.solution);
+    state.solution.standard_error.assign(state.forest->size(), 0.0f);
+    state.solution.discretisation_error.assign(state.forest->size(), 0.0f);
+    state.solution.rays.assign(state.forest->size(), 0.0f);
+    return std::move(state.solution);
 }
 
 }  // namespace interflect

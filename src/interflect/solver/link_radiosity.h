@@ -26,7 +26,7 @@ inline constexpr std::size_t most_links = std::size_t{1} << 27;
 /// many links that each are good enough err the same way. Meant for some thousands of patches: all pairs are looked at.
 ///
 /// The run ends when a sweep changes nearly nothing and no link asks for refinement. Refinement stays within
-/// options.rays (the first links are made at any price), most_elements and smallest_area; options.iterations, if not 0,
+/// options.rays (the first links are made at any price), max_elements and min_area; options.iterations, if not 0,
 /// and seconds limit the sweeps. Options of random sampling, and `until`, have no meaning here. IterationReport has one
 /// entry a sweep; `rays` are those of visibility, `escaped_power` is what left the surfaces and arrived at none: in a
 /// closed scene the error of the form factors' sum, of either sign. Solution::standard_error and ::rays are 0.

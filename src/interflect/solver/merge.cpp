@@ -24,11 +24,12 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
 }
 
 template <class T>
-void merge_into(const Run& run, std::vector<T>& mean, const std::vector<T>& received, const IterationPlan& plan) {
-    const ElementForest& forest = *run.forest;
+void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
+                const IterationPlan& plan) {
+    const ElementForest& forest = *state.forest;
     const auto rays = static_cast<float>(plan.rays);
     const auto merge_one = [&](std::uint32_t e) {
-        const float tau = plan.warms_up ? 1.0f : rays / (run.history[e] + rays);
+        const float tau = plan.warms_up ? 1.0f : rays / (state.history[e] + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
     parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
@@ -50,14 +51,15 @@ void merge_into(const Run& run, std::vector<T>& mean, const std::vector<T>& rece
 
 }  // namespace
 
-void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan) {
-    merge_into(run, mean, received, plan);
+void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+           const IterationPlan& plan) {
+    merge_into(state, mean, received, plan);
 }
-void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                    const IterationPlan& plan) {
-    const ElementForest& forest = *run.forest;
+    const ElementForest& forest = *state.forest;
     const auto rays = static_cast<float>(plan.rays);
-    const auto tau = [&](std::uint32_t e) { return rays / (run.history[e] + rays); };
+    const auto tau = [&](std::uint32_t e) { return rays / (state.history[e] + rays); };
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         for (std::uint32_t e = first; e < first + 4; ++e) mean[e] -= mean[forest.parent(first)];
     });
@@ -71,15 +73,16 @@ void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb
     });
 }
 
-void merge(const Run& run, std::vector<float>& mean, const std::vector<float>& received, const IterationPlan& plan) {
-    merge_into(run, mean, received, plan);
+void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
+           const IterationPlan& plan) {
+    merge_into(state, mean, received, plan);
 }
 
-void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new) {
-    const auto rays = static_cast<float>(plan.rays), trust = static_cast<float>(run.options.inherited_trust);
-    parallel_for_ranges(run.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new) {
+    const auto rays = static_cast<float>(plan.rays), trust = static_cast<float>(state.options.inherited_weight);
+    parallel_for_ranges(state.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e)
-            run.history[e] = plan.warms_up ? 0.0f : (run.history[e] + rays) * (e < first_new ? 1.0f : trust);
+            state.history[e] = plan.warms_up ? 0.0f : (state.history[e] + rays) * (e < first_new ? 1.0f : trust);
     });
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 
 namespace interflect {
 
@@ -11,16 +11,19 @@ namespace interflect {
 /// the same tau as all others. Children made later have a larger one, but only for how they share what their parent
 /// has: so none of the light is forgotten, and none counts twice. Where no element is younger than others this is
 /// Eq. 6 as it is.
-void merge(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan);
-void merge(const Run& run, std::vector<float>& mean, const std::vector<float>& received, const IterationPlan& plan);
+void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+           const IterationPlan& plan);
+void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
+           const IterationPlan& plan);
 
 /// The same for estimates that are not shot again: how siblings differ from their parent is averaged with a tau of
 /// their own, but as differences, which may make an element's mean negative. So it stays unbiased, and its noise known,
 /// where siblings are young and few rays have reached them.
-void merge_details(const Run& run, std::vector<Rgb>& mean, const std::vector<Rgb>& received, const IterationPlan& plan);
+void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+                   const IterationPlan& plan);
 
 /// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
 /// inherited a mean that is too smooth, less of them count.
-void remember(Run& run, const IterationPlan& plan, std::uint32_t first_new);
+void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new);
 
 }  // namespace interflect

@@ -11,7 +11,7 @@
 namespace interflect {
 
 /// One end of an interaction, as the oracle sees it.
-struct Party {
+struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};  ///< Unit length.
     float area = 0;       ///< [m^2]
@@ -20,7 +20,7 @@ struct Party {
 /// Cheap upper estimate of the form factor from receiver to shooter: the solid angle of a disk of the shooter's area,
 /// f = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between the centres. No cosine is taken below 2
 /// f: where the elements are close for their size, some of their parts face each other better than their centres do.
-inline float form_factor_estimate(const Party& shooter, const Party& receiver) {
+inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // By value and without branches, so that many pairs can be judged at once.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
     const auto larger = [](float x, float y) { return x < y ? y : x; };
@@ -40,10 +40,10 @@ struct Oracle {
     bool refines = false;  ///< False: the leaves that the ray connects exchange light.
     double threshold = 0;  ///< P_eps, times psi_max where importance decides too [lm or W].
     bool by_importance = false;
-    float smallest_area = 0;  ///< An element of less than four times this is not subdivided [m^2].
+    float min_area = 0;  ///< An element of less than four times this is not subdivided [m^2].
     /// The forest grows to no more than this. What a step makes beyond it is dropped at the step's end, the last first
     /// in the forest's order: so which elements there are does not depend on which thread was first.
-    std::size_t most_elements = std::numeric_limits<std::size_t>::max();
+    std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
     /// psi of every element as the step finds it, by which receivers are weighed; empty unless by_importance.
     std::vector<float> importance;
@@ -52,7 +52,7 @@ struct Oracle {
     /// @param reflected  The largest channel of rho_i B_j, the receiver's reflectance times the shooter's radiosity
     ///                   [lm/m^2 or W/m^2].
     /// @param psi        psi_i of the receiver; 1 unless by_importance.
-    bool accepts(const Party& shooter, const Party& receiver, float reflected, float psi) const {
+    bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {
         const double power = static_cast<double>(reflected) * receiver.area;
         return power * psi * form_factor_estimate(shooter, receiver) <= threshold;
     }

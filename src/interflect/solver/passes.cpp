@@ -29,7 +29,7 @@ constexpr std::int64_t fewest_rays_with_preparation = 4;
 /// Importance is followed at first until this share of it is left.
 constexpr double negligible_importance = 0.005;
 
-/// Shares the rays of a pass among its bounces.
+/// MixtureWeights the rays of a pass among its bounces.
 class BounceBudget {
   public:
     /// @param bounces   Sum over all bounces of what is left to shoot, relative to the first; 0: not known.
@@ -72,8 +72,8 @@ class BounceBudget {
 double unshot_weight(const PowerStep& bounce, const PowerStep& first, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first.power);
-    if (!(first.driven_power > 0)) return power;
-    return beta * power + (1 - beta) * relative(bounce.driven_power, first.driven_power);
+    if (!(first.weighted_power > 0)) return power;
+    return beta * power + (1 - beta) * relative(bounce.weighted_power, first.weighted_power);
 }
 
 void add(FreshEstimate& sum, Received& received) {
@@ -90,148 +90,152 @@ void add(FreshEstimate& sum, Received& received) {
 }
 
 /// Follows importance bounce by bounce, with so many rays at first; what it finds at each is added to the estimate.
-void start_importance(Run& run, std::int64_t rays) {
-    Solution& solution = run.solution;
+void start_importance(SolverState& state, std::int64_t rays) {
+    Solution& solution = state.solution;
     BounceBudget budget(rays, 0, true);
     std::vector<float> unshot = solution.view_importance;
     for (double left = 1; left > negligible_importance && !budget.is_last();) {
-        TransportStep step =
-            importance_step(run.surfaces, solution, Importance(unshot), std::max<std::int64_t>(1, budget.next(left)));
-        run.importance_rays += step.rays;
-        unshot = run_step(run, std::move(step)).importance;
+        TransportStep step = importance_step(state.materials, solution, Importance(unshot),
+                                             std::max<std::int64_t>(1, budget.next(left)));
+        state.importance_rays += step.rays;
+        unshot = run_step(state, std::move(step)).importance;
         left = 0;  // of the reflected importance; at first all of V is to be shot
-        for (std::uint32_t e = 0; e < run.forest->size(); ++e) {
+        for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
             solution.indirect_importance[e] += unshot[e];
-            if (e < run.forest->patch_count()) left += static_cast<double>(unshot[e]) * run.forest->area(e);
+            if (e < state.forest->patch_count()) left += static_cast<double>(unshot[e]) * state.forest->area(e);
         }
     }
 }
 
 /// Hands on what the pass did not shoot.
-std::vector<Rgb> handed_on(PassState& state, std::size_t elements, std::int64_t rays) {
-    std::vector<Rgb> unshot = std::exchange(state.unshot, {});
+std::vector<Rgb> handed_on(PassState& passes, std::size_t elements, std::int64_t rays) {
+    std::vector<Rgb> unshot = std::exchange(passes.unshot, {});
     if (unshot.empty()) unshot.assign(elements, Rgb(0));
-    const auto factor = static_cast<float>(state.unshot_rays / static_cast<double>(rays));
+    const auto factor = static_cast<float>(passes.unshot_rays / static_cast<double>(rays));
     for (Rgb& h : unshot) h *= factor;
     return unshot;
 }
 
 /// Traces one bounce and adds it to the pass; a pass that is empty becomes it. @return What is to be shot next: what it
 /// brought.
-std::vector<Rgb> trace_bounce(Run& run, TransportStep step, FreshEstimate& pass, RgbD& escaped_power) {
+std::vector<Rgb> trace_bounce(SolverState& state, TransportStep step, FreshEstimate& pass, RgbD& escaped_power) {
     const bool carries_importance = step.carries_importance();
     const IterationPlan plan{.rays = step.rays};
-    const double share = carries_importance ? run.options.alpha : 0;
+    const double share = carries_importance ? state.options.alpha : 0;
     const std::int64_t for_importance = std::llround(share * static_cast<double>(step.rays));
-    run.importance_rays += for_importance;
-    run.power_rays += step.rays - for_importance;
-    const std::uint32_t before = run.forest->size();
-    Received received = run_step(run, std::move(step));
+    state.importance_rays += for_importance;
+    state.power_rays += step.rays - for_importance;
+    const std::uint32_t before = state.forest->size();
+    Received received = run_step(state, std::move(step));
     escaped_power += received.escaped_power;
-    run.quanta += received.quanta;
+    state.quanta += received.quanta;
     if (!pass.irradiance.empty()) {
-        inherit(*run.forest, before, pass.irradiance);
-        inherit(*run.forest, before, pass.variance);
+        inherit(*state.forest, before, pass.irradiance);
+        inherit(*state.forest, before, pass.variance);
     }
     add(pass, received);
-    if (carries_importance) merge(run, run.solution.indirect_importance, received.importance, plan);
+    if (carries_importance) merge(state, state.solution.indirect_importance, received.importance, plan);
     return std::move(received.irradiance);
 }
 
 }  // namespace
 
-FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool oracle_refines, RgbD& escaped_power) {
-    Solution& solution = run.solution;
-    const bool carries_importance = importance_use(solution) == ImportanceUse::full && !run.options.separate_iterations;
-    BounceBudget budget(rays, state.bounces, state.is_final);
+FreshEstimate trace_pass(SolverState& state, PassState& passes, std::int64_t rays, bool oracle_refines,
+                         RgbD& escaped_power) {
+    Solution& solution = state.solution;
+    const bool carries_importance =
+        importance_use(solution) == ImportanceUse::full && !state.options.separate_iterations;
+    BounceBudget budget(rays, passes.bounces, passes.is_final);
     FreshEstimate fresh;
-    std::vector<Rgb> unshot = handed_on(state, run.forest->size(), rays);
-    PowerDriver driver = power_driver(solution, run.neighbourhoods);
+    std::vector<Rgb> unshot = handed_on(passes, state.forest->size(), rays);
+    ImportanceWeights driver = importance_weights(solution, state.neighbourhoods);
     PowerStep first;
-    run.quanta = {};
+    state.quanta = {};
     for (bool emits = true; !budget.is_last(); emits = false) {
         // Importance is carried on by the first bounce alone, which has the most rays.
-        const Light light(run.surfaces, unshot, emits);
-        PowerStep bounce = power_step(run.surfaces, solution, light, driver, carries_importance && emits, 0);
-        if (emits) first = {{}, bounce.power, bounce.driven_power};
-        const double weight = unshot_weight(bounce, first, run.options.beta);
+        const Radiosity light(state.materials, unshot, emits);
+        PowerStep bounce = power_step(state.materials, solution, light, driver, carries_importance && emits, 0);
+        if (emits) first = {{}, bounce.power, bounce.weighted_power};
+        const double weight = unshot_weight(bounce, first, state.options.beta);
         bounce.step.rays = bounce.power > 0 ? budget.next(weight) : 0;
         if (bounce.step.rays == 0) break;
-        bounce.step.known_light = Light(run.surfaces, solution.irradiance);
+        bounce.step.known_light = Radiosity(state.materials, solution.irradiance);
         bounce.step.leaves_only = !oracle_refines;
         if (oracle_refines)
-            bounce.step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
+            bounce.step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
         bounce.step.spent = std::move(unshot);
-        unshot = trace_bounce(run, std::move(bounce.step), fresh, escaped_power);
+        unshot = trace_bounce(state, std::move(bounce.step), fresh, escaped_power);
         if (!driver.elements.empty())
-            inherit(*run.forest, static_cast<std::uint32_t>(driver.elements.size()), driver.elements);
+            inherit(*state.forest, static_cast<std::uint32_t>(driver.elements.size()), driver.elements);
     }
     if (fresh.irradiance.empty())  // nothing could be shot
-        fresh = {std::vector<Rgb>(run.forest->size(), Rgb(0)), std::vector<float>(run.forest->size(), 0.0f)};
-    state.bounces = budget.bounces();
-    state.unshot = std::move(unshot);
-    state.unshot_rays = static_cast<double>(rays);
-    if (!oracle_refines) pull(*run.forest, fresh.irradiance), pull_variance(*run.forest, fresh.variance);
+        fresh = {std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
+    passes.bounces = budget.bounces();
+    passes.unshot = std::move(unshot);
+    passes.unshot_rays = static_cast<double>(rays);
+    if (!oracle_refines) pull(*state.forest, fresh.irradiance), pull_variance(*state.forest, fresh.variance);
     return fresh;
 }
 
-PassState prepare_passes(Run& run) {
-    PassState state;
-    if (run.options.rays < fewest_rays_with_preparation) return state;
-    const std::int64_t rays = run.schedule.start_rays();
-    if (importance_use(run.solution) == ImportanceUse::full) start_importance(run, rays);
+PassState prepare_passes(SolverState& state) {
+    PassState passes;
+    if (state.options.rays < fewest_rays_with_preparation) return passes;
+    const std::int64_t rays = state.schedule.start_rays();
+    if (importance_use(state.solution) == ImportanceUse::full) start_importance(state, rays);
     RgbD escaped_power(0, 0, 0);
-    if (run.options.method.refines) {
-        run.solution.irradiance = trace_pass(run, state, rays, false, escaped_power).irradiance;
+    if (state.options.method.refines) {
+        state.solution.irradiance = trace_pass(state, passes, rays, false, escaped_power).irradiance;
         PassState refined;
-        refined.bounces = state.bounces;
-        run.solution.irradiance = trace_pass(run, refined, rays, true, escaped_power).irradiance;
-        state.bounces = refined.bounces;
+        refined.bounces = passes.bounces;
+        state.solution.irradiance = trace_pass(state, refined, rays, true, escaped_power).irradiance;
+        passes.bounces = refined.bounces;
     }
-    state.unshot.clear();
-    const std::int64_t traced = run.power_rays + run.importance_rays;
-    run.schedule.began_with(0, traced);
-    if (traced > 0) report(run, 0, escaped_power);
-    return state;
+    passes.unshot.clear();
+    const std::int64_t traced = state.power_rays + state.importance_rays;
+    state.schedule.began_with(0, traced);
+    if (traced > 0) report(state, 0, escaped_power);
+    return passes;
 }
 
-void make_first_estimate(Run& run) {
-    PassState state = prepare_passes(run);
-    state.is_final = true;
-    if (run.power_rays == 0) {
+void make_first_estimate(SolverState& state) {
+    PassState passes = prepare_passes(state);
+    passes.is_final = true;
+    if (state.power_rays == 0) {
         RgbD escaped_power(0, 0, 0);
-        run.solution.irradiance = trace_pass(run, state, run.schedule.start_rays(), false, escaped_power).irradiance;
-        run.schedule.began_with(0, run.power_rays + run.importance_rays);
-        report(run, 0, escaped_power);
+        state.solution.irradiance =
+            trace_pass(state, passes, state.schedule.start_rays(), false, escaped_power).irradiance;
+        state.schedule.began_with(0, state.power_rays + state.importance_rays);
+        report(state, 0, escaped_power);
     }
 }
 
-RgbD iterate_pass(Run& run, PassState& state, IterationPlan& plan) {
+RgbD iterate_pass(SolverState& state, PassState& passes, IterationPlan& plan) {
     RgbD escaped_power(0, 0, 0);
-    const std::int64_t rays_before = run.power_rays + run.importance_rays;
+    const std::int64_t rays_before = state.power_rays + state.importance_rays;
     const bool has_importance_step =
-        importance_use(run.solution) == ImportanceUse::full && run.options.separate_iterations;
+        importance_use(state.solution) == ImportanceUse::full && state.options.separate_iterations;
     const std::int64_t for_importance =
-        has_importance_step ? std::llround(run.options.alpha * static_cast<double>(plan.rays)) : 0;
+        has_importance_step ? std::llround(state.options.alpha * static_cast<double>(plan.rays)) : 0;
     if (for_importance > 0) {
-        const Importance psi = importance_of(run.solution);
-        const Received received = run_step(run, importance_step(run.surfaces, run.solution, psi, for_importance));
-        merge(run, run.solution.indirect_importance, received.importance, plan);
-        run.importance_rays += for_importance;
+        const Importance psi = importance_of(state.solution);
+        const Received received =
+            run_step(state, importance_step(state.materials, state.solution, psi, for_importance));
+        merge(state, state.solution.indirect_importance, received.importance, plan);
+        state.importance_rays += for_importance;
     }
     if (plan.rays == for_importance) return escaped_power;
-    state.is_final = plan.is_final;
-    const bool by_power = run.options.method.refines && !refines_by_variance(run.options);
-    const std::uint32_t before = run.forest->size();
-    const FreshEstimate fresh = trace_pass(run, state, plan.rays - for_importance, by_power, escaped_power);
-    plan.rays = std::max<std::int64_t>(1, run.power_rays + run.importance_rays - rays_before);
-    estimate_noise(run, fresh, plan.rays);
-    merge_details(run, run.solution.irradiance, fresh.irradiance, plan);
-    remember(run, plan, before);
-    if (run.options.method.refines && !by_power && run.noise.is_known()) {
-        const std::uint32_t size = run.forest->size();
-        refine_by_variance(run);
-        inherit(*run.forest, size, state.unshot);
+    passes.is_final = plan.is_final;
+    const bool by_power = state.options.method.refines && !refines_by_variance(state.options);
+    const std::uint32_t before = state.forest->size();
+    const FreshEstimate fresh = trace_pass(state, passes, plan.rays - for_importance, by_power, escaped_power);
+    plan.rays = std::max<std::int64_t>(1, state.power_rays + state.importance_rays - rays_before);
+    estimate_noise(state, fresh, plan.rays);
+    merge_details(state, state.solution.irradiance, fresh.irradiance, plan);
+    update_history(state, plan, before);
+    if (state.options.method.refines && !by_power && state.noise.is_known()) {
+        const std::uint32_t size = state.forest->size();
+        refine_by_variance(state);
+        inherit(*state.forest, size, passes.unshot);
     }
     return escaped_power;
 }

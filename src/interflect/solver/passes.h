@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 
 namespace interflect {
 
@@ -24,19 +24,20 @@ struct PassState {
 /// @param oracle_refines  Whether pairs are refined by Eq. 14, 15 on the way; else the mesh stays as it is.
 /// @param escaped_power   Receives what left the scene [lm or W].
 /// @return                Of every element.
-FreshEstimate trace_pass(Run& run, PassState& state, std::int64_t rays, bool oracle_refines, RgbD& escaped_power);
+FreshEstimate trace_pass(SolverState& state, PassState& passes, std::int64_t rays, bool oracle_refines,
+                         RgbD& escaped_power);
 
 /// Finds importance and, where the method refines, an initial mesh by Eq. 14 and 15, from two small passes. The light
 /// of the second is the estimate until passes are merged, but none of it counts then.
 /// @return The state that the first pass begins with.
-PassState prepare_passes(Run& run);
+PassState prepare_passes(SolverState& state);
 
 /// A pass as an iteration: its estimate is merged with the mean of those before (Eq. 6), then the mesh is refined.
 /// @param plan  Its rays become those that were traced.
 /// @return      The power that left the scene.
-RgbD iterate_pass(Run& run, PassState& state, IterationPlan& plan);
+RgbD iterate_pass(SolverState& state, PassState& passes, IterationPlan& plan);
 
 /// A first estimate for iterations of another kind: as above, with a pass on the mesh that was made.
-void make_first_estimate(Run& run);
+void make_first_estimate(SolverState& state);
 
 }  // namespace interflect

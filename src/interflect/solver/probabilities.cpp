@@ -15,12 +15,12 @@ struct Weights {
     double power = 0, importance = 0;
 };
 struct WeightSums {
-    double power = 0, driven_power = 0, power_nearby = 0, importance = 0;
+    double power = 0, weighted_power = 0, power_nearby = 0, importance = 0;
     std::int64_t lost = 0;
 
     WeightSums& operator+=(const WeightSums& other) {
         power += other.power;
-        driven_power += other.driven_power;
+        weighted_power += other.weighted_power;
         power_nearby += other.power_nearby;
         importance += other.importance;
         lost += other.lost;
@@ -29,8 +29,8 @@ struct WeightSums {
 };
 
 /// Weighs every leaf, and adds up in double precision and always in the same order.
-WeightSums weigh_leaves(const Sampled& s, const Shares& shares, StableArray<Weights>& weights) {
-    const bool by_power = shares.power > 0 || shares.driven_power > 0 || shares.power_nearby > 0;
+WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, StableArray<Weights>& weights) {
+    const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
         WeightSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
@@ -43,7 +43,7 @@ WeightSums weigh_leaves(const Sampled& s, const Shares& shares, StableArray<Weig
             if (shares.importance > 0) w.importance = s.importance(e);
             sums.power += w.power;
             sums.importance += w.importance;
-            if (shares.driven_power > 0) sums.driven_power += w.power * s.driver[e];
+            if (shares.weighted_power > 0) sums.weighted_power += w.power * s.importance_weight[e];
             if (shares.power_nearby > 0) sums.power_nearby += w.power * s.nearby[s.forest.patch(e)];
             weights[e] = w;
         }
@@ -62,30 +62,30 @@ void raise(std::span<float> numbers, float exponent) {
 
 }  // namespace
 
-Mixture mixture(const Sampled& sampled, const Shares& shares) {
+Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     const ElementForest& forest = sampled.forest;
     StableArray<Weights> weights(forest.size());  // 0 for inner elements
     const WeightSums sums = weigh_leaves(sampled, shares, weights);
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
     const double for_power = factor(shares.power, sums.power),
-                 for_driven = factor(shares.driven_power, sums.driven_power),
+                 for_driven = factor(shares.weighted_power, sums.weighted_power),
                  for_nearby = factor(shares.power_nearby, sums.power_nearby),
                  for_importance = factor(shares.importance, sums.importance);
     std::vector<float> q(forest.size());
     parallel_for_ranges(q.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             double by_power = for_power;
-            if (for_driven > 0) by_power += for_driven * sampled.driver[e];
+            if (for_driven > 0) by_power += for_driven * sampled.importance_weight[e];
             if (for_nearby > 0) by_power += for_nearby * sampled.nearby[forest.patch(e)];
             const Weights& w = weights[e];
             q[e] = static_cast<float>(by_power * w.power + for_importance * w.importance);
         }
     });
-    return {std::move(q), sums.lost, sums.power, sums.driven_power};
+    return {std::move(q), sums.lost, sums.power, sums.weighted_power};
 }
 
-std::vector<float> driving_importance(const ElementForest& forest, const Importance& importance, double from_parent,
-                                      double exponent) {
+std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
+                                     double exponent) {
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
     std::vector<float> driver(forest.size());
     parallel_for_ranges(driver.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {

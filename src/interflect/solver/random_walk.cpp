@@ -43,9 +43,9 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// What particles carry; every vector has an entry for every patch. Importance (Eq. 7) is light that the eyes send:
-/// what first leaves a patch is the reflected part of what it received from them, all channels alike.
-struct Cargo {
+/// What particles carry; every vector has an entry for every patch. Importance (Eq. 7) is importance emitted by the
+/// cameras: a patch first emits the reflected part of what it received from them, the same in all channels.
+struct Payload {
     std::vector<Rgb> emitted;      ///< What leaves a patch at first: W [lm or W], or rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
     std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
@@ -59,14 +59,16 @@ struct Sums {
     std::vector<std::int64_t> started;  ///< Rays that left every patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    explicit Sums(const Cargo& cargo)
-        : unit(sum_headroom * most_expected(cargo)), received(cargo.emitted.size()), started(cargo.emitted.size(), 0) {}
+    explicit Sums(const Payload& payload)
+        : unit(sum_headroom * most_expected(payload)),
+          received(payload.emitted.size()),
+          started(payload.emitted.size(), 0) {}
 
     /// No channel of all that arrives has a greater expected value: what is emitted over 1 - rho.
-    static double most_expected(const Cargo& cargo) {
+    static double most_expected(const Payload& payload) {
         double power = 0, rho = 0;
-        for (const Rgb& w : cargo.emitted) power += static_cast<double>(largest_channel(w));
-        for (const Rgb& r : cargo.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
+        for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
+        for (const Rgb& r : payload.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
         return power / (1 - rho);
     }
 };
@@ -96,23 +98,23 @@ struct Wavefront {
 class PathBatch {
   public:
     /// @param paths  > 0.  @param key  Of the batch's random numbers.
-    PathBatch(const Run& run, const Cargo& cargo, std::int64_t paths, std::uint64_t key)
-        : forest_(*run.forest),
-          ray_caster_(run.ray_caster),
-          stop_(run.stop),
-          first_points_(run.options.points),
-          cargo_(cargo),
+    PathBatch(const SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key)
+        : forest_(*state.forest),
+          ray_caster_(state.ray_caster),
+          stop_(state.stop),
+          first_points_(state.options.points),
+          payload_(payload),
           paths_(paths),
           key_(key),
-          sums_(cargo) {
+          sums_(payload) {
         const auto weight = [&](std::size_t i) {
-            return static_cast<double>(channel_sum(cargo.emitted[i])) * cargo.density[i];
+            return static_cast<double>(channel_sum(payload.emitted[i])) * payload.density[i];
         };
         double sum = 0;
-        for (std::size_t i = 0; i < cargo.emitted.size(); ++i) sum += weight(i);
+        for (std::size_t i = 0; i < payload.emitted.size(); ++i) sum += weight(i);
         if (!(sum > 0)) return;
         quantum_ = sum / static_cast<double>(paths);
-        for (std::size_t i = 0; i < cargo.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
+        for (std::size_t i = 0; i < payload.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
         allocation_.emplace(q_, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
     }
 
@@ -146,9 +148,9 @@ class PathBatch {
         const auto emit_some = [&](std::size_t source, std::int64_t first, std::int64_t from, std::int64_t to) {
             const auto s = static_cast<std::uint32_t>(source);
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
-            const double share = quantum_ / cargo_.density[s] / static_cast<double>(channel_sum(cargo_.emitted[s]));
-            std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(cargo_.emitted[s]) * share)});
-            shoot_rays(forest_.geometry(s), Cell(), ray_caster_.lift(s), first_points_,
+            const double share = quantum_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
+            std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(payload_.emitted[s]) * share)});
+            shoot_rays(forest_.geometry(s), Cell(), ray_caster_.ray_offset(s), first_points_,
                        sub_key(key_, WalkPurpose::emission, s), static_cast<std::uint64_t>(from - first), w.points,
                        std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
         };
@@ -169,7 +171,7 @@ class PathBatch {
                 continue;
             }
             add_concurrently(sums_.received[patch], term);
-            w.reflected.push_back({patch, cargo_.reflectance[patch] * power});
+            w.reflected.push_back({patch, payload_.reflectance[patch] * power});
         }
         add_concurrently(sums_.escaped, escaped);
         add_concurrently(sums_.rays, static_cast<std::int64_t>(w.particles.size()));
@@ -185,7 +187,7 @@ class PathBatch {
         double cumulative = offset;
         for (const auto& [patch, power] : w.reflected) {
             const double n =
-                std::min(most_copies, static_cast<double>(channel_sum(power)) * cargo_.density[patch] / quantum_);
+                std::min(most_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / quantum_);
             const double before = std::floor(cumulative);
             cumulative += n;
             const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
@@ -197,7 +199,7 @@ class PathBatch {
     void reflect(std::uint64_t key, Wavefront& w) const {
         w.make_room_for_rays();
         for (std::size_t i = 0; i < w.particles.size(); ++i)
-            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.lift(w.particles[i].patch),
+            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.ray_offset(w.particles[i].patch),
                        PointSet::random, key, i, w.points, std::span(w.rays).subspan(i, 1),
                        std::span(w.origins).subspan(i, 1));
     }
@@ -206,7 +208,7 @@ class PathBatch {
     const RayCaster& ray_caster_;
     const StopRequest& stop_;
     PointSet first_points_;
-    const Cargo& cargo_;
+    const Payload& payload_;
     std::int64_t paths_;
     std::uint64_t key_;
     Sums sums_;
@@ -223,15 +225,15 @@ struct Arrived {
 };
 
 /// Follows so many paths, and enters their rays.
-Arrived follow_paths(Run& run, const Cargo& cargo, std::int64_t paths, std::uint64_t key) {
-    PathBatch batch(run, cargo, paths, key);
+Arrived follow_paths(SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key) {
+    PathBatch batch(state, payload, paths, key);
     const Sums& sums = batch.follow();
-    run.escaped_rays += sums.escaped_rays;
-    run.streams.used.resize(sums.started.size(), 0);
+    state.escaped_rays += sums.escaped_rays;
+    state.streams.used.resize(sums.started.size(), 0);
     Arrived arrived;
     for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
-        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / run.forest->area(i));
-        run.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
+        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.forest->area(i));
+        state.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
     }
     arrived.escaped = sums.unit.to_colour(sums.escaped);
     arrived.rays = sums.rays;
@@ -239,26 +241,27 @@ Arrived follow_paths(Run& run, const Cargo& cargo, std::int64_t paths, std::uint
 }
 
 /// What noise it has if all of it arrives in equal quanta, independently.
-FreshEstimate independent_arrivals(const Run& run, const Arrived& arrived) {
-    const double power = luminance(integral(*run.forest, arrived.irradiance));
+FreshEstimate independent_arrivals(const SolverState& state, const Arrived& arrived) {
+    const double power = luminance(integral(*state.forest, arrived.irradiance));
     FreshEstimate fresh{arrived.irradiance, {}};
     for (std::uint32_t i = 0; i < arrived.irradiance.size(); ++i)
         fresh.variance.push_back(static_cast<float>(luminance(arrived.irradiance[i]) * power /
-                                                    (static_cast<double>(arrived.rays) * run.forest->area(i))));
+                                                    (static_cast<double>(arrived.rays) * state.forest->area(i))));
     return fresh;
 }
 
 /// Follows as many paths as take about this many rays.
-Arrived walk(Run& run, const Cargo& cargo, std::int64_t rays, PathSeries& series) {
+Arrived walk(SolverState& state, const Payload& payload, std::int64_t rays, PathSeries& series) {
     std::int64_t pilot_rays = 0;
     if (series.batches == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
-        pilot_rays = follow_paths(run, cargo, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
+        pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
         series.rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(paths);
     }
     const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
     const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
-    Arrived arrived = follow_paths(run, cargo, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches++));
+    Arrived arrived =
+        follow_paths(state, payload, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches++));
     series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
     arrived.rays += pilot_rays;
     return arrived;
@@ -294,73 +297,75 @@ std::vector<float> particle_density(const Solution& so_far, const std::vector<Rg
     return density;
 }
 
-Cargo light(const Run& run) {
-    Cargo cargo;
-    for (std::uint32_t i = 0; i < run.forest->patch_count(); ++i) {
-        cargo.emitted.push_back(run.surfaces.exitance(i) * run.forest->area(i));
-        cargo.reflectance.push_back(run.surfaces.reflectance(i));
+Payload light(const SolverState& state) {
+    Payload payload;
+    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) {
+        payload.emitted.push_back(state.materials.exitance(i) * state.forest->area(i));
+        payload.reflectance.push_back(state.materials.reflectance(i));
     }
-    cargo.density = particle_density(run.solution, cargo.emitted);
-    return cargo;
+    payload.density = particle_density(state.solution, payload.emitted);
+    return payload;
 }
 
-Cargo importance_from_the_eyes(const Run& run) {
-    Cargo cargo;
-    for (std::uint32_t i = 0; i < run.forest->patch_count(); ++i) {
-        const float rho = run.surfaces.mean_reflectance(i);
-        cargo.emitted.emplace_back(rho * run.solution.view_importance[i] * run.forest->area(i));
-        cargo.reflectance.emplace_back(rho);
+Payload importance_from_cameras(const SolverState& state) {
+    Payload payload;
+    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) {
+        const float rho = state.materials.mean_reflectance(i);
+        payload.emitted.emplace_back(rho * state.solution.view_importance[i] * state.forest->area(i));
+        payload.reflectance.emplace_back(rho);
     }
-    cargo.density.assign(run.forest->patch_count(), 1.0f);
-    return cargo;
+    payload.density.assign(state.forest->patch_count(), 1.0f);
+    return payload;
 }
 
 }  // namespace
 
-RandomWalks::RandomWalks(Run& run)
-    : light_{sub_key(run.options.seed, WalkPurpose::light)},
-      importance_{sub_key(run.options.seed, WalkPurpose::importance)} {
-    walk_importance(run, std::min(run.schedule.start_rays(), lacking_importance(run, run.options.rays)));
-    run.schedule.began_with(0, run.importance_rays);
+RandomWalks::RandomWalks(SolverState& state)
+    : light_{sub_key(state.options.seed, WalkPurpose::light)},
+      importance_{sub_key(state.options.seed, WalkPurpose::importance)} {
+    walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.rays)));
+    state.schedule.began_with(0, state.importance_rays);
 }
 
 /// What importance lacks of its share alpha of the rays, where so many are planned in all.
-std::int64_t RandomWalks::lacking_importance(const Run& run, std::int64_t planned) const {
-    if (importance_use(run.solution) != ImportanceUse::full) return 0;
-    const std::int64_t share = std::llround(run.options.alpha * static_cast<double>(planned));
+std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
+    if (importance_use(state.solution) != ImportanceUse::full) return 0;
+    const std::int64_t share = std::llround(state.options.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - importance_history_);
 }
 
-void RandomWalks::walk_importance(Run& run, std::int64_t rays) {
+void RandomWalks::walk_importance(SolverState& state, std::int64_t rays) {
     if (rays <= 0) return;
-    const Arrived arrived = walk(run, importance_from_the_eyes(run), rays, importance_);
-    run.importance_rays += arrived.rays;
+    const Arrived arrived = walk(state, importance_from_cameras(state), rays, importance_);
+    state.importance_rays += arrived.rays;
     importance_history_ += rays;
     const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(importance_history_));
-    std::vector<float>& psi = run.solution.indirect_importance;
+    std::vector<float>& psi = state.solution.indirect_importance;
     for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (arrived.irradiance[i].x - psi[i]);
 }
 
-void RandomWalks::walk_light(Run& run, std::int64_t rays, const IterationPlan& plan) {
+void RandomWalks::walk_light(SolverState& state, std::int64_t rays, const IterationPlan& plan) {
     if (rays <= 0) return;
-    const Arrived arrived = walk(run, light(run), rays, light_);
-    run.power_rays += arrived.rays;
-    const bool tells_of_error = plan.rays >= run.schedule.start_rays();  // a remainder of the rays tells too little
-    if (tells_of_error) estimate_noise(run, independent_arrivals(run, arrived), plan.rays);
-    const double before = run.history[0], now = before + static_cast<double>(plan.rays);
+    const Arrived arrived = walk(state, light(state), rays, light_);
+    state.power_rays += arrived.rays;
+    const bool tells_of_error = plan.rays >= state.schedule.start_rays();  // a remainder of the rays tells too little
+    if (tells_of_error) estimate_noise(state, independent_arrivals(state, arrived), plan.rays);
+    const double before = state.history[0], now = before + static_cast<double>(plan.rays);
     const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
-    for (std::uint32_t i = 0; i < run.forest->size(); ++i)
-        run.solution.irradiance[i] += static_cast<float>(tau) * (arrived.irradiance[i] - run.solution.irradiance[i]);
+    for (std::uint32_t i = 0; i < state.forest->size(); ++i)
+        state.solution.irradiance[i] +=
+            static_cast<float>(tau) * (arrived.irradiance[i] - state.solution.irradiance[i]);
     escaped_ += tau * (arrived.escaped - escaped_);
-    std::fill(run.history.begin(), run.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
+    std::fill(state.history.begin(), state.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
-RgbD RandomWalks::iterate(Run& run, IterationPlan& plan) {
-    const std::int64_t rays_before = run.power_rays + run.importance_rays;
-    const std::int64_t for_importance = std::min(plan.rays, lacking_importance(run, run.schedule.rays() + plan.rays));
-    walk_importance(run, for_importance);
-    walk_light(run, plan.rays - for_importance, plan);
-    const std::int64_t traced = run.power_rays + run.importance_rays - rays_before;
+RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
+    const std::int64_t rays_before = state.power_rays + state.importance_rays;
+    const std::int64_t for_importance =
+        std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
+    walk_importance(state, for_importance);
+    walk_light(state, plan.rays - for_importance, plan);
+    const std::int64_t traced = state.power_rays + state.importance_rays - rays_before;
     if (traced > 0) plan.rays = traced;  // else no eye sees what reflects, and the plan is used up
     return escaped_;
 }

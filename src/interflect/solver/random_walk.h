@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 
 namespace interflect {
 
@@ -29,18 +29,18 @@ class RandomWalks {
   public:
     /// Begins with importance, so that light does not start before it is known where it matters.
     /// @param run  On a forest of one element a patch; some patch emits.
-    explicit RandomWalks(Run& run);
+    explicit RandomWalks(SolverState& state);
 
     /// Follows paths that take about plan.rays rays, and merges what they bring with the past (Eq. 6). A batch counts
     /// by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a bias.
     /// @param plan  Its rays become those that were traced.
     /// @return The power that leaves the scene, by all batches so far.
-    RgbD iterate(Run& run, IterationPlan& plan);
+    RgbD iterate(SolverState& state, IterationPlan& plan);
 
   private:
-    std::int64_t lacking_importance(const Run& run, std::int64_t planned) const;
-    void walk_importance(Run& run, std::int64_t rays);
-    void walk_light(Run& run, std::int64_t rays, const IterationPlan& plan);
+    std::int64_t lacking_importance(const SolverState& state, std::int64_t planned) const;
+    void walk_importance(SolverState& state, std::int64_t rays);
+    void walk_light(SolverState& state, std::int64_t rays, const IterationPlan& plan);
 
     PathSeries light_, importance_;
     RgbD escaped_{0, 0, 0};                // power, mean of all batches

@@ -35,7 +35,7 @@ inline CosSin cos_sin_of_turn(float turn) {
 
 }  // namespace
 
-void shoot_rays(const PatchGeometry& patch, const Cell& cell, float lift, PointSet set, std::uint64_t key,
+void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins) {
     const V3f normal = patch.normal();
     const Frame frame(normal);
@@ -51,7 +51,7 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float lift, PointS
         }
         for (std::size_t i = 0; i < count; ++i) {
             origins[begin + i] = patch.uniform_parameters(a[i], b[i], {cell.u, cell.v}, cell.size);
-            rays[begin + i].origin = patch.point(origins[begin + i]) + normal * lift;
+            rays[begin + i].origin = patch.point(origins[begin + i]) + normal * offset;
         }
     }
 }

@@ -11,11 +11,11 @@
 namespace interflect {
 
 /// Makes the rays that samples first_sample, first_sample + 1, ... of a patch stand for: origins uniform on its area
-/// and `lift` above it, directions with density cos(theta) / pi about its normal.
+/// and `offset` above it, directions with density cos(theta) / pi about its normal.
 /// @param key     Names the patch's point sequence (fill_points).
 /// @param points  Working space.
 /// @param rays    Receives the rays; its size is their number.
-void shoot_rays(const PatchGeometry& patch, const Cell& cell, float lift, PointSet set, std::uint64_t key,
+void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins);
 
 }  // namespace interflect

@@ -6,23 +6,23 @@
 
 namespace interflect {
 
-void Receiver::take(std::uint32_t leaf, const Arrivals::Load& load, std::span<const Ray> rays,
+void Receiver::take(std::uint32_t leaf, const Arrivals::Contribution& contribution, std::span<const Ray> rays,
                     std::span<const Parameters> origins, std::span<const Hit> hits) {
-    const std::uint32_t source = sorter_.add_source(load);
+    const std::uint32_t source = buffer_.add_source(contribution);
     left_.push_back({leaf, 0});
     const auto left = static_cast<std::uint32_t>(left_.size() - 1);
-    bool way_is_known = !refines_;
+    bool ancestors_are_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
-            for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += load[c];
+            for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
             ++escaped_.rays;
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
-            sorter_.add(hits[r].patch, source, true, true);
+            buffer_.add(hits[r].patch, source, true, true);
             if (gathered_) gather(left, hits[r].patch, hits[r].patch);
         } else {
             while (open_count_ == lanes) advance();
-            if (!std::exchange(way_is_known, true)) find_way_to_leaf(leaf);
-            set_out(source, left, rays[r], origins[r], hits[r]);
+            if (!std::exchange(ancestors_are_known, true)) append_ancestors(leaf);
+            begin(source, left, rays[r], origins[r], hits[r]);
         }
     }
 }
@@ -32,48 +32,48 @@ void Receiver::prefetch(const Hit& hit) const {
     forest_.prefetch(hit.patch);
     if (!refines_) return;
     forest_.prefetch_geometry(hit.patch);
-    surfaces_.prefetch(hit.patch);
+    materials_.prefetch(hit.patch);
     if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[hit.patch]);
 }
 
 void Receiver::finish_batch() {
     while (open_count_ > 0) advance();
-    ways_.clear();
-    sorter_.forget_sources();
+    ancestors_.clear();
+    buffer_.release_sources();
     if (gathered_)
         for (const auto& [leaf, found] : left_) gathered_->add(leaf, found);
     left_.clear();
 }
 
 Escaped Receiver::finish() {
-    sorter_.hand_on_all();
+    buffer_.flush_all();
     return std::exchange(escaped_, {});
 }
 
-/// Appends the elements that hold a leaf to ways_, from its root to itself.
-void Receiver::find_way_to_leaf(std::uint32_t leaf) {
+/// Appends the elements that hold a leaf to ancestors_, from its root to itself.
+void Receiver::append_ancestors(std::uint32_t leaf) {
     const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
     const PatchGeometry& geometry = forest_.geometry(patch);
-    const Material& material = surfaces_.material(patch);
+    const Material& material = materials_.material(patch);
     std::uint32_t element = patch;
     Cell cell;
-    way_ = static_cast<std::uint32_t>(ways_.size());
+    root_ancestor_ = static_cast<std::uint32_t>(ancestors_.size());
     for (int digit = std::bit_width(path) - 1;;) {
         const V3f centre = geometry.point(cell.centre(geometry.is_triangle()));
-        ways_.push_back(
-            {element, cell, centre, forest_.area(element), step_.light_for_oracle().radiosity(material, element)});
+        ancestors_.push_back(
+            {element, cell, centre, forest_.area(element), step_.light_for_oracle().of(material, element)});
         if (digit == 0) break;
         digit -= 2;
         const unsigned k = path >> digit & 3u;
         element = forest_.first_child(element) + k;
         cell = cell.child(k, geometry.is_triangle());
     }
-    way_end_ = static_cast<std::uint32_t>(ways_.size() - 1);
+    leaf_ancestor_ = static_cast<std::uint32_t>(ancestors_.size() - 1);
 }
 
 /// Begins at the patches of both ends.
-void Receiver::set_out(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start,
-                       const Hit& hit) {
+void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start,
+                     const Hit& hit) {
     const std::size_t i = open_[open_count_++];
     const PatchGeometry& geometry = forest_.geometry(hit.patch);
     const PatchGeometry::Shape& shape = geometry.shape();
@@ -91,15 +91,15 @@ void Receiver::set_out(std::uint32_t source, std::uint32_t left, const Ray& ray,
     pairs_.size[i] = 1;
     pairs_.settled[i] = !refines_;
     if (!refines_) return;
-    rays_[i].reflectance = surfaces_.reflectance(hit.patch);
+    rays_[i].reflectance = materials_.reflectance(hit.patch);
     pairs_.normal.set(i, geometry.normal());
     pairs_.importance[i] = 1;
-    pairs_.way_end[i] = way_end_;
-    set_shooter(i, way_);
-    pairs_.shooter_normal.set(i, forest_.geometry(ways_[way_].element).normal());
+    pairs_.lowest_shooter[i] = leaf_ancestor_;
+    set_shooter(i, root_ancestor_);
+    pairs_.shooter_normal.set(i, forest_.geometry(ancestors_[root_ancestor_].element).normal());
 }
 
-/// Takes all rays under way one level further (Eq. 14, 15): of a pair that the oracle does not accept the larger end is
+/// Takes all rays in flight one level further (Eq. 14, 15): of a pair that the oracle does not accept the larger end is
 /// divided; when it does, power has arrived, and importance goes on to the leaf. No branch depends on a verdict.
 void Receiver::advance() {
     Lanes some;
@@ -107,11 +107,11 @@ void Receiver::advance() {
     if (refines_) {
         for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return shooter_is_too_large(i); }))
             choose_shooter(i);
-        judge();
+        evaluate_oracle();
     }
-    plan();
-    for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return pairs_.is_special[i] != 0; }))
-        divide_specially(i);
+    choose_next();
+    for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return pairs_.on_demand[i] != 0; }))
+        subdivide_on_demand(i);
     const auto arrived = open_lanes_if(some, [&](std::size_t i) { return pairs_.goes_on[i] == 0; });
     Lanes on_their_way;
     const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
@@ -148,21 +148,21 @@ inline void Receiver::look_up_receiver(std::size_t i) {
 
 inline bool Receiver::shooter_is_too_large(std::size_t i) const {
     const float shooter = pairs_.shooter_area[i], receiver = pairs_.area[i];
-    const std::uint32_t way = pairs_.way[i], lowest = pairs_.way_end[i];
-    return (shooter > receiver) & (way < lowest);
+    const std::uint32_t ancestor = pairs_.shooter[i], lowest = pairs_.lowest_shooter[i];
+    return (shooter > receiver) & (ancestor < lowest);
 }
 
 /// Lets the pair's shooter be the largest element that holds the ray's start and is no larger than the receiver, or the
 /// lowest. Between larger ones and the receiver no verdict is asked for: what is received is the same for all of them.
 inline void Receiver::choose_shooter(std::size_t i) {
-    std::uint32_t way = pairs_.way[i] + 1;
-    while (way < pairs_.way_end[i] && ways_[way].area > pairs_.area[i]) ++way;
-    set_shooter(i, way);
+    std::uint32_t ancestor = pairs_.shooter[i] + 1;
+    while (ancestor < pairs_.lowest_shooter[i] && ancestors_[ancestor].area > pairs_.area[i]) ++ancestor;
+    set_shooter(i, ancestor);
 }
 
-inline void Receiver::set_shooter(std::size_t i, std::uint32_t way) {
-    const Shooter& shooter = ways_[way];
-    pairs_.way[i] = way;
+inline void Receiver::set_shooter(std::size_t i, std::uint32_t ancestor) {
+    const Shooter& shooter = ancestors_[ancestor];
+    pairs_.shooter[i] = ancestor;
     pairs_.shooter_centre.set(i, shooter.centre);
     pairs_.shooter_area[i] = shooter.area;
     pairs_.reflected[i] = largest_channel(Rgb(rays_[i].reflectance * shooter.radiosity));
@@ -170,16 +170,16 @@ inline void Receiver::set_shooter(std::size_t i, std::uint32_t way) {
 
 /// Whether the oracle accepts each pair, or its larger end is too small to be divided. Lanes that are not in use are
 /// judged as well: all at once take less time than a choice.
-void Receiver::judge() {
+void Receiver::evaluate_oracle() {
     const Oracle& oracle = step_.oracle;
-    const float smallest = 4 * oracle.smallest_area;
+    const float smallest = 4 * oracle.min_area;
     Pairs& p = pairs_;
     for (std::size_t i = 0; i < lanes; ++i) {
         const Cell cell{p.u[i], p.v[i], p.size[i]};
         const V3f centre = PatchGeometry::Shape{p.origin[i], p.edge_u[i], p.edge_v[i], p.twist[i]}.point(
             cell.centre(p.is_triangle[i] != 0));
-        const Party shooter{p.shooter_centre[i], p.shooter_normal[i], p.shooter_area[i]};
-        const Party receiver{centre, p.normal[i], p.area[i]};
+        const ElementProxy shooter{p.shooter_centre[i], p.shooter_normal[i], p.shooter_area[i]};
+        const ElementProxy receiver{centre, p.normal[i], p.area[i]};
         const bool is_small = (shooter.area < smallest) & (receiver.area < smallest);
         const bool accepted = oracle.accepts(shooter, receiver, p.reflected[i], p.importance[i]);
         p.settled[i] |= is_small | accepted;
@@ -187,7 +187,7 @@ void Receiver::judge() {
 }
 
 /// Decides what becomes of every pair, but for the special ones.
-void Receiver::plan() {
+void Receiver::choose_next() {
     Pairs& p = pairs_;
     const float *shooter_area = p.shooter_area.data(), *area = p.area.data();
     const std::uint32_t old = needs_leaf_ ? old_size_ : 0;  // elements from there on are of no interest to importance
@@ -196,20 +196,20 @@ void Receiver::plan() {
         const std::uint32_t children = p.children[i], rejected = p.settled[i] ? 0 : 1;
         const std::uint32_t to_leaf = (p.receiver[i] < old ? 1 : 0) & (children < old ? 1 : 0);
         const std::uint32_t by_shooter = shooter_area[i] > area[i] ? 1 : 0;
-        const std::uint32_t is_special = rejected & ((children == none ? 1 : 0) | by_shooter);
-        const std::uint32_t descends = rejected ? 1 - is_special : to_leaf;
-        p.is_special[i] = is_special;
+        const std::uint32_t on_demand = rejected & ((children == none ? 1 : 0) | by_shooter);
+        const std::uint32_t descends = rejected ? 1 - on_demand : to_leaf;
+        p.on_demand[i] = on_demand;
         p.goes_on[i] = rejected | to_leaf;
         p.next[i] = descends ? children : none;
     }
 }
 
-/// Divides the larger end of a pair that was not accepted, if that is the shooter, which must be the lowest of its way,
-/// or a leaf. What cannot be divided is settled.
-void Receiver::divide_specially(std::size_t i) {
+/// Divides the larger end of a pair that was not accepted, if that is the shooter, which must be the lowest of its
+/// ancestor, or a leaf. What cannot be divided is settled.
+void Receiver::subdivide_on_demand(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {
-        if (divide_shooter(i)) return;
+        if (subdivide_shooter(i)) return;
     } else {
         pairs_.next[i] = children_of(receiver);
         if (pairs_.next[i] != none) return;
@@ -220,8 +220,8 @@ void Receiver::divide_specially(std::size_t i) {
 }
 
 /// The shooter becomes its part that holds the ray's start. @return whether there is one.
-bool Receiver::divide_shooter(std::size_t i) {
-    Shooter shooter = ways_[pairs_.way[i]];
+bool Receiver::subdivide_shooter(std::size_t i) {
+    Shooter shooter = ancestors_[pairs_.shooter[i]];
     const PatchGeometry& geometry = forest_.geometry(forest_.patch(shooter.element));
     const std::uint32_t children = children_of(shooter.element);
     if (children == none) return false;
@@ -230,16 +230,16 @@ bool Receiver::divide_shooter(std::size_t i) {
     shooter.element = children + k;
     shooter.centre = geometry.point(shooter.cell.centre(geometry.is_triangle()));
     shooter.area = forest_.area(shooter.element);
-    ways_.push_back(shooter);
-    pairs_.way_end[i] = static_cast<std::uint32_t>(ways_.size() - 1);
-    set_shooter(i, pairs_.way_end[i]);
+    ancestors_.push_back(shooter);
+    pairs_.lowest_shooter[i] = static_cast<std::uint32_t>(ancestors_.size() - 1);
+    set_shooter(i, pairs_.lowest_shooter[i]);
     return true;
 }
 
 /// The first child; makes the children where there are none. @return none where it may not.
 std::uint32_t Receiver::children_of(std::uint32_t element) {
     const std::uint32_t child = forest_.first_child(element);
-    const bool may_grow = old_size_ + std::size_t{4} <= step_.oracle.most_elements;
+    const bool may_grow = old_size_ + std::size_t{4} <= step_.oracle.max_elements;
     return child == none && may_grow ? forest_.subdivide(element) : child;
 }
 
@@ -267,13 +267,13 @@ void Receiver::send(std::size_t i) {
     const std::uint32_t of_power = refines_ ? pairs_.of_power[i] : leaf;
     const std::uint32_t of_importance = step_.importance_at_patches ? patch : leaf;
     const bool together = of_power == of_importance || !step_.carries_importance();
-    if (step_.carries_power()) sorter_.add(of_power, source, true, together);
-    if (!step_.carries_power() || !together) sorter_.add(of_importance, source, false, true);
+    if (step_.carries_power()) buffer_.add(of_power, source, true, together);
+    if (!step_.carries_power() || !together) buffer_.add(of_importance, source, false, true);
     if (gathered_) gather(left, patch, leaf);
 }
 
 inline void Receiver::gather(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {
-    left_[left].found += static_cast<double>(surfaces_.mean_reflectance(patch) * step_.importance[leaf]);
+    left_[left].found += static_cast<double>(materials_.mean_reflectance(patch) * step_.importance[leaf]);
 }
 
 }  // namespace interflect

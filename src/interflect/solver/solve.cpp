@@ -10,12 +10,12 @@
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/solver/detail.h"
-#include "interflect/solver/light.h"
 #include "interflect/solver/link_radiosity.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/passes.h"
+#include "interflect/solver/radiosity.h"
 #include "interflect/solver/random_walk.h"
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 #include "interflect/solver/steps.h"
 #include "interflect/solver/well_distributed.h"
 
@@ -38,16 +38,16 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
             "rays_per_iteration: expected 0 to 100 thousand million");
     require(o.epsilon > 0, "epsilon: expected more than 0");
     require(o.epsilon_decay >= 0 && o.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
-    require(o.smallest_area >= 0, "smallest_area: expected 0 or more");
-    require(o.most_elements >= scene.patches.size() && o.most_elements < 0xfffffff0u,
-            fmt::format("most_elements: {}, expected at least the number of patches, {}, and less than 2^32 - 16",
-                        o.most_elements, scene.patches.size()));
+    require(o.min_area >= 0, "min_area: expected 0 or more");
+    require(o.max_elements >= scene.patches.size() && o.max_elements < 0xfffffff0u,
+            fmt::format("max_elements: {}, expected at least the number of patches, {}, and less than 2^32 - 16",
+                        o.max_elements, scene.patches.size()));
     require(o.alpha >= 0 && o.alpha <= 1, "alpha: expected 0 to 1");
     require(o.beta >= 0 && o.beta <= 1, "beta: expected 0 to 1");
-    require(o.inherited_trust >= 0 && o.inherited_trust <= 1, "inherited_trust: expected 0 to 1");
+    require(o.inherited_weight >= 0 && o.inherited_weight <= 1, "inherited_weight: expected 0 to 1");
     require(o.importance_smoothing >= 0 && o.importance_smoothing <= 1, "importance_smoothing: expected 0 to 1");
     require(o.importance_exponent >= 0 && o.importance_exponent <= 1, "importance_exponent: expected 0 to 1");
-    require(o.eye_rays > 0 && o.eye_rays <= most_eye_rays, "eye_rays: expected 1 to 2^22");
+    require(o.camera_rays > 0 && o.camera_rays <= most_camera_rays, "camera_rays: expected 1 to 2^22");
     for (const WeightedView& v : o.views)
         require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");
@@ -58,92 +58,94 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
 
 /// One iteration: what is received in one bounce of the present estimate, merged with the past.
 /// @return The power that left the scene.
-RgbD iterate(Run& run, IterationPlan& plan) {
-    Solution& solution = run.solution;
-    const std::uint32_t elements_before = run.forest->size();
+RgbD iterate(SolverState& state, IterationPlan& plan) {
+    Solution& solution = state.solution;
+    const std::uint32_t elements_before = state.forest->size();
     const bool with_importance = importance_use(solution) == ImportanceUse::full;
-    const bool combined = with_importance && !run.options.separate_iterations;
+    const bool combined = with_importance && !state.options.separate_iterations;
     const std::int64_t for_importance =
-        with_importance ? std::llround(run.options.alpha * static_cast<double>(plan.rays)) : 0;
-    run.importance_rays += for_importance;
-    run.power_rays += plan.rays - for_importance;
+        with_importance ? std::llround(state.options.alpha * static_cast<double>(plan.rays)) : 0;
+    state.importance_rays += for_importance;
+    state.power_rays += plan.rays - for_importance;
     if (with_importance && !combined && for_importance > 0) {
         const Received received =
-            run_step(run, importance_step(run.surfaces, solution, importance_of(solution), for_importance));
-        merge(run, solution.indirect_importance, received.importance, plan);
+            run_step(state, importance_step(state.materials, solution, importance_of(solution), for_importance));
+        merge(state, solution.indirect_importance, received.importance, plan);
     }
     RgbD escaped_power(0, 0, 0);
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
-        const Light light(run.surfaces, solution.irradiance);
-        const PowerDriver driver = power_driver(solution, run.neighbourhoods);
-        TransportStep step = power_step(run.surfaces, solution, light, driver, combined, rays).step;
-        const bool deferred = run.options.defer_refinement && plan.warms_up;
-        if (run.options.method.refines && !deferred)
-            step.oracle = make_oracle(solution, run.schedule.averaged_rays() + rays, run.floor.unseen());
-        Received received = run_step(run, std::move(step));
+        const Radiosity light(state.materials, solution.irradiance);
+        const ImportanceWeights driver = importance_weights(solution, state.neighbourhoods);
+        TransportStep step = power_step(state.materials, solution, light, driver, combined, rays).step;
+        const bool deferred = state.options.defer_refinement && plan.warms_up;
+        if (state.options.method.refines && !deferred)
+            step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
+        Received received = run_step(state, std::move(step));
         const FreshEstimate fresh{std::move(received.irradiance), std::move(received.variance)};
-        if (!plan.warms_up) estimate_noise(run, fresh, rays);
-        merge(run, solution.irradiance, fresh.irradiance, plan);
-        if (combined) merge(run, solution.indirect_importance, received.importance, plan);
+        if (!plan.warms_up) estimate_noise(state, fresh, rays);
+        merge(state, solution.irradiance, fresh.irradiance, plan);
+        if (combined) merge(state, solution.indirect_importance, received.importance, plan);
         escaped_power = received.escaped_power;
     }
-    remember(run, plan, elements_before);
+    update_history(state, plan, elements_before);
     return escaped_power;
 }
 
-bool reached(const Run& run) {
-    const std::vector<IterationReport>& reports = run.solution.iterations;
-    return !reports.empty() && reports.back().error_estimate <= run.options.until;
+bool reached(const SolverState& state) {
+    const std::vector<IterationReport>& reports = state.solution.iterations;
+    return !reports.empty() && reports.back().error_estimate <= state.options.until;
 }
 
 /// One iteration of so many rays; it may change their number. @return The power that left the scene.
-using Iteration = std::function<RgbD(Run&, IterationPlan&)>;
+using Iteration = std::function<RgbD(SolverState&, IterationPlan&)>;
 
 /// Makes what iterations begin with, and how each of them is done.
-Iteration begin_iterations(Run& run) {
-    const bool by_passes = run.options.complete_passes;
-    switch (run.options.method.scheme) {
+Iteration begin_iterations(SolverState& state) {
+    const bool by_passes = state.options.complete_passes;
+    switch (state.options.method.scheme) {
         case Scheme::well_distributed:
-            if (by_passes) make_first_estimate(run);
-            return [rays = WellDistributedRays(run)](Run& r, IterationPlan& plan) mutable {
-                return rays.iterate(r, plan);
+            if (by_passes) make_first_estimate(state);
+            return [rays = WellDistributedRays(state)](SolverState& s, IterationPlan& plan) mutable {
+                return rays.iterate(s, plan);
             };
         case Scheme::random_walk:
-            return [walks = RandomWalks(run)](Run& r, IterationPlan& plan) mutable { return walks.iterate(r, plan); };
+            return [walks = RandomWalks(state)](SolverState& s, IterationPlan& plan) mutable {
+                return walks.iterate(s, plan);
+            };
         default:
             if (!by_passes) return iterate;
-            return [state = prepare_passes(run)](Run& r, IterationPlan& plan) mutable {
-                return iterate_pass(r, state, plan);
+            return [passes = prepare_passes(state)](SolverState& s, IterationPlan& plan) mutable {
+                return iterate_pass(s, passes, plan);
             };
     }
 }
 
 /// @throws Interrupted in the middle of an iteration.
-void iterate_until_done(Run& run) {
-    const Iteration iterate_once = begin_iterations(run);
-    run.stop.limit_time(run.start, run.options.seconds);
-    for (int iteration = 1; !reached(run); ++iteration) {
-        IterationPlan plan = run.schedule.next(run.seconds());
+void iterate_until_done(SolverState& state) {
+    const Iteration iterate_once = begin_iterations(state);
+    state.stop.limit_time(state.start, state.options.seconds);
+    for (int iteration = 1; !reached(state); ++iteration) {
+        IterationPlan plan = state.schedule.next(state.seconds());
         if (plan.rays == 0) return;
-        look_closer(run);
-        const RgbD escaped_power = iterate_once(run, plan);
-        run.schedule.done(plan);
-        report(run, iteration, escaped_power);
+        refine_view_importance(state);
+        const RgbD escaped_power = iterate_once(state, plan);
+        state.schedule.done(plan);
+        report(state, iteration, escaped_power);
     }
 }
 
 Solution solve_by_iterations(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
                              const Monitor& monitor) {
-    Run run(scene, ray_caster, options, monitor);
-    const bool is_lit = channel_sum(run.solution.emitted_power) > 0;  // else it is dark, and exactly so
+    SolverState state(scene, ray_caster, options, monitor);
+    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else it is dark, and exactly so
     try {
-        if (is_lit) iterate_until_done(run);
+        if (is_lit) iterate_until_done(state);
     } catch (const Interrupted&) {
-        run.solution.interrupted = run.stop.is_asked_for();
+        state.solution.interrupted = state.stop.is_asked_for();
     }
-    finish_solution(run);
-    return std::move(run.solution);
+    finish_solution(state);
+    return std::move(state.solution);
 }
 
 }  // namespace

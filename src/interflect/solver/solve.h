@@ -63,7 +63,7 @@ const Method& find_method(const std::string& name);
 
 /// Beyond that the fixed-point sums of transport would round what single rays carry.
 inline constexpr std::int64_t most_rays_per_iteration = 100'000'000'000;
-inline constexpr int most_eye_rays = 1 << 22;
+inline constexpr int most_camera_rays = 1 << 22;
 
 /// What to compute and when to stop. The run ends at the first limit that is reached.
 struct SolveOptions {
@@ -89,7 +89,7 @@ struct SolveOptions {
 
     /// Of Scheme::averaged with complete passes; all others refine by power.
     Refinement refinement = Refinement::variance;
-    bool shrinks = true;  ///< With Refinement::variance, differences that are mostly noise are reduced (shrinkage.h).
+    bool shrinkage = true;  ///< With Refinement::variance, differences that are mostly noise are reduced (shrinkage.h).
 
     /// Threshold of Eq. 14 and 15 once 20 million rays are averaged, relative to the reference power (see
     /// reference_power); > 0. Scheme::links takes it as it is.
@@ -99,22 +99,22 @@ struct SolveOptions {
     double epsilon_decay = 0.75;
     /// No element smaller than this [m^2]; >= 0. 0: with a view, the area that a pixel shows of the element; of
     /// elements that no view shows, and without a view, see ElementFloor.
-    double smallest_area = 0;
-    std::size_t most_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
+    double min_area = 0;
+    std::size_t max_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
     /// At 1 all elements are averaged alike, as in the paper.
-    double inherited_trust = 0.1;
+    double inherited_weight = 0.1;
     bool defer_refinement = false;  ///< No refinement before averaging begins ('dr').
 
     bool separate_iterations = false;    ///< Importance and power in steps of their own ('si'), or combined ('ci').
     bool importance_at_elements = true;  ///< Importance is kept by leaves ('hi'), or by patches.
     bool total_importance = false;       ///< Eq. 9 in place of Eq. 10.
-    /// How importance drives rays, and the first of them the oracle too (see driving_importance); in [0, 1]. 0 and 1:
+    /// How importance drives rays, and the first of them the oracle too (see importance_weight); in [0, 1]. 0 and 1:
     /// as in the paper.
     double importance_smoothing = 0.9, importance_exponent = 0.75;
-    double alpha = 0.1;      ///< Share of the rays for importance, Eq. 11; in [0, 1].
-    double beta = 0.1;       ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
-    int eye_rays = 1 << 16;  ///< Rays that find V at first, per view; 1 to most_eye_rays. More follow later.
+    double alpha = 0.1;  ///< Share of the rays for importance, Eq. 11; in [0, 1].
+    double beta = 0.1;   ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
+    int camera_rays = 1 << 16;  ///< Rays that find V at first, per view; 1 to most_camera_rays. More follow later.
 };
 
 /// Where a run stands after an iteration; counts since its start.

@@ -17,13 +17,13 @@ constexpr double share_of_nearby = 0.2;
 constexpr float taken_over = 0.3f;
 
 /// How the rays of a step that carries power are shared: Eq. 3, 9, 10, and 11 where it carries importance too.
-Shares power_step_shares(const Solution& so_far, bool combined, bool nearby) {
+MixtureWeights power_step_shares(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
     const double for_power = combined ? 1 - o.alpha : 1, driven = for_power * (1 - o.beta);
     const double by_nearby = nearby ? share_of_nearby * driven : 0;
     return {.power = for_power * o.beta,
-            .driven_power = driven - by_nearby,
+            .weighted_power = driven - by_nearby,
             .importance = combined ? o.alpha : 0,
             .power_nearby = by_nearby};
 }
@@ -49,14 +49,14 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-PowerDriver power_driver(const Solution& so_far, const Neighbourhoods& neighbourhoods) {
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods) {
     const SolveOptions& o = so_far.options;
     const ElementForest& forest = *so_far.forest;
-    if (power_step_shares(so_far, false, false).driven_power == 0) return {};
+    if (power_step_shares(so_far, false, false).weighted_power == 0) return {};
     const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
                            : o.total_importance                            ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
-    PowerDriver driver{driving_importance(forest, psi, o.importance_smoothing, o.importance_exponent), {}};
+    ImportanceWeights driver{importance_weight(forest, psi, o.importance_smoothing, o.importance_exponent), {}};
     if (neighbourhoods.empty() || o.importance_smoothing == 0) return driver;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) driver.nearby.push_back(psi[i]);
     neighbourhoods.smooth(forest, driver.nearby, taken_over);
@@ -64,32 +64,32 @@ PowerDriver power_driver(const Solution& so_far, const Neighbourhoods& neighbour
     return driver;
 }
 
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, const PowerDriver& driver,
-                     bool combined, std::int64_t rays) {
+PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosity& light,
+                     const ImportanceWeights& driver, bool combined, std::int64_t rays) {
     TransportStep step;
-    const Shares shares = power_step_shares(so_far, combined, !driver.nearby.empty());
+    const MixtureWeights shares = power_step_shares(so_far, combined, !driver.nearby.empty());
     step.light = step.known_light = light;
     if (combined) step.importance = importance_of(so_far);
-    auto [q, lost_leaves, power, driven_power] =
-        mixture({surfaces, *so_far.forest, light, step.importance, driver.elements, driver.nearby}, shares);
+    auto [q, lost_leaves, power, weighted_power] =
+        mixture({materials, *so_far.forest, light, step.importance, driver.elements, driver.nearby}, shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;
     so_far.non_finite += lost_leaves;
-    return {std::move(step), power, driven_power};
+    return {std::move(step), power, weighted_power};
 }
 
-TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, const Importance& importance,
+TransportStep importance_step(const Materials& materials, const Solution& so_far, const Importance& importance,
                               std::int64_t rays) {
     TransportStep step;
-    step.q = mixture({surfaces, *so_far.forest, {}, importance, {}}, {.importance = 1}).q;
+    step.q = mixture({materials, *so_far.forest, {}, importance, {}}, {.importance = 1}).q;
     step.rays = rays;
     step.importance = importance;
     step.importance_at_patches = !so_far.options.importance_at_elements;
     return step;
 }
 
-Oracle make_oracle(const Solution& so_far, std::int64_t rays, double smallest_area) {
+Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
     const double fall = std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.epsilon_decay);
     Oracle oracle;
     oracle.refines = true;
@@ -98,11 +98,11 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double smallest_ar
     if (oracle.by_importance) {
         // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
         oracle.importance =
-            driving_importance(*so_far.forest, importance_of(so_far), so_far.options.importance_smoothing, 1);
+            importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance_smoothing, 1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
     }
-    oracle.smallest_area = static_cast<float>(smallest_area);
-    oracle.most_elements = so_far.options.most_elements;
+    oracle.min_area = static_cast<float>(min_area);
+    oracle.max_elements = so_far.options.max_elements;
     return oracle;
 }
 

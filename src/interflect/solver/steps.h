@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "interflect/solver/materials.h"
 #include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/solve.h"
-#include "interflect/solver/surfaces.h"
 #include "interflect/solver/transport.h"
 
 namespace interflect {
@@ -23,17 +23,17 @@ Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 
 /// The importance that drives the rays of power, as the method and the options ask for; empty where none does.
-struct PowerDriver {
+struct ImportanceWeights {
     std::vector<float> elements;
     std::vector<float> nearby;  ///< Of patches, as it is in their neighbourhoods; empty where it is taken as it is.
 };
-PowerDriver power_driver(const Solution& so_far, const Neighbourhoods& neighbourhoods);
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods);
 
 /// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
 /// drives rays (Eq. 9, 10; 0 where none does).
 struct PowerStep {
     TransportStep step;
-    double power = 0, driven_power = 0;
+    double power = 0, weighted_power = 0;
 };
 
 /// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
@@ -41,19 +41,19 @@ struct PowerStep {
 /// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
 /// taken for unimportant the few rays that start there carry much. No oracle is set.
 /// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
-/// @param driver  power_driver(so_far).
+/// @param driver  importance_weights(so_far).
 /// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
-PowerStep power_step(const Surfaces& surfaces, Solution& so_far, const Light& light, const PowerDriver& driver,
-                     bool combined, std::int64_t rays);
+PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosity& light,
+                     const ImportanceWeights& driver, bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
 /// it.
-TransportStep importance_step(const Surfaces& surfaces, const Solution& so_far, const Importance& importance,
+TransportStep importance_step(const Materials& materials, const Solution& so_far, const Importance& importance,
                               std::int64_t rays);
 
 /// The oracle of the run's method, Eq. 14 or 15, with the references below.
 /// @param rays  That irradiance is the mean of, after this step; > 0. The more, the lower the threshold.
-Oracle make_oracle(const Solution& so_far, std::int64_t rays, double smallest_area);
+Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 
 /// The power that the oracle's threshold is relative to [lm or W]. With a view: what arrives at the surfaces it sees,
 /// as if all were lit as they are on average; so it depends neither on lamps in the picture nor on lights elsewhere,

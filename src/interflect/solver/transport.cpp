@@ -72,7 +72,7 @@ class RayMaker {
             const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
             const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
             const auto offset = static_cast<std::size_t>(from - begin), length = static_cast<std::size_t>(to - from);
-            shoot_rays(forest_.geometry(patch), forest_.cell(leaf), ray_caster_.lift(patch), streams_.points,
+            shoot_rays(forest_.geometry(patch), forest_.cell(leaf), ray_caster_.ray_offset(patch), streams_.points,
                        stream_key(streams_, Purpose::sampling, place), used + static_cast<std::uint64_t>(from - first),
                        batch.points, std::span(batch.rays).subspan(offset, length),
                        std::span(batch.origins).subspan(offset, length));
@@ -92,23 +92,26 @@ class RayMaker {
 /// What one ray of each leaf carries: A_s / (N q_s) of the leaf's radiosity and of its reflected importance.
 class Carried {
   public:
-    Carried(const Surfaces& surfaces, const ElementForest& forest, const TransportStep& step, double q_sum)
-        : surfaces_(surfaces), forest_(forest), step_(step), q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
+    Carried(const Materials& materials, const ElementForest& forest, const TransportStep& step, double q_sum)
+        : materials_(materials),
+          forest_(forest),
+          step_(step),
+          q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
 
     RgbD power(std::uint32_t leaf) const {
-        const RgbD b(step_.light.radiosity(forest_, leaf));
+        const RgbD b(step_.light.of(forest_, leaf));
         if (!step_.equal_quanta) return b * area_per_ray(leaf);
         const double sum = channel_sum(b);
         return sum > 0 ? b / sum : RgbD(0);
     }
     double importance(std::uint32_t leaf) const {
-        return surfaces_.mean_reflectance(forest_.patch(leaf)) * step_.importance[leaf] * area_per_ray(leaf);
+        return materials_.mean_reflectance(forest_.patch(leaf)) * step_.importance[leaf] * area_per_ray(leaf);
     }
 
   private:
     double area_per_ray(std::uint32_t leaf) const { return forest_.area(leaf) * (q_sum_over_rays_ / step_.q[leaf]); }
 
-    const Surfaces& surfaces_;
+    const Materials& materials_;
     const ElementForest& forest_;
     const TransportStep& step_;
     double q_sum_over_rays_;
@@ -163,16 +166,17 @@ struct Units {
 
     explicit Units(const Totals& all) : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
 
-    Arrivals::Load load(const TransportStep& step, const Carried& carried, std::uint32_t leaf) const {
-        Arrivals::Load load{};
+    Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t leaf) const {
+        Arrivals::Contribution contribution{};
         if (step.carries_power()) {
             const RgbD carried_power = carried.power(leaf);
             const FixedPoint::Value of_power = power.from(carried_power);
-            std::copy(of_power.begin(), of_power.end(), load.begin());
-            load[3] = square.from(std::pow(luminance(carried_power), 2));
+            std::copy(of_power.begin(), of_power.end(), contribution.begin());
+            contribution[3] = square.from(std::pow(luminance(carried_power), 2));
         }
-        if (step.carries_importance()) load[Arrivals::importance_term] = importance.from(carried.importance(leaf));
-        return load;
+        if (step.carries_importance())
+            contribution[Arrivals::importance_term] = importance.from(carried.importance(leaf));
+        return contribution;
     }
 };
 
@@ -205,8 +209,8 @@ class Arrived {
     Arrived(Arrivals& arrivals, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
         : arrivals_(arrivals), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
 
-    Arrivals::Load take(std::uint32_t e) { return arrivals_.take(number(e)); }
-    void add(std::uint32_t e, const Arrivals::Load& load) { arrivals_.add(number(e), load); }
+    Arrivals::Contribution take(std::uint32_t e) { return arrivals_.take(number(e)); }
+    void add(std::uint32_t e, const Arrivals::Contribution& contribution) { arrivals_.add(number(e), contribution); }
     void release(std::size_t begin, std::size_t end) {
         if (end <= old_size_) arrivals_.release(begin, end);
     }
@@ -220,8 +224,8 @@ class Arrived {
 };
 
 /// Keeps the forest within the oracle's limit; what arrived at elements that are dropped arrives at their parents.
-void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t most_elements, std::uint32_t old_size) {
-    while (forest.size() > std::max<std::size_t>(most_elements, old_size)) {
+void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t max_elements, std::uint32_t old_size) {
+    while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
         for (std::uint32_t e = first; e < first + 4; ++e) arrived.add(parent, arrived.take(e));
     }
@@ -233,14 +237,14 @@ void forget_new_elements(ElementForest& forest, std::uint32_t old_size) {
 }
 
 /// Nothing where a step carries no importance, or none that leaves are told apart by.
-std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Surfaces& surfaces,
+std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Materials& materials,
                                               const ElementForest& forest) {
     if (!step.carries_importance() || step.importance_at_patches) return {};
     std::vector<double> largest((forest.size() + elements_at_once - 1) / elements_at_once, 0.0);
     parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         double& most = largest[begin / elements_at_once];
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            most = std::max<double>(most, surfaces.mean_reflectance(forest.patch(e)) * step.importance[e]);
+            most = std::max<double>(most, materials.mean_reflectance(forest.patch(e)) * step.importance[e]);
     });
     return std::optional<GatheredImportance>(std::in_place, *std::max_element(largest.begin(), largest.end()),
                                              step.rays, forest.size());
@@ -298,7 +302,7 @@ void balance(const ElementForest& forest, const TransportStep& step, Received& r
 
 }  // namespace
 
-Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop) {
     assert(step.q.size() == forest.size() && step.rays > 0);
     Received received;
@@ -311,14 +315,14 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
         return received;
     }
 
-    const Carried carried(surfaces, forest, step, allocation.q_sum());
+    const Carried carried(materials, forest, step, allocation.q_sum());
     const Totals all = all_carried(step, allocation, carried);
     const Units units(all);
     arrivals.begin(forest.size());
     const std::uint32_t old_size = forest.size();
-    std::optional<GatheredImportance> gathered = gathered_by(step, surfaces, forest);
+    std::optional<GatheredImportance> gathered = gathered_by(step, materials, forest);
     tbb::enumerable_thread_specific<Batch> batches([&] {
-        return Batch({surfaces, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
+        return Batch({materials, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
     });
     const auto trace_batch = [&](std::size_t begin, std::size_t end) {
         auto& [shot, hits, receiver] = batches.local();
@@ -329,9 +333,9 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
         for (const auto& [leaf, first, last] : shot.sources) {
             const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size());
             for (; fetched < fetch; ++fetched) receiver.prefetch(hits[fetched]);
-            receiver.take(leaf, units.load(step, carried, leaf), std::span(shot.rays).subspan(first, last - first),
-                          std::span(shot.origins).subspan(first, last - first),
-                          std::span(hits).subspan(first, last - first));
+            receiver.take(
+                leaf, units.contribution(step, carried, leaf), std::span(shot.rays).subspan(first, last - first),
+                std::span(shot.origins).subspan(first, last - first), std::span(hits).subspan(first, last - first));
         }
         receiver.finish_batch();
     };
@@ -350,7 +354,7 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
 
     advance(streams, allocation, old_size);
     Arrived arrived(arrivals, old_size, forest.put_in_order(old_size));
-    drop_excess(forest, arrived, step.oracle.most_elements, old_size);
+    drop_excess(forest, arrived, step.oracle.max_elements, old_size);
     step.oracle.importance = std::vector<float>();  // what has served makes room for what is received
     if (!gathered) step.q = std::vector<float>();
     received.irradiance = std::move(step.spent);
@@ -363,10 +367,10 @@ Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCas
     return received;
 }
 
-Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams) {
     Arrivals arrivals(forest.capacity());
-    return transport(surfaces, forest, ray_caster, std::move(step), streams, arrivals, StopRequest());
+    return transport(materials, forest, ray_caster, std::move(step), streams, arrivals, StopRequest());
 }
 
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,

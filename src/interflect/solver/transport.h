@@ -8,11 +8,11 @@
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/arrivals.h"
-#include "interflect/solver/light.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/quanta.h"
+#include "interflect/solver/radiosity.h"
 #include "interflect/solver/stop_request.h"
-#include "interflect/solver/surfaces.h"
 
 namespace interflect {
 
@@ -31,16 +31,16 @@ struct TransportStep {
     /// Sampling weight of every element of the forest, >= 0; 0 for those that are not leaves. All 0 shoots nothing.
     std::vector<float> q;
     std::int64_t rays = 0;  ///< N > 0.
-    Light light;            ///< What leaves the elements, to be shot; empty: rays carry no power.
+    Radiosity light;        ///< What leaves the elements, to be shot; empty: rays carry no power.
     /// Of power every ray carries B_s over the sum of its channels, wherever it starts. False: B_s A_s / (N q_s), which
     /// makes the estimate unbiased.
     bool equal_quanta = false;
     Importance importance;  ///< psi, as it is reflected and shot on; empty: rays carry none.
     bool carries_power() const { return !light.empty(); }
     bool carries_importance() const { return !importance.empty(); }
-    Light
+    Radiosity
         known_light;  ///< What the oracle takes to leave the elements, be it shot in this step or not; empty: `light`.
-    const Light& light_for_oracle() const { return known_light.empty() ? light : known_light; }
+    const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
     /// Storage for what is received: it may be what `light` refers to, which has been shot by then.
@@ -77,10 +77,10 @@ struct Received {
 ///
 /// Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
 /// received.
-Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop);
 /// The same, to its end, with arrivals of its own.
-Received transport(const Surfaces& surfaces, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 
 /// The variance of the area-weighted mean of elements whose values are independent, from the leaves up.

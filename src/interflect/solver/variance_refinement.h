@@ -1,7 +1,7 @@
 #pragma once
 
 #include "interflect/scene/scene.h"
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 
 namespace interflect {
 
@@ -10,6 +10,6 @@ namespace interflect {
 /// that matters nothing to the error of the whole, nor below the smallest area (ElementFloor). New elements inherit
 /// what their parents have; how they differ is measured by later rays alone, so it is not biased by the choice.
 /// To be called between iterations.
-void refine_by_variance(Run& run);
+void refine_by_variance(SolverState& state);
 
 }  // namespace interflect

@@ -12,7 +12,7 @@ namespace interflect {
 namespace {
 
 /// One jittered ray through each cell of a grid over the picture, about `rays` of them.
-std::vector<Ray> eye_rays(const WeightedView& w, const Imath::V3d& origin, int rays, std::uint64_t key) {
+std::vector<Ray> camera_rays(const WeightedView& w, const Imath::V3d& origin, int rays, std::uint64_t key) {
     const int rows = std::max(1, static_cast<int>(std::sqrt(static_cast<float>(rays) / w.aspect)));
     const int columns = std::max(1, static_cast<int>(static_cast<float>(rows) * w.aspect));
     const Camera camera(w.view, columns, rows, origin);
@@ -29,11 +29,11 @@ std::vector<Ray> eye_rays(const WeightedView& w, const Imath::V3d& origin, int r
 
 }  // namespace
 
-void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view) {
+void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view) {
     constexpr std::size_t rays_at_once = 4096;
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const std::vector<Ray> rays =
-            eye_rays(views_[v], ray_caster.origin(), rays_per_view, mix(mix(seed_, v), looks_));
+            camera_rays(views_[v], ray_caster.origin(), rays_per_view, mix(mix(seed_, v), rounds_));
         std::vector<Hit> hits(rays.size());
         parallel_for_ranges(rays.size(), rays_at_once, [&](std::size_t begin, std::size_t end) {
             ray_caster.trace(std::span(rays).subspan(begin, end - begin), std::span(hits).subspan(begin, end - begin));
@@ -48,7 +48,7 @@ void ViewImportance::look(const ElementForest& forest, const RayCaster& ray_cast
         }
         rays_ += rays_per_view;
     }
-    ++looks_;
+    ++rounds_;
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {

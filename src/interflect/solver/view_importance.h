@@ -19,15 +19,16 @@ struct WeightedView {
     int pixel_rows = 720;      ///< Of the picture, > 0: elements need be no smaller than what a pixel shows.
 };
 
-/// Where eyes look: the points that eye rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
+/// Where eyes look: the points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
 /// that they can be handed to elements anew whenever the mesh has changed.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Traces more eye rays on all threads, jittered, one to a cell of the picture plane; about so many for each view.
-    void look(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view);
+    /// Traces more camera rays on all threads, jittered, one to a cell of the picture plane; about so many for each
+    /// view.
+    void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view);
 
     bool empty() const { return points_.empty(); }  ///< No eye sees anything.
     std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
@@ -46,7 +47,7 @@ class ViewImportance {
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;
-    std::uint64_t looks_ = 0;
+    std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
     double shares_ = 0;
     std::vector<Point> points_;

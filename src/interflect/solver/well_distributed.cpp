@@ -9,13 +9,13 @@
 
 namespace interflect {
 
-WellDistributedRays::WellDistributedRays(const Run& run)
-    : shot_(run.forest->size(), 0.0), arrived_(run.forest->size(), Rgb(0)) {}
+WellDistributedRays::WellDistributedRays(const SolverState& state)
+    : shot_(state.forest->size(), 0.0), arrived_(state.forest->size(), Rgb(0)) {}
 
-RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
-    const ElementForest& forest = *run.forest;
-    const Light light(run.surfaces, run.solution.irradiance);
-    TransportStep step = power_step(run.surfaces, run.solution, light, {}, false, plan.rays).step;
+RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
+    const ElementForest& forest = *state.forest;
+    const Radiosity light(state.materials, state.solution.irradiance);
+    TransportStep step = power_step(state.materials, state.solution, light, {}, false, plan.rays).step;
     step.equal_quanta = true;
     // These methods know no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(forest, light));
@@ -27,19 +27,19 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
     }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
     total_ += step.rays;
-    if (run.options.method.refines) step.oracle = make_oracle(run.solution, total_, run.floor.unseen());
+    if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_, state.floor.unseen());
 
-    std::vector<std::uint64_t> used_before = run.streams.used;
+    std::vector<std::uint64_t> used_before = state.streams.used;
     const std::uint32_t elements_before = forest.size();
     used_before.resize(elements_before, 0);
     const std::int64_t rays = step.rays;
-    const Received received = run_step(run, std::move(step));
+    const Received received = run_step(state, std::move(step));
     for (std::uint32_t e = 0; e < elements_before; ++e)
-        shot_[e] += static_cast<double>(run.streams.used[e] - used_before[e]);
-    shot_.resize(run.forest->size());
-    for (std::uint32_t e = elements_before; e < run.forest->size(); ++e)
-        shot_[e] = shot_[run.forest->parent(e)] * run.forest->area(e) / run.forest->area(run.forest->parent(e));
-    inherit(*run.forest, elements_before, arrived_);
+        shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
+    shot_.resize(state.forest->size());
+    for (std::uint32_t e = elements_before; e < state.forest->size(); ++e)
+        shot_[e] = shot_[state.forest->parent(e)] * state.forest->area(e) / state.forest->area(state.forest->parent(e));
+    inherit(*state.forest, elements_before, arrived_);
 
     const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(total_));
     const auto quantum = static_cast<float>(all_power / static_cast<double>(rays));
@@ -49,11 +49,11 @@ RgbD WellDistributedRays::iterate(Run& run, IterationPlan& plan) {
         fresh.variance[e] = quantum * (quantum * received.variance[e]);  // the square may be out of range
         arrived_[e] += received.irradiance[e];
     }
-    pull(*run.forest, arrived_);
-    estimate_noise(run, fresh, rays);
-    for (std::size_t e = 0; e < arrived_.size(); ++e) run.solution.irradiance[e] = power_per_ray * arrived_[e];
-    run.history.assign(run.forest->size(), static_cast<float>(total_));
-    run.power_rays += rays;
+    pull(*state.forest, arrived_);
+    estimate_noise(state, fresh, rays);
+    for (std::size_t e = 0; e < arrived_.size(); ++e) state.solution.irradiance[e] = power_per_ray * arrived_[e];
+    state.history.assign(state.forest->size(), static_cast<float>(total_));
+    state.power_rays += rays;
     plan.rays = rays;
     escaped_ += received.escaped_power;
     return escaped_ * (all_power / static_cast<double>(total_));

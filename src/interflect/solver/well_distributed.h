@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interflect/solver/run.h"
+#include "interflect/solver/solver_state.h"
 
 namespace interflect {
 
@@ -14,12 +14,12 @@ namespace interflect {
 /// together carry sum P. The colour of a ray stays what it was when it was shot.
 class WellDistributedRays {
   public:
-    explicit WellDistributedRays(const Run& run);
+    explicit WellDistributedRays(const SolverState& state);
 
     /// Grows N by plan.rays and takes the irradiance from all rays so far.
     /// @param plan  Its rays become those that were shot.
     /// @return The power that leaves the scene.
-    RgbD iterate(Run& run, IterationPlan& plan);
+    RgbD iterate(SolverState& state, IterationPlan& plan);
 
   private:
     std::vector<double> shot_;  // rays of each leaf

@@ -7,8 +7,8 @@
 namespace interflect::building {
 
 /// What is kept between any two solids, and between solids and walls [m]. Nothing touches, so no two faces coincide;
-/// and it is more than RayCaster::lift() in the largest scenes made here (2.5 mm at 330 m from the origin), so that a
-/// ray from the underside of a thing does not start below what the thing stands on.
+/// and it is more than RayCaster::ray_offset() in the largest scenes made here (2.5 mm at 330 m from the origin), so
+/// that a ray from the underside of a thing does not start below what the thing stands on.
 inline constexpr float gap = 0.004f;
 
 /// A place to stand: an origin on a floor, and a turn about the vertical.

@@ -6,23 +6,23 @@
 #include <vector>
 
 #include "interflect/solver/element_floor.h"
+#include "interflect/solver/materials.h"
 #include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/noise_model.h"
 #include "interflect/solver/risk_check.h"
 #include "interflect/solver/schedule.h"
 #include "interflect/solver/solve.h"
 #include "interflect/solver/stop_request.h"
-#include "interflect/solver/surfaces.h"
 #include "interflect/solver/transport.h"
 #include "interflect/solver/view_importance.h"
 
 namespace interflect {
 
 /// The state of a run: everything that one iteration hands to the next.
-struct Run {
-    Run(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m);
+struct SolverState {
+    SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m);
 
-    const Surfaces surfaces;
+    const Materials materials;
     const RayCaster& ray_caster;
     const SolveOptions& options;
     const Monitor& monitor;
@@ -46,20 +46,20 @@ struct Run {
 };
 
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest. @throws Interrupted
-Received run_step(Run& run, TransportStep step);
+Received run_step(SolverState& state, TransportStep step);
 
 /// The smallest area that an element's parts may have, and the area that a pixel shows there: see ElementFloor [m^2].
-float smallest_area(const Run& run, std::uint32_t element);
-float pixel_area(const Run& run, std::uint32_t element);
+float min_area(const SolverState& state, std::uint32_t element);
+float pixel_area(const SolverState& state, std::uint32_t element);
 
 /// Gives elements from `first` on, made since, what their parents have.
-void grow_with_forest(Run& run, std::uint32_t first);
+void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds eye rays in proportion to the rays that have been averaged: as the mesh gets finer, what an eye sees of each
+/// Adds camera rays in proportion to the rays that have been averaged: as the mesh gets finer, what an eye sees of each
 /// element must be known as well.
-void look_closer(Run& run);
+void refine_view_importance(SolverState& state);
 
 /// Adds a report of where the run stands. @param escaped_power  What the iteration lost.
-void report(Run& run, int iteration, const RgbD& escaped_power);
+void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
 }  // namespace interflect

@@ -15,11 +15,11 @@ namespace interflect {
 ///
 /// Where faces coincide, one answers all rays: what emits and is covered by others has its exitance reduced to the
 /// share of its area that is not (RayCaster::uncovered_share), so that no light is emitted twice from one place.
-class Surfaces {
+class Materials {
   public:
     /// As if no faces coincided.
-    explicit Surfaces(const Scene& scene) : scene_(scene) {}
-    Surfaces(const Scene& scene, const RayCaster& ray_caster);
+    explicit Materials(const Scene& scene) : scene_(scene) {}
+    Materials(const Scene& scene, const RayCaster& ray_caster);
 
     const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
     const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
@@ -47,7 +47,7 @@ struct CoveredEmission {
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
 /// B = M + rho H of every element [lm/m^2 or W/m^2]. @param irradiance  H; size forest.size().
-std::vector<Rgb> radiosity(const Surfaces& surfaces, const ElementForest& forest, const std::vector<Rgb>& irradiance);
+std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
 /// Sum of area times value over the roots, in index order and double precision: the same for any number of threads.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);

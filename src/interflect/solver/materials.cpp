@@ -1,4 +1,4 @@
-#include "interflect/solver/surfaces.h"
+#include "interflect/solver/materials.h"
 
 #include "interflect/scene/patch_geometry.h"
 
@@ -10,7 +10,7 @@ bool emits(const Material& material) { return channel_sum(material.exitance) > 0
 
 }  // namespace
 
-Surfaces::Surfaces(const Scene& scene, const RayCaster& ray_caster) : scene_(scene) {
+Materials::Materials(const Scene& scene, const RayCaster& ray_caster) : scene_(scene) {
     if (!ray_caster.has_covered_patches()) return;
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
@@ -39,11 +39,12 @@ CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster
     return covered;
 }
 
-std::vector<Rgb> radiosity(const Surfaces& surfaces, const ElementForest& forest, const std::vector<Rgb>& irradiance) {
+std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest,
+                           const std::vector<Rgb>& irradiance) {
     std::vector<Rgb> b(irradiance.size());
     for (std::uint32_t e = 0; e < b.size(); ++e) {
         const std::uint32_t patch = forest.patch(e);
-        b[e] = surfaces.exitance(patch) + surfaces.reflectance(patch) * irradiance[e];
+        b[e] = materials.exitance(patch) + materials.reflectance(patch) * irradiance[e];
     }
     return b;
 }

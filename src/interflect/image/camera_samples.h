@@ -12,8 +12,8 @@
 
 namespace interflect {
 
-/// Where the eye rays of a picture go.
-struct EyeSampling {
+/// Where the camera rays of a picture go.
+struct CameraSampling {
     int width = 1, height = 1;  ///< [pixels], as the camera has them.
     int samples = 16;           ///< Places a pixel, >= 1: a low-discrepancy sequence of each pixel's own.
     std::uint64_t seed = 1;     ///< Of these places.
@@ -47,12 +47,12 @@ struct PictureMonitor {
 /// Traces a ray from the eye at each of `offsets` from every sample, and hands the pixels one by one to `visit`, from
 /// any thread and in any order. The same rays for the same seed and any number of threads.
 /// @throws InputError for less than one sample or one pixel.
-void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const EyeSampling& sampling,
+void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                   std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
                   const std::function<void(const PixelSamples&)>& visit);
 
 /// The same with one ray at each sample.
-inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const EyeSampling& sampling,
+inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                          const PictureMonitor& monitor, const std::function<void(const PixelSamples&)>& visit) {
     constexpr PixelOffset none_at_all;
     trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, monitor, visit);

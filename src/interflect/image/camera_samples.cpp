@@ -1,4 +1,4 @@
-#include "interflect/image/eye_samples.h"
+#include "interflect/image/camera_samples.h"
 
 #include <fmt/format.h>
 
@@ -19,14 +19,14 @@ constexpr std::size_t rays_per_batch = 4096;
 /// Batches between two reports of progress: enough to keep many threads busy.
 constexpr std::size_t batches_per_report = 256;
 
-void require_valid(const EyeSampling& sampling) {
+void require_valid(const CameraSampling& sampling) {
     if (sampling.samples < 1) throw InputError(fmt::format("{} samples a pixel: expected 1 or more", sampling.samples));
     if (sampling.width < 1 || sampling.height < 1)
         throw InputError(
             fmt::format("a picture of {} x {} pixels: expected 1 x 1 or more", sampling.width, sampling.height));
 }
 
-void append_pixel_rays(const Camera& camera, std::size_t pixel, const EyeSampling& sampling,
+void append_pixel_rays(const Camera& camera, std::size_t pixel, const CameraSampling& sampling,
                        std::span<const PixelOffset> offsets, std::vector<Ray>& rays) {
     const auto width = static_cast<std::size_t>(sampling.width);
     const std::size_t column = pixel % width, row = pixel / width;
@@ -45,7 +45,7 @@ void append_pixel_rays(const Camera& camera, std::size_t pixel, const EyeSamplin
 
 }  // namespace
 
-void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const EyeSampling& sampling,
+void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                   std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
                   const std::function<void(const PixelSamples&)>& visit) {
     require_valid(sampling);
