@@ -14,6 +14,7 @@
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/show.h"
 #include "apps/interflect/signals.h"
+#include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
 #include "apps/interflect/view_check.h"
 #include "interflect/base/error.h"
@@ -162,9 +163,10 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     const SolveOptions solve_options = options.solver.resolved({view}, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
+    StatsFile stats(options.solver, solved.scene);
     const RayCaster ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
-    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver);
+    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
     options.render.width = options.size.width;
     options.render.height = options.size.height;
@@ -173,6 +175,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     const std::optional<Picture> picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
                                                                       : draw_light(solved, ray_caster, view, options);
     if (picture) write_picture(output, *picture, view, solved.scene, solved.solution.options.seed, options);
+    if (!solved_before) stats.write(solved.scene, solved.solution);
 }
 
 /// Draws the light that path tracing finds; of a solution file the scene alone counts.

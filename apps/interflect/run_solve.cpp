@@ -1,15 +1,9 @@
 #include "apps/interflect/run_solve.h"
 
 #include <spdlog/spdlog.h>
-#include <tbb/info.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <optional>
 
 #include "apps/interflect/leaks.h"
 #include "apps/interflect/machine_memory.h"
@@ -17,45 +11,12 @@
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
 #include "interflect/base/error.h"
-#include "interflect/base/pending_file.h"
-#include "interflect/exports/solve_report.h"
-#include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
 
 namespace interflect::command {
 
 namespace {
-
-Json header_of(const Scene& scene, const SolverOptions& command, const SolveOptions& o, const RgbD& emitted_power) {
-    double area = 0;
-    for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
-    return {{"scene", scene.name},
-            {"method", o.method.name},
-            {"options", json_of(o)},
-            {"seed", o.seed},
-            {"threads", command.threads > 0 ? command.threads : tbb::info::default_concurrency()},
-            {"version", INTERFLECT_VERSION},
-            {"patches", scene.patches.size()},
-            {"area", area},
-            {"emitted_power", json_of(emitted_power)}};
-}
-
-Json line_of(const IterationReport& report) {
-    Json line{{"iteration", report.iteration}, {"seconds", report.seconds}};
-    line.update(json_of(report));
-    return line;
-}
-
-void write_stats(PendingFile& file, const Scene& scene, const SolverOptions& command, const Solution& solution) {
-    std::ofstream out(file.temporary_path());
-    out << json_text(header_of(scene, command, solution.options, solution.emitted_power)) << '\n';
-    for (const IterationReport& r : solution.iterations) out << json_text(line_of(r)) << '\n';
-    if (!out.flush())
-        throw std::runtime_error(
-            fmt::format("cannot write '{}': {}", file.final_path().string(), std::strerror(errno)));
-    file.commit();
-}
 
 void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
     if (solution.iterations.empty() || solution.iterations.back().escaped_rays == 0) return;
@@ -118,15 +79,9 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
                  covered.wholly, covered.partly, luminance(covered.power));
 }
 
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,
-                   const SolverOptions& command) {
-    for (const std::string& file : scene.files)
-        require_distinct_files(std::array<NamedFile, 1>{{{"a file of the scene", file}}},
-                               std::array<NamedFile, 1>{{{"--stats", command.stats}}});
-    std::optional<PendingFile> stats;
-    if (!command.stats.empty()) stats.emplace(command.stats);
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory) {
     warn_of_covered_emission(scene, ray_caster);
-    const SolveOptions options = within_limits(scene, ray_caster, asked_for, command.memory);
+    const SolveOptions options = within_limits(scene, ray_caster, asked_for, memory);
     Solution solution;
     {
         ProgressBar bar;
@@ -138,7 +93,6 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
     }
     log_outcome(solution);
     warn_of_leaks(scene, ray_caster, solution);
-    if (stats) write_stats(*stats, scene, command, solution);
     return solution;
 }
 

@@ -9,9 +9,9 @@ namespace interflect::command {
 /// Logs how much of the light is not emitted since other faces coincide with its emitters, where there is any.
 void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Solves with progress on stderr, Ctrl-C heeded and statistics written: what `solve` and `render` share.
-/// @param asked_for  command.resolved().
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for,
-                   const SolverOptions& command);
+/// Solves with progress on stderr and Ctrl-C heeded: what `solve` and `render` share.
+/// @param asked_for  SolverOptions::resolved().
+/// @param memory     SolverOptions::memory.
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory);
 
 }  // namespace interflect::command

@@ -7,6 +7,7 @@
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/signals.h"
+#include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
@@ -58,11 +59,13 @@ void add_solve(CLI::App& app, int& exit_code) {
         const std::vector<View> views = options->view.views(scene);
         const SolveOptions solve_options = options->solver.resolved(views);
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
+        StatsFile stats(options->solver, scene);
         const RayCaster ray_caster(scene);
-        const Solution solution = run_solve(scene, ray_caster, solve_options, options->solver);
+        const Solution solution = run_solve(scene, ray_caster, solve_options, options->solver.memory);
         // What was asked for comes first: `render` takes the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         write(output, scene, solution);
+        stats.write(scene, solution);
         if (is_stop_requested()) exit_code = interrupted;
     });
 }

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import unittest
 
-from command import COMMAND, FAILED, VIEW, CommandTest, room
+from command import COMMAND, FAILED, SMALL, VIEW, CommandTest, room
 
 
 def let_no_file_exceed(size):
@@ -43,6 +43,14 @@ class FullDisk(CommandTest):
         self.write("room.mgf", room())
         solve = ("solve", "room.mgf", "-o", "out.h5", "--stats", "stats", "--rays", "20k", "--mesh-size", "none")
         self.assert_fails("stats", *solve)
+
+
+class Statistics(CommandTest):
+    def test_that_cannot_be_written_lose_no_solution(self):
+        self.write("room.mgf", room())
+        self.interflect("solve", "room.mgf", "-o", "out.h5", "--rays", "20k", "--stats", "/dev/full", exit_code=FAILED)
+        self.assertEqual(self.files(), ["out.h5", "room.mgf"])
+        self.interflect("render", "out.h5", "-o", "out.exr", *VIEW, *SMALL)
 
 
 if __name__ == "__main__":

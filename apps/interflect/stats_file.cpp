@@ -1,0 +1,60 @@
+#include "apps/interflect/stats_file.h"
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "interflect/exports/solve_report.h"
+#include "interflect/scene/patch_geometry.h"
+
+namespace interflect::command {
+
+namespace {
+
+Json header_of(const Scene& scene, int threads, const SolveOptions& o, const RgbD& emitted_power) {
+    double area = 0;
+    for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
+    return {{"scene", scene.name},
+            {"method", o.method.name},
+            {"options", json_of(o)},
+            {"seed", o.seed},
+            {"threads", threads > 0 ? threads : tbb::info::default_concurrency()},
+            {"version", INTERFLECT_VERSION},
+            {"patches", scene.patches.size()},
+            {"area", area},
+            {"emitted_power", json_of(emitted_power)}};
+}
+
+Json line_of(const IterationReport& report) {
+    Json line{{"iteration", report.iteration}, {"seconds", report.seconds}};
+    line.update(json_of(report));
+    return line;
+}
+
+}  // namespace
+
+StatsFile::StatsFile(const SolverOptions& command, const Scene& scene) : threads_(command.threads) {
+    if (command.stats.empty()) return;
+    for (const std::string& file : scene.files)
+        require_distinct_files(std::array<NamedFile, 1>{{{"a file of the scene", file}}},
+                               std::array<NamedFile, 1>{{{"--stats", command.stats}}});
+    file_.emplace(command.stats);
+}
+
+void StatsFile::write(const Scene& scene, const Solution& solution) {
+    if (!file_) return;
+    std::ofstream out(file_->temporary_path());
+    out << json_text(header_of(scene, threads_, solution.options, solution.emitted_power)) << '\n';
+    for (const IterationReport& r : solution.iterations) out << json_text(line_of(r)) << '\n';
+    if (!out.flush())
+        throw std::runtime_error(
+            fmt::format("cannot write '{}': {}", file_->final_path().string(), std::strerror(errno)));
+    file_->commit();
+}
+
+}  // namespace interflect::command
