@@ -29,22 +29,6 @@ constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
-/// An HDF5 identifier that closes itself.
-class Handle {
-  public:
-    Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
-        if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}", what));
-    }
-    ~Handle() { close_(id_); }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    operator hid_t() const { return id_; }
-
-  private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-
 /// To be called before all else: errors become exceptions, not text on stderr. The handler at the process's end is left
 /// out, since it crashes where a file could not be written.
 void prepare_hdf5() {
@@ -57,6 +41,22 @@ std::string reason_of_disk() {
     const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
     return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
 }
+
+/// An HDF5 identifier that closes itself.
+class Handle {
+  public:
+    Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+        if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}{}", what, reason_of_disk()));
+    }
+    ~Handle() { close_(id_); }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    operator hid_t() const { return id_; }
+
+  private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
 
 void require(herr_t status, const std::string& what) {
     if (status < 0) throw std::runtime_error("HDF5: " + what + reason_of_disk());
