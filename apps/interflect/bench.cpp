@@ -68,8 +68,8 @@ struct Workload {
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
-        const ImportanceWeights driver = importance_weights(solution, Neighbourhoods(*forest));
-        step = power_step(materials, solution, light, driver, combined, options.rays).step;
+        const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
+        step = power_step(materials, solution, light, weights, combined, options.rays).step;
         if (options.method.refines && !refines_by_variance(options))
             step.oracle = make_oracle(solution, options.rays, options.min_area);
         step.oracle.max_elements = forest->size();

@@ -30,8 +30,7 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
 
 void log_outcome(const Solution& solution) {
     if (solution.non_finite > 0)
-        spdlog::warn("{} powers were not finite and were left out: the result is not to be trusted",
-                     solution.non_finite);
+        spdlog::warn("{} powers were not finite and were ignored: the result is not reliable", solution.non_finite);
     if (solution.iterations.empty()) {
         if (channel_sum(solution.emitted_power) > 0)
             spdlog::warn("the run ended before any light had arrived: all surfaces that do not emit are dark");
@@ -64,8 +63,9 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
     const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
     const MemoryNeed need = memory_need(scene, ray_caster);
     if (need.with(scene.patches.size()) > there_is)  // no fault of what was asked for
-        throw std::runtime_error(fmt::format("{} needs {} MiB of memory; this process may have {} MiB", scene.name,
-                                             (need.with(scene.patches.size()) >> 20) + 1, there_is >> 20));
+        throw std::runtime_error(fmt::format(
+            "{} needs {} MiB of memory; the limits of this process (ulimit -v, control groups) leave {} MiB",
+            scene.name, (need.with(scene.patches.size()) >> 20) + 1, there_is >> 20));
     options.max_elements = std::min(options.max_elements, elements_within(need, bytes, scene));
     return options;
 }

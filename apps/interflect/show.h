@@ -9,11 +9,11 @@ namespace interflect::command {
 
 /// What a picture shows.
 enum class Shown {
-    light,              ///< What an eye would see.
+    light,              ///< What the camera sees.
     mesh,               ///< The same, with the borders of the elements.
     irradiance,         ///< H, luminance of.
     importance,         ///< psi.
-    direct_importance,  ///< v, the part of psi straight from the eye.
+    direct_importance,  ///< v, the part of psi straight from the camera.
     level,              ///< How often a patch was divided to get to the leaf.
     rays,               ///< That started on a leaf, per area.
     error,              ///< Estimated standard error of H, relative.

@@ -70,8 +70,7 @@ void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, con
     if (met.nothing + met.backs <= 0.5) return;
     spdlog::warn(
         "view '{}': the camera seems to be outside the scene: {} of the picture shows nothing and {} is seen through "
-        "the "
-        "backs of one-sided faces",
+        "the backs of one-sided faces",
         view.name, percent(met.nothing), percent(met.backs));
 }
 

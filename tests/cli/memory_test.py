@@ -6,7 +6,7 @@ import resource
 import subprocess
 import unittest
 
-from command import BAD_INPUT, COMMAND, DONE, CommandTest
+from command import BAD_INPUT, COMMAND, DONE, FAILED, CommandTest
 
 FINE = ("--refinement", "power", "--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
 MIB = 1 << 20
@@ -83,8 +83,8 @@ class LimitedAddressSpace(CommandTest):
         self.assertIn("refinement ended at", said)
 
     def test_says_what_is_missing(self):
-        said = self.under(250 * MIB, "solve", "maze:2", "-o", "out.h5", "--rays", "100k", exit_code=BAD_INPUT)
-        self.assertRegex(said, r"need \d+ MiB of memory, the limit is \d+ MiB")
+        said = self.under(250 * MIB, "solve", "maze:2", "-o", "out.h5", "--rays", "100k", exit_code=FAILED)
+        self.assertRegex(said, r"maze:2 needs \d+ MiB of memory; the limits of this process .* leave \d+ MiB")
 
 
 class LongRuns(MemoryCase):

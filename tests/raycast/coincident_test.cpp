@@ -1,5 +1,5 @@
 // Faces that lie in one place: whatever a ray's direction, the same one must answer. Embree alone does not do that.
-// With RayCaster's use of is_contested and is_hidden taken out, 18 of these tests fail (not those that ask
+// With RayCaster's use of is_overlapped and is_hidden taken out, 18 of these tests fail (not those that ask
 // CoincidentFaces alone, nor those where Embree has no choice): half of the rays towards a decal get the table, and the
 // furnace's black slab swallows light. Each part of the resolution (sidedness, surfaces of many patches, tolerances in
 // the plane and off it, inside or not) was broken once too, and a test failed each time.

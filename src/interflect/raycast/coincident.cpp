@@ -51,7 +51,7 @@ bool answers_for(const Scene& scene, const Patch& p, const Patch& q) {
 
 }  // namespace
 
-CoincidentFaces::Winner::Winner(const Scene& scene, std::uint32_t face, float margin)
+CoincidentFaces::PriorityFace::PriorityFace(const Scene& scene, std::uint32_t face, float margin)
     : front(face), back(scene.patches[face].other_side) {
     const std::vector<V3f> vertices = corners(scene, scene.patches[face]);
     normal = PatchGeometry(scene, scene.patches[face]).normal();
@@ -68,11 +68,11 @@ CoincidentFaces::Winner::Winner(const Scene& scene, std::uint32_t face, float ma
     }
 }
 
-std::uint32_t CoincidentFaces::Winner::side_towards(const V3f& direction) const {
+std::uint32_t CoincidentFaces::PriorityFace::side_towards(const V3f& direction) const {
     return normal.dot(direction) > 0 ? back : front;
 }
 
-bool CoincidentFaces::Winner::answers(const V3f& x, const V3f& direction) const {
+bool CoincidentFaces::PriorityFace::answers(const V3f& x, const V3f& direction) const {
     const V3f d = x - origin;
     std::size_t inside = 0;
     for (std::size_t i = 0; i < inward.x.size(); ++i)
@@ -83,7 +83,7 @@ bool CoincidentFaces::Winner::answers(const V3f& x, const V3f& direction) const 
 CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tolerance) : hidden_(scene.patches.size()) {
     const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene);
     hide_duplicates(scene, rank);
-    find_stand_ins(scene, rank, tolerance);
+    find_overlaps(scene, rank, tolerance);
     measure_uncovered(scene, tolerance);
 }
 
@@ -119,18 +119,18 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
     }
 }
 
-void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank,
-                                     std::span<const float> tolerance) {
+void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uint32_t> rank,
+                                    std::span<const float> tolerance) {
     struct Decided {
-        std::uint32_t loser, winner;
+        std::uint32_t overlapped_face, priority_face;
     };
     std::vector<Decided> pairs;
     std::vector<std::uint32_t> winners;  // faces
     for (const FacePair& p : overlapping_faces(scene, hidden_, tolerance)) {
-        const auto [winner, loser] =
+        const auto [priority_face, overlapped_face] =
             std::minmax(p.larger, p.smaller, [&](auto a, auto b) { return rank[a] < rank[b]; });
-        pairs.push_back({loser, winner});
-        winners.push_back(winner);
+        pairs.push_back({overlapped_face, priority_face});
+        winners.push_back(priority_face);
         const float within = pair_tolerance(tolerance, p);
         reaches_.push_back({p.larger, within});
         reaches_.push_back({p.smaller, within});
@@ -144,29 +144,29 @@ void CoincidentFaces::find_stand_ins(const Scene& scene, std::span<const std::ui
     const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
     std::sort(winners.begin(), winners.end(), by_rank);
     winners.erase(std::unique(winners.begin(), winners.end()), winners.end());
-    for (const std::uint32_t face : winners) winners_.emplace_back(scene, face, tolerance[face]);
+    for (const std::uint32_t face : winners) priority_faces_.emplace_back(scene, face, tolerance[face]);
 
     std::sort(pairs.begin(), pairs.end(), [&](const Decided& a, const Decided& b) {
-        return std::tie(a.loser, rank[a.winner]) < std::tie(b.loser, rank[b.winner]);
+        return std::tie(a.overlapped_face, rank[a.priority_face]) < std::tie(b.overlapped_face, rank[b.priority_face]);
     });
-    std::vector<std::uint32_t> losers;
-    for (const auto [loser, winner] : pairs) {
-        if (losers.empty() || losers.back() != loser) {
-            if (!losers.empty()) first_.push_back(stand_ins_.size());
-            losers.push_back(loser);
+    std::vector<std::uint32_t> overlapped;
+    for (const auto [overlapped_face, priority_face] : pairs) {
+        if (overlapped.empty() || overlapped.back() != overlapped_face) {
+            if (!overlapped.empty()) first_.push_back(overlaps_.size());
+            overlapped.push_back(overlapped_face);
         }
         Imath::Box3f box;
-        for (const V3f& corner : corners(scene, scene.patches[winner])) box.extendBy(corner);
-        const float margin = 2 * std::max(tolerance[winner], tolerance[loser]);
+        for (const V3f& corner : corners(scene, scene.patches[priority_face])) box.extendBy(corner);
+        const float margin = 2 * std::max(tolerance[priority_face], tolerance[overlapped_face]);
         box.min -= V3f(margin);
         box.max += V3f(margin);
-        const auto index = std::lower_bound(winners.begin(), winners.end(), winner, by_rank) - winners.begin();
-        stand_ins_.push_back({box, static_cast<std::uint32_t>(index)});
+        const auto index = std::lower_bound(winners.begin(), winners.end(), priority_face, by_rank) - winners.begin();
+        overlaps_.push_back({box, static_cast<std::uint32_t>(index)});
     }
-    first_.push_back(stand_ins_.size());
-    contested_ = RankedBits(scene.patches.size(), losers);
-    for (std::size_t i = 0; i < losers.size(); ++i)
-        arrange_box_tree(std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]));
+    first_.push_back(overlaps_.size());
+    overlapped_ = RankedBits(scene.patches.size(), overlapped);
+    for (std::size_t i = 0; i < overlapped.size(); ++i)
+        arrange_box_tree(std::span(overlaps_).subspan(first_[i], first_[i + 1] - first_[i]));
 }
 
 /// Whatever is in the way of the rays towards one side of a face covers it there.
@@ -177,7 +177,7 @@ void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const floa
     };
     std::vector<Side> sides;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
-        if (hidden_[i] || contested_[i]) {
+        if (hidden_[i] || overlapped_[i]) {
             sides.push_back({i, 0});
             if (scene.patches[i].other_side != none) sides.push_back({scene.patches[i].other_side, 0});
         }
@@ -188,11 +188,12 @@ void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const floa
             const std::uint32_t face = std::min(patch, scene.patches[patch].other_side);
             if (hidden_[face]) continue;
             const V3f towards = -PatchGeometry(scene, scene.patches[patch]).normal();
-            const std::size_t loser = contested_.rank(face);
+            const std::size_t overlapped_face = overlapped_.rank(face);
             others.clear();
-            for (std::size_t i = first_[loser]; i < first_[loser + 1]; ++i)
-                if (const Winner& winner = winners_[stand_ins_[i].index]; winner.side_towards(towards) != none)
-                    others.push_back(winner.front);
+            for (std::size_t i = first_[overlapped_face]; i < first_[overlapped_face + 1]; ++i)
+                if (const PriorityFace& priority_face = priority_faces_[overlaps_[i].index];
+                    priority_face.side_towards(towards) != none)
+                    others.push_back(priority_face.front);
             share = uncovered_area_share(scene, patch, others, tolerance[face]);
         }
     });
@@ -206,36 +207,36 @@ void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const floa
     if (!patches.empty()) covered_ = RankedBits(scene.patches.size(), patches);
 }
 
-const CoincidentFaces::Winner* CoincidentFaces::stand_in(std::uint32_t face, const V3f& x, const V3f& direction,
-                                                         float x_error) const {
-    const std::size_t i = contested_.rank(face);
+const CoincidentFaces::PriorityFace* CoincidentFaces::find_priority_face(std::uint32_t face, const V3f& x,
+                                                                         const V3f& direction, float x_error) const {
+    const std::size_t i = overlapped_.rank(face);
     const Imath::Box3f around_x(x - V3f(x_error), x + V3f(x_error));
     std::uint32_t best = none;
     visit_box_tree(
-        std::span(stand_ins_).subspan(first_[i], first_[i + 1] - first_[i]),
+        std::span(overlaps_).subspan(first_[i], first_[i + 1] - first_[i]),
         [&](const Imath::Box3f& box) { return box.intersects(around_x); },
-        [&](std::uint32_t winner) {
-            if (winner < best && winners_[winner].answers(x, direction)) best = winner;
+        [&](std::uint32_t priority_face) {
+            if (priority_face < best && priority_faces_[priority_face].answers(x, direction)) best = priority_face;
         });
-    return best == none ? nullptr : &winners_[best];
+    return best == none ? nullptr : &priority_faces_[best];
 }
 
 std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction,
                                                float x_error) const {
     std::uint32_t answer = none;
     // That which coincides with what coincides with `face` may lie a little too far off to coincide with it: go on.
-    while (contested_[face]) {
-        const Winner* winner = stand_in(face, x, direction, x_error);
-        if (!winner) break;
-        answer = winner->side_towards(direction);
-        face = winner->front;
+    while (overlapped_[face]) {
+        const PriorityFace* priority_face = find_priority_face(face, x, direction, x_error);
+        if (!priority_face) break;
+        answer = priority_face->side_towards(direction);
+        face = priority_face->front;
     }
     return answer;
 }
 
 std::size_t CoincidentFaces::memory() const {
-    return hidden_.capacity() / 8 + contested_.memory() + winners_.capacity() * sizeof(Winner) +
-           first_.capacity() * sizeof(std::size_t) + stand_ins_.capacity() * sizeof(Boxed) + covered_.memory() +
+    return hidden_.capacity() / 8 + overlapped_.memory() + priority_faces_.capacity() * sizeof(PriorityFace) +
+           first_.capacity() * sizeof(std::size_t) + overlaps_.capacity() * sizeof(Boxed) + covered_.memory() +
            uncovered_share_.capacity() * sizeof(float) + reaches_.capacity() * sizeof(Reach);
 }
 

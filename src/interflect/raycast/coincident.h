@@ -27,7 +27,7 @@ namespace interflect {
 /// What never answers a ray must send none: uncovered_share() tells how much of a patch does.
 ///
 /// A face is named by its patch, of a two-sided one by the first. Memory: a bit a patch where nothing coincides, else
-/// 5, and 96 bytes more for each face that others give way to, 28 for each pair.
+/// 5, and 96 bytes more for each face that has priority over another, 28 for each pair.
 class CoincidentFaces {
   public:
     /// Finds all that coincide: O(n log n) for n patches of which each overlaps a bounded number of others.
@@ -41,11 +41,11 @@ class CoincidentFaces {
     /// Whether the face has the corners of another that answers wherever it could: it may be left out.
     bool is_hidden(std::uint32_t face) const { return hidden_[face]; }
 
-    /// Whether the face gives way to another on a part of it, so that a ray that meets it must ask for answering_patch.
-    bool is_contested(std::uint32_t face) const { return contested_[face]; }
+    /// Whether a face of higher priority overlaps it in part, so that a ray that meets it must ask for answering_patch.
+    bool is_overlapped(std::uint32_t face) const { return overlapped_[face]; }
 
-    /// Which patch answers a ray whose first hit is the contested `face` at x: the side that the ray sees of the face
-    /// that is there in its stead; none where `face` itself answers. O(log k) time for k faces that overlap it.
+    /// Which patch answers a ray whose first hit is the overlapped `face` at x: of the face that has priority there,
+    /// the side that the ray sees; none where `face` itself answers. O(log k) time for k faces that overlap it.
     /// @param x_error  How far x may lie off the face [m].
     std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
@@ -66,14 +66,14 @@ class CoincidentFaces {
     const std::vector<Reach>& reaches() const { return reaches_; }
 
     std::size_t hidden_count() const { return hidden_count_; }
-    std::size_t contested_count() const { return first_.size() - 1; }
-    std::size_t pair_count() const { return stand_ins_.size(); }  ///< Overlapping faces, without the hidden ones.
-    std::size_t memory() const;                                   ///< [bytes]
+    std::size_t overlapped_count() const { return first_.size() - 1; }
+    std::size_t pair_count() const { return overlaps_.size(); }  ///< Overlapping faces, without the hidden ones.
+    std::size_t memory() const;                                  ///< [bytes]
 
   private:
-    /// A face that others give way to.
-    struct Winner {
-        Winner(const Scene& scene, std::uint32_t face, float margin);
+    /// A face that has priority over another.
+    struct PriorityFace {
+        PriorityFace(const Scene& scene, std::uint32_t face, float margin);
 
         /// Whether the ray is on a side that answers and x, in the face's plane, within its polygon.
         bool answers(const V3f& x, const V3f& direction) const;
@@ -88,17 +88,18 @@ class CoincidentFaces {
     };
 
     void hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank);
-    void find_stand_ins(const Scene& scene, std::span<const std::uint32_t> rank, std::span<const float> tolerance);
+    void find_overlaps(const Scene& scene, std::span<const std::uint32_t> rank, std::span<const float> tolerance);
     void measure_uncovered(const Scene& scene, std::span<const float> tolerance);
-    const Winner* stand_in(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
+    const PriorityFace* find_priority_face(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
     std::vector<bool> hidden_;  // by patch
-    RankedBits contested_;      // likewise: the losers
+    RankedBits overlapped_;     // likewise: faces that one of higher priority overlaps
     std::size_t hidden_count_ = 0;
-    std::vector<Winner> winners_;         // by rank: of two, the first answers
-    std::vector<std::size_t> first_{0};   // of each loser in stand_ins_, and the end
-    std::vector<Boxed> stand_ins_;        // of each loser a tree of those that it gives way to: indices of winners_
-    RankedBits covered_;                  // patches that are covered, wholly or in part
+    std::vector<PriorityFace> priority_faces_;  // by rank: of two, the first answers
+    std::vector<std::size_t> first_{0};         // of each overlapped face in overlaps_, and the end
+    std::vector<Boxed>
+        overlaps_;        // of each overlapped face a tree of those of higher priority, indices of priority_faces_
+    RankedBits covered_;  // patches that are covered, wholly or in part
     std::vector<float> uncovered_share_;  // of each of them
     std::vector<Reach> reaches_;
 };

@@ -121,7 +121,7 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     const Faces& faces = geometries[query.hit.geomID];
     const std::uint32_t front = faces.fronts[query.hit.primID];
     const float distance = query.ray.tfar;
-    if (coincident.is_contested(front)) {
+    if (coincident.is_overlapped(front)) {
         const V3f x = ray.origin + distance * ray.direction;
         const float x_error = relative_hit_error * (largest_coordinate(x) + distance);
         const std::uint32_t patch = coincident.answering_patch(front, x, ray.direction, x_error);

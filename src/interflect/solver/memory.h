@@ -12,7 +12,7 @@ struct MemoryNeed {
     std::size_t scene = 0;       ///< Vertices, patches, materials and names.
     std::size_t ray_tracer = 0;  ///< Embree's structures, and which faces coincide.
     std::size_t patches = 0;     ///< What the forest knows of each patch, whatever elements there are.
-    std::size_t rest = 0;        ///< Program, threads, and what eyes see of the scene.
+    std::size_t rest = 0;        ///< Program, threads, and the hits of camera rays.
 
     /// Of each element, while a bounce's results are collected: the tree 11, H 12, importance 8, history and noise 8,
     /// points consumed 8, what the pass brought so far 16, what is shot 12 and by what importance 4, and sums of

@@ -14,7 +14,7 @@ namespace interflect {
 
 namespace {
 
-/// A pass ends when the next bounce would get fewer rays; what is left to shoot is handed on to the next pass.
+/// A pass ends when the next bounce would get fewer rays; the next pass shoots what is left.
 constexpr double fewest_rays_of_bounce = 16;
 /// Or when what is left, with all its bounces, is less than this share of the pass: every bounce takes time for every
 /// element.
@@ -108,7 +108,7 @@ void start_importance(SolverState& state, std::int64_t rays) {
 }
 
 /// Hands on what the pass did not shoot.
-std::vector<Rgb> handed_on(PassState& passes, std::size_t elements, std::int64_t rays) {
+std::vector<Rgb> carried_over(PassState& passes, std::size_t elements, std::int64_t rays) {
     std::vector<Rgb> unshot = std::exchange(passes.unshot, {});
     if (unshot.empty()) unshot.assign(elements, Rgb(0));
     const auto factor = static_cast<float>(passes.unshot_rays / static_cast<double>(rays));
@@ -147,14 +147,14 @@ FreshEstimate trace_pass(SolverState& state, PassState& passes, std::int64_t ray
         importance_use(solution) == ImportanceUse::full && !state.options.separate_iterations;
     BounceBudget budget(rays, passes.bounces, passes.is_final);
     FreshEstimate fresh;
-    std::vector<Rgb> unshot = handed_on(passes, state.forest->size(), rays);
-    ImportanceWeights driver = importance_weights(solution, state.neighbourhoods);
+    std::vector<Rgb> unshot = carried_over(passes, state.forest->size(), rays);
+    ImportanceWeights weights = importance_weights(solution, state.neighbourhoods);
     PowerStep first;
     state.quanta = {};
     for (bool emits = true; !budget.is_last(); emits = false) {
         // Importance is carried on by the first bounce alone, which has the most rays.
         const Radiosity light(state.materials, unshot, emits);
-        PowerStep bounce = power_step(state.materials, solution, light, driver, carries_importance && emits, 0);
+        PowerStep bounce = power_step(state.materials, solution, light, weights, carries_importance && emits, 0);
         if (emits) first = {{}, bounce.power, bounce.weighted_power};
         const double weight = unshot_weight(bounce, first, state.options.beta);
         bounce.step.rays = bounce.power > 0 ? budget.next(weight) : 0;
@@ -165,8 +165,8 @@ FreshEstimate trace_pass(SolverState& state, PassState& passes, std::int64_t ray
             bounce.step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
         bounce.step.spent = std::move(unshot);
         unshot = trace_bounce(state, std::move(bounce.step), fresh, escaped_power);
-        if (!driver.elements.empty())
-            inherit(*state.forest, static_cast<std::uint32_t>(driver.elements.size()), driver.elements);
+        if (!weights.elements.empty())
+            inherit(*state.forest, static_cast<std::uint32_t>(weights.elements.size()), weights.elements);
     }
     if (fresh.irradiance.empty())  // nothing could be shot
         fresh = {std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};

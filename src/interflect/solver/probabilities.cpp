@@ -87,19 +87,19 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
 std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
                                      double exponent) {
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
-    std::vector<float> driver(forest.size());
-    parallel_for_ranges(driver.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) driver[e] = importance[e];
+    std::vector<float> weights(forest.size());
+    parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) weights[e] = importance[e];
     });
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const float parent = driver[forest.parent(first)];
-        for (std::uint32_t e = first; e < first + 4; ++e) driver[e] += share * (parent - driver[e]);
+        const float parent = weights[forest.parent(first)];
+        for (std::uint32_t e = first; e < first + 4; ++e) weights[e] += share * (parent - weights[e]);
     });
-    if (power == 1) return driver;
-    parallel_for_ranges(driver.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        raise(std::span(driver).subspan(begin, end - begin), power);
+    if (power == 1) return weights;
+    parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        raise(std::span(weights).subspan(begin, end - begin), power);
     });
-    return driver;
+    return weights;
 }
 
 }  // namespace interflect

@@ -366,7 +366,7 @@ RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
     walk_importance(state, for_importance);
     walk_light(state, plan.rays - for_importance, plan);
     const std::int64_t traced = state.power_rays + state.importance_rays - rays_before;
-    if (traced > 0) plan.rays = traced;  // else no eye sees what reflects, and the plan is used up
+    if (traced > 0) plan.rays = traced;  // else no view shows what reflects, and the plan is used up
     return escaped_;
 }
 

@@ -17,10 +17,10 @@ struct PathSeries {
 /// emitter, adds its power to what every patch that it hits receives, and goes on from there, uniformly on the patch,
 /// with the probability that the reflectance gives. All channels travel together; survival keeps their sum.
 ///
-/// With importance (Pattanaik and Mudur 1993, 1995) psi is found by random walks from the eyes, with the share alpha of
-/// the rays, and the particles are made proportional to power times psi: an emitter sends more of them, each with less;
-/// one that hits a patch is split where psi has risen, and dies sooner where it has fallen. A share beta of the paths
-/// starts by power alone. Unbiased for every psi while beta > 0.
+/// With importance (Pattanaik and Mudur 1993, 1995) psi is found by random walks from the cameras, with the share alpha
+/// of the rays, and the particles are made proportional to power times psi: an emitter sends more of them, each with
+/// less; one that hits a patch is split where psi has risen, and dies sooner where it has fallen. A share beta of the
+/// paths starts by power alone. Unbiased for every psi while beta > 0.
 ///
 /// Paths are followed to their end, so the rays of a batch come out a per cent or so off the plan. A walk needs no
 /// incremental start. Same seed, same bits, for any number of threads. Cost: O(N log(patches)) time on all threads, 150
@@ -31,8 +31,9 @@ class RandomWalks {
     /// @param run  On a forest of one element a patch; some patch emits.
     explicit RandomWalks(SolverState& state);
 
-    /// Follows paths that take about plan.rays rays, and merges what they bring with the past (Eq. 6). A batch counts
-    /// by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a bias.
+    /// Follows paths that take about plan.rays rays, and merges what they bring with the running mean (Eq. 6). A batch
+    /// counts by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a
+    /// bias.
     /// @param plan  Its rays become those that were traced.
     /// @return The power that leaves the scene, by all batches so far.
     RgbD iterate(SolverState& state, IterationPlan& plan);

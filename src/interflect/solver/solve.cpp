@@ -56,7 +56,7 @@ void require_valid(const Scene& scene, const SolveOptions& o) {
     require_no_faults(faults, "cannot solve", scene);
 }
 
-/// One iteration: what is received in one bounce of the present estimate, merged with the past.
+/// One iteration: what is received in one bounce of the present estimate, merged with the running mean.
 /// @return The power that left the scene.
 RgbD iterate(SolverState& state, IterationPlan& plan) {
     Solution& solution = state.solution;
@@ -76,8 +76,8 @@ RgbD iterate(SolverState& state, IterationPlan& plan) {
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         const Radiosity light(state.materials, solution.irradiance);
-        const ImportanceWeights driver = importance_weights(solution, state.neighbourhoods);
-        TransportStep step = power_step(state.materials, solution, light, driver, combined, rays).step;
+        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods);
+        TransportStep step = power_step(state.materials, solution, light, weights, combined, rays).step;
         const bool deferred = state.options.defer_refinement && plan.warms_up;
         if (state.options.method.refines && !deferred)
             step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());

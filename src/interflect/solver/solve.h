@@ -164,7 +164,7 @@ struct Monitor {
 
 /// Solves Eq. 1 of Prikryl et al. 2000 for the irradiance of every element: each iteration shoots N rays, chosen by
 /// power (Eq. 3) or by power and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is
-/// merged with the past (Eq. 6).
+/// merged with the running mean (Eq. 6).
 /// @param ray_caster  Of the same scene.
 /// @throws InputError listing every option out of range and every fault of the scene; for a ray caster of another scene
 ///         and for a view that defines no picture. A scene without light is legal.

@@ -55,8 +55,8 @@ float pixel_area(const SolverState& state, std::uint32_t element);
 /// Gives elements from `first` on, made since, what their parents have.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the rays that have been averaged: as the mesh gets finer, what an eye sees of each
-/// element must be known as well.
+/// Adds camera rays in proportion to the rays that have been averaged: as the mesh gets finer, what a view shows of
+/// each element must be known as well.
 void refine_view_importance(SolverState& state);
 
 /// Adds a report of where the run stands. @param escaped_power  What the iteration lost.

@@ -56,22 +56,22 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
                            : o.total_importance                            ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
-    ImportanceWeights driver{importance_weight(forest, psi, o.importance_smoothing, o.importance_exponent), {}};
-    if (neighbourhoods.empty() || o.importance_smoothing == 0) return driver;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) driver.nearby.push_back(psi[i]);
-    neighbourhoods.smooth(forest, driver.nearby, taken_over);
-    for (float& x : driver.nearby) x = std::pow(x, static_cast<float>(o.importance_exponent));
-    return driver;
+    ImportanceWeights weights{importance_weight(forest, psi, o.importance_smoothing, o.importance_exponent), {}};
+    if (neighbourhoods.empty() || o.importance_smoothing == 0) return weights;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
+    neighbourhoods.smooth(forest, weights.nearby, taken_over);
+    for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance_exponent));
+    return weights;
 }
 
 PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosity& light,
-                     const ImportanceWeights& driver, bool combined, std::int64_t rays) {
+                     const ImportanceWeights& weights, bool combined, std::int64_t rays) {
     TransportStep step;
-    const MixtureWeights shares = power_step_shares(so_far, combined, !driver.nearby.empty());
+    const MixtureWeights shares = power_step_shares(so_far, combined, !weights.nearby.empty());
     step.light = step.known_light = light;
     if (combined) step.importance = importance_of(so_far);
     auto [q, lost_leaves, power, weighted_power] =
-        mixture({materials, *so_far.forest, light, step.importance, driver.elements, driver.nearby}, shares);
+        mixture({materials, *so_far.forest, light, step.importance, weights.elements, weights.nearby}, shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;

@@ -41,10 +41,10 @@ struct PowerStep {
 /// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
 /// taken for unimportant the few rays that start there carry much. No oracle is set.
 /// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
-/// @param driver  importance_weights(so_far).
+/// @param weights  importance_weights(so_far).
 /// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
 PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosity& light,
-                     const ImportanceWeights& driver, bool combined, std::int64_t rays);
+                     const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
 /// it.

@@ -19,7 +19,7 @@ struct WeightedView {
     int pixel_rows = 720;      ///< Of the picture, > 0: elements need be no smaller than what a pixel shows.
 };
 
-/// Where eyes look: the points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
+/// The points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
 /// that they can be handed to elements anew whenever the mesh has changed.
 class ViewImportance {
   public:
@@ -30,10 +30,10 @@ class ViewImportance {
     /// view.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view);
 
-    bool empty() const { return points_.empty(); }  ///< No eye sees anything.
+    bool empty() const { return points_.empty(); }  ///< No view shows anything.
     std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
     std::int64_t views() const { return std::ssize(views_); }
-    /// v = V / A of every element [1/m^2]: V is the share of the picture through which an eye sees the element,
+    /// v = V / A of every element [1/m^2]: V is the share of the picture that shows the element,
     /// weighted over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
     /// @param at_patches  Spread each patch's V evenly over it.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
