@@ -1,11 +1,16 @@
 #include "apps/interflect/drawing_progress.h"
 
+#include "apps/interflect/signals.h"
+
 namespace interflect::command {
+
+DrawingProgress::DrawingProgress() { end_on_signal(); }
+
+DrawingProgress::~DrawingProgress() { stop_on_signal(); }
 
 PictureMonitor DrawingProgress::monitor() {
     start_ = std::chrono::steady_clock::now();
-    return {[this](const PictureProgress& progress) { show(progress); },
-            keeps_on_ ? nullptr : &stop_on_signal("no picture is written")};
+    return {[this](const PictureProgress& progress) { show(progress); }, nullptr};
 }
 
 void DrawingProgress::show(const PictureProgress& progress) {

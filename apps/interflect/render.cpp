@@ -90,18 +90,15 @@ Picture picture_of_light(const Image& light, std::int64_t non_finite_pixels, con
     return picture;
 }
 
-/// None where that was interrupted.
-std::optional<Picture> draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                                  const RenderArguments& options) {
+Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
     DrawingProgress progress;
     const Rendering rendering = render(solved.scene, *solved.solution.forest, ray_caster, view,
                                        solved.solution.irradiance, options.render, progress.monitor());
-    if (progress.interrupted()) return {};
     Picture picture = picture_of_light(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
                                       options.render.samples, options.render.seed, {}, progress.monitor());
-    if (progress.interrupted()) return {};
     return picture;
 }
 
@@ -114,18 +111,17 @@ int legend_rows(const RenderArguments& options) {
     return 0;
 }
 
-/// In false colours for people, as numbers in formats to measure with. None where that was interrupted.
-std::optional<Picture> draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                                     const RenderArguments& options) {
+/// In false colours for people, as numbers in formats to measure with.
+Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                      const RenderArguments& options) {
     const int rows = legend_rows(options);
     const CameraSampling sampling{options.size.width, options.size.height - rows, options.render.samples,
                                   options.render.seed};
     DrawingProgress progress;
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
-    if (progress.interrupted()) return {};
     const std::string label = label_of(options.shown);
     if (rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label);
-    return Picture{
+    return {
         is_for_people(options) ? std::move(drawn.shown) : std::move(drawn.values), label, {}, drawn.non_finite_pixels};
 }
 
@@ -172,9 +168,9 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     options.render.height = options.size.height;
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
-    const std::optional<Picture> picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                                                                      : draw_light(solved, ray_caster, view, options);
-    if (picture) write_picture(output, *picture, view, solved.scene, solved.solution.options.seed, options);
+    const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                                                       : draw_light(solved, ray_caster, view, options);
+    write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
 }
 

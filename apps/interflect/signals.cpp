@@ -14,9 +14,8 @@ namespace interflect::command {
 namespace {
 
 constexpr std::array<int, 3> stop_signals = {SIGINT, SIGTERM, SIGHUP};
-std::atomic<const char*> stop_outcome{nullptr};  // null: the first signal ends the process
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free);  // for handlers
+std::atomic<bool> first_only_stops{false}, stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may use it
 
 void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
@@ -28,13 +27,10 @@ void end_process(int signal) {
 }
 
 extern "C" void handle_stop_signal(int signal) {
-    const char* const outcome = stop_outcome;
-    if (!outcome || stop_requested.exchange(true)) return end_process(signal);
+    if (!first_only_stops || stop_requested.exchange(true)) return end_process(signal);
     const int errno_before = errno;
     if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar
-    say("stopping, ");
-    say(outcome);
-    say("; once more ends at once, keeping nothing\n");
+    say("stopping, keeping what there is; once more ends at once, keeping nothing\n");
     errno = errno_before;
 }
 
@@ -56,10 +52,12 @@ void handle_signals() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-const std::atomic<bool>& stop_on_signal(const char* outcome) {
-    stop_outcome = outcome;
+const std::atomic<bool>& stop_on_signal() {
+    first_only_stops = true;
     return stop_requested;
 }
+
+void end_on_signal() { first_only_stops = false; }
 
 bool is_stop_requested() { return stop_requested; }
 

@@ -11,9 +11,11 @@ void handle_signals();
 
 /// From now on the first of SIGINT, SIGTERM and SIGHUP sets a flag, and says so; only the second ends the process. To
 /// be called before work that can be ended early, and then holds for the writing of its results too.
-/// @param outcome  What is said to become of the work; of static lifetime.
-/// @return         The flag.
-const std::atomic<bool>& stop_on_signal(const char* outcome = "keeping what there is");
+/// @return The flag.
+const std::atomic<bool>& stop_on_signal();
+
+/// From now on the first signal ends the process again.
+void end_on_signal();
 
 /// Whether the flag is set.
 bool is_stop_requested();

@@ -13,6 +13,8 @@ NOT_VARIED = {"--help", "--version", "--output", "--stats", "--view", "--view-fi
 LIMITS = {"--rays", "--time"}  # one of which every solve keeps
 TIME = 0.3  # [s] that solves are given
 TOO_LONG = 1.5  # [s] after which what has no limit on its time is ended
+LARGEST_PICTURE = "16384x16384"
+SECONDS_TO_GET_ITS_MEMORY = 10  # 3 GiB, page by page
 
 NO_NUMBERS = ("", " ", "nan", "-nan", "inf", "-inf", "1e400", "x", "1 2", "1e", "--1", "1\x1b[31m", "\u0663", "1,5,", "0x")
 NUMBERS = ("0", "-1", "1", "2", "0.5", "-0", "+1", "007", "1e-45", "1e-400", "1e18", "1e19", "1e38", "1e39", "1e300", "-1e300")
@@ -33,7 +35,7 @@ TYPICAL = {
     "STOPS": ("-100", "-20", "0", "20", "100"),
     "TEXT": ("1", "50", "1k"),
     "UINT": ("0", "1", "4294967295", "18446744073709551615"),
-    "WxH": ("1x1", "1x16384", "16384x1", "64x3", "16384x16384"),
+    "WxH": ("1x1", "1x16384", "16384x1", "64x3", LARGEST_PICTURE),
 }
 MUCH_WORK = ("--rays-per-iteration=1e11", "--rays-per-iteration=1e9", "--camera-rays=4194304")
 MUCH_WORK += ("--warm-up=1000000", "--min-area=1e-12")
@@ -191,6 +193,8 @@ def ended_when_too_long(case):
     """What is asked to do much may take long, but a signal ends it, and then it leaves what is whole or nothing."""
     case.signals = (Signal(signal.SIGTERM, TOO_LONG),)
     case.seconds += TOO_LONG
+    if any(LARGEST_PICTURE in argument for argument in case.arguments):
+        case.seconds += SECONDS_TO_GET_ITS_MEMORY
     case.allowed |= {INTERRUPTED, -signal.SIGTERM}
     return case
 
