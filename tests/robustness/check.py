@@ -221,7 +221,7 @@ def later_run_tidies_up(output, *arguments):
     def check(run):
         yield from succeeds(run, *arguments)
         names = {path.relative_to(run.folder.parent).as_posix() for path in run.folder.parent.rglob("*")}
-        known = {f"work/{name}" for name in (*run.before, output)} | {"work", "temporary"}
+        known = {f"run/{name}" for name in (*run.before, output)} | {"run", "temporary"}
         for name in sorted(names - known):
             yield Fault(LEFTOVER, f"{name!a}, even after a later run")
 

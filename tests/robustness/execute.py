@@ -34,7 +34,7 @@ def snapshot(folder):
     for parent, folders, files in os.walk(folder):
         for name in folders + files if parent != str(folder) else ():
             path = os.path.join(parent, name)
-            found[os.path.relpath(path, folder / "work")] = state_of(path)
+            found[os.path.relpath(path, folder / "run")] = state_of(path)
     return found
 
 
@@ -107,7 +107,7 @@ def executed(program, case, folder, patience):
 
     @param folder    Empty; the command works in its subfolder `work` and has `temporary` for temporary files.
     @param patience  Factor on how long anything may take, for programs with sanitizers."""
-    work = folder / "work"
+    work = folder / "run"
     work.mkdir()
     (folder / "temporary").mkdir()
     write_files(work, case.files)
@@ -121,7 +121,7 @@ def executed(program, case, folder, patience):
 
 
 def watched(program, case, folder, patience):
-    work, variables = folder / "work", environment(folder / "temporary")
+    work, variables = folder / "run", environment(folder / "temporary")
     before = snapshot(folder)
     process = subprocess.Popen(
         ["/bin/sh", "-c", case.command_line(program)],

@@ -181,7 +181,7 @@ def scene_through_link(rng, seeds):
 
 def same_file_twice(rng, seeds):
     """No output replaces an input, or another output, under any name."""
-    other = rng.choice(("", "./", "../work/"))
+    other = rng.choice(("", "./", "../run/"))
     uses = (
         ["solve", "room.mgf", "-o", "out.h5", "--stats", other + "out.h5", *ROOM_RAYS],
         ["solve", "room.mgf", "-o", "out.h5", "--stats", other + "room.mgf", *ROOM_RAYS],
