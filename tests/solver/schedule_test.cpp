@@ -127,6 +127,19 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
     EXPECT_EQ(schedule.next(11).rays, 0);
 }
 
+TEST(Schedule, HasAShortIterationBeforeLongOnesUnlessTheirNumberIsAskedFor) {
+    SolveOptions options;
+    options.rays = options.rays_per_iteration = most_rays_per_iteration;
+    Schedule schedule(options, patches);
+    const std::vector<IterationPlan> plans = all_plans(schedule);
+    ASSERT_EQ(plans.size(), 2u);
+    EXPECT_EQ(plans[0].rays, 50'000);
+    EXPECT_EQ(schedule.rays(), most_rays_per_iteration);
+    options.iterations = 1;
+    Schedule counted(options, patches);
+    EXPECT_EQ(counted.next(0).rays, most_rays_per_iteration);
+}
+
 TEST(Schedule, FindsOutHowFastItIsBeforeALongIterationUnderALimitOfTime) {
     SolveOptions options;
     options.rays = options.rays_per_iteration = most_rays_per_iteration;

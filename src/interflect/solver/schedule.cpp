@@ -57,6 +57,9 @@ IterationPlan Schedule::next(double seconds) {
     if (options_.rays_per_iteration == 0 && !warming_up)
         rays = std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_)), smallest_,
                           largest_iteration);
+    // A long one is lost if it is cut short: there is a short one before it, so that then something is known.
+    const bool counts_iterations = options_.iterations > 0 || options_.warm_up > 0;
+    if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;
     // What would remain for a last iteration of less than half the size goes into this one.
     if (left < rays + rays / 2) rays = left;
     if (std::isfinite(options_.seconds)) rays = std::min(rays, affordable_rays(seconds));

@@ -15,7 +15,8 @@ struct IterationPlan {
 
 /// How many rays the next iteration gets. Iterations are averaged by their ray counts, tau = N_m / (N_1 + ... + N_m) in
 /// Eq. 6, which is the paper's 1/m when all have the same; without a fixed size they grow with what was averaged
-/// before, so that early iterations, which still lack late bounces and a fine mesh, soon weigh little.
+/// before, so that early iterations, which still lack late bounces and a fine mesh, soon weigh little. A size beyond
+/// 2^24 rays holds from the second iteration on, unless their number is asked for.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
