@@ -1,12 +1,14 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #if defined(__SANITIZE_THREAD__)
@@ -23,6 +25,11 @@
 #endif
 
 namespace interflect {
+
+/// One T for each thread that asks for it. Its memory is malloc's: what TBB's own allocator hands from thread to thread
+/// ThreadSanitizer cannot follow.
+template <class T>
+using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
 /// Calls body(begin, end) for ranges that partition [0, count), on all threads; each range is at most `grain` long and
 /// starts at a multiple of it, so that the partition does not depend on the number of threads.

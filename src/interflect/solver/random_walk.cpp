@@ -1,7 +1,5 @@
 #include "interflect/solver/random_walk.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -120,7 +118,7 @@ class PathBatch {
 
     const Sums& follow() {
         if (!(quantum_ > 0)) return sums_;
-        tbb::enumerable_thread_specific<Wavefront> wavefronts;
+        PerThread<Wavefront> wavefronts;
         const auto follow_some = [&](std::size_t begin, std::size_t end) {
             follow(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), wavefronts.local());
         };

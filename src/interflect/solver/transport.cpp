@@ -1,7 +1,5 @@
 #include "interflect/solver/transport.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -321,7 +319,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     arrivals.begin(forest.size());
     const std::uint32_t old_size = forest.size();
     std::optional<GatheredImportance> gathered = gathered_by(step, materials, forest);
-    tbb::enumerable_thread_specific<Batch> batches([&] {
+    PerThread<Batch> batches([&] {
         return Batch({materials, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
     });
     const auto trace_batch = [&](std::size_t begin, std::size_t end) {
