@@ -21,6 +21,9 @@ constexpr float assumed_variation = 0.1f;
 /// half where it has edges; bounds for what is measured.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
+/// Siblings are young as long as they have met a smaller share of the rays that their parent has.
+constexpr float young = 0.125f, highest_expected_decay = 0.5f;
+
 bool uses_shrinkage(const SolverState& state) { return state.options.shrinkage && refines_by_variance(state.options); }
 
 /// The mean square errors that an element has beyond those of its parent.
@@ -193,9 +196,11 @@ Sums sum_errors(const SolverState& state, const ElementErrors& errors) {
 
 }  // namespace
 
-float Detail::shrinkage() const { return spread > noise ? 1 - noise / spread : 0.0f; }
+float Detail::shrinkage() const { return spread > noise ? std::min(1 - noise / spread, most_kept) : 0.0f; }
 
 float Detail::risk() const {
+    if (spread > noise && shrinkage() == most_kept)
+        return most_kept * most_kept * noise + (1 - most_kept) * (1 - most_kept) * signal();
     // Of y = signal + noise in d = 3 dimensions, reduced by the factor 1 - d sigma^2 / |y|^2 or to zero.
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
@@ -212,12 +217,26 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
         spread += a * difference * difference;
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
-    return {spread / area, variance / area};
+    Detail detail{spread / area, variance / area};
+    // Siblings that are much younger than their parent have met few rays. What is left of their noise when it is
+    // reduced by itself would be more than what they can differ by: that is then taken from the parent's siblings.
+    const std::uint32_t parent = forest.parent(first);
+    if (state.history[first] < young * state.history[parent]) {
+        const float expected = parent < forest.patch_count()
+                                   ? assumed_variation * mean * (assumed_variation * mean)
+                                   : highest_expected_decay * std::max(0.0f, detail_of(state, first_sibling(forest, parent)).signal());
+        detail.most_kept = expected / (expected + detail.noise);
+    }
+    return detail;
 }
 
 void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t rays) {
     const auto weight = [&](std::uint32_t e) { return error_weight(state, e) * state.forest->area(e); };
-    if (uses_shrinkage(state) && state.noise.is_known()) state.risk_check.add(check_risk(state, fresh));
+    if (uses_shrinkage(state) && state.noise.is_known()) {
+        constexpr double long_enough = 0.25;  // share of what was averaged before
+        const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
+        state.risk_check.add(check_risk(state, fresh), std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
+    }
     state.noise.add(*state.forest, fresh, state.solution.irradiance, state.history, static_cast<float>(rays), weight);
 }
 

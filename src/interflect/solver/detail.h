@@ -13,6 +13,7 @@ namespace interflect {
 struct Detail {
     float spread = 0;  ///< Area-weighted mean square of their differences from the parent: signal and noise.
     float noise = 0;   ///< The expected part of it that is noise; infinite where nothing was measured yet.
+    float most_kept = 1;  ///< Of the differences: less where few of the rays that their parent has met have met them.
 
     /// Unbiased; may be negative.
     float signal() const { return spread - noise; }

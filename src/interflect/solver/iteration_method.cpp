@@ -17,7 +17,11 @@ IterationPlan IterationMethod::plan(SolverState& state) {
 
 void IterationMethod::finish(SolverState& state) const { finish_solution(state); }
 
-void IterationMethod::retarget(SolverState& state) { look(state); }
+void IterationMethod::retarget(SolverState& state) {
+    look(state);
+    state.rays_of_other_views = state.schedule.averaged_rays();
+    state.schedule.restart();
+}
 
 std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state) {
     switch (state.options.method.scheme) {

@@ -1,5 +1,8 @@
 #include "interflect/solver/merge.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "interflect/base/parallel.h"
 
 namespace interflect {
@@ -23,13 +26,14 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
     return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
+/// @param most_history  Rays that any element's mean stands for at most.
 template <class T>
 void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
-                const IterationPlan& plan) {
+                const IterationPlan& plan, float most_history = std::numeric_limits<float>::infinity()) {
     const ElementForest& forest = *state.forest;
     const auto rays = static_cast<float>(plan.rays);
     const auto merge_one = [&](std::uint32_t e) {
-        const float tau = plan.warms_up ? 1.0f : rays / (state.history[e] + rays);
+        const float tau = plan.warms_up ? 1.0f : rays / (std::min(state.history[e], most_history) + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
     parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
@@ -75,7 +79,9 @@ void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::
 
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan) {
-    merge_into(state, mean, received, plan);
+    if (state.rays_of_other_views == 0) return merge_into(state, mean, received, plan);
+    const std::int64_t of_these_views = state.schedule.averaged_rays() - state.rays_of_other_views;
+    merge_into(state, mean, received, plan, static_cast<float>(of_these_views));
 }
 
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new) {

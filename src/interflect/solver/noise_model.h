@@ -47,6 +47,10 @@ class NoiseModel {
     void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
+    /// From now on one ray causes so many times the variance, by patch.
+    void scale_by_patch(const ElementForest& forest, std::span<const float> factor) {
+        for (std::uint32_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] *= factor[forest.patch(e)];
+    }
     std::size_t elements() const { return per_ray_.size(); }
     void archive(StateArchive& archive) {
         archive("noise/per_ray", per_ray_);

@@ -169,6 +169,85 @@ void Passes::make_first_estimate(SolverState& state) {
     report(state, 0, escaped_power_);
 }
 
+namespace {
+
+/// How rays that carry power are shared among the elements now.
+std::vector<float> power_sampling(const SolverState& state) {
+    const Radiosity light(state.materials, state.solution.irradiance);
+    const ImportanceWeights weights = importance_weights(state.solution, state.neighbourhoods);
+    return power_step(state.materials, state.solution, light, weights, false, 0).step.q;
+}
+
+/// What the leaves' light matters to the views, by element: power times importance.
+std::vector<double> contributions(const SolverState& state, const std::vector<float>& importance) {
+    const Radiosity light(state.materials, state.solution.irradiance);
+    std::vector<double> sums(state.forest->size(), 0.0);
+    for (std::uint32_t e = 0; e < sums.size(); ++e)
+        if (state.forest->is_leaf(e))
+            sums[e] = static_cast<double>(channel_sum(light.of(*state.forest, e))) * state.forest->area(e) *
+                      importance[state.forest->patch(e)];
+    return sums;
+}
+
+/// By how much the variance of what matters to some views changes per ray when rays start otherwise: a source's light
+/// comes in quanta in proportion to its power over its share of the rays.
+float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
+                  const std::vector<float>& new_q) {
+    constexpr double largest = 256;
+    const Radiosity light(state.materials, state.solution.irradiance);
+    const std::vector<double> contribution = contributions(state, importance);
+    double before = 0, now = 0;
+    for (std::uint32_t e = 0; e < contribution.size(); ++e) {
+        if (!(contribution[e] > 0 && old_q[e] > 0 && new_q[e] > 0)) continue;
+        const double power = static_cast<double>(channel_sum(light.of(*state.forest, e))) * state.forest->area(e);
+        before += contribution[e] * power / old_q[e];
+        now += contribution[e] * power / new_q[e];
+    }
+    return before > 0 ? static_cast<float>(std::clamp(now / before, 1 / largest, largest)) : 1.0f;
+}
+
+}  // namespace
+
+void Passes::retarget(SolverState& state) {
+    const ImportanceUse before = importance_use(state.solution);
+    const bool keeps_light = state.schedule.averaged_rays() > 0 && before == ImportanceUse::full;
+    if (keeps_light && old_q_.empty()) {
+        old_q_ = power_sampling(state);
+        const Importance psi = importance_of(state.solution);
+        for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) old_importance_.push_back(psi[i]);
+    }
+    IterationMethod::retarget(state);
+    importance_ = {};
+    if (pass_.is_under_way) pass_.weights = importance_weights(state.solution, state.neighbourhoods);
+    finds_importance_ = stage_ != Stage::importance && importance_use(state.solution) == ImportanceUse::full;
+    if (!finds_importance_) old_q_.clear(), old_importance_.clear();
+}
+
+/// Finds importance for the views. What was averaged before counts as many of the new rays as would cause its noise:
+/// few where the new views make rays gather, many where they leave.
+void Passes::adapt_to_views(SolverState& state) {
+    if (!importance_.is_under_way) rays_before_adaptation_ = rays_so_far(state);
+    start_importance(state, state.schedule.start_rays());
+    finds_importance_ = false;
+    state.schedule.count_other_rays(rays_so_far(state) - rays_before_adaptation_);
+    const std::vector<float> old_q = std::exchange(old_q_, {}), old_psi = std::exchange(old_importance_, {});
+    if (old_q.size() != state.forest->size()) return;
+    const std::vector<float> new_q = power_sampling(state);
+    const Importance psi = importance_of(state.solution);
+    std::vector<float> new_psi;
+    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) new_psi.push_back(psi[i]);
+    const float here = noise_ratio(state, new_psi, old_q, new_q), there = noise_ratio(state, old_psi, old_q, new_q);
+    std::vector<float> ratio(state.forest->patch_count());
+    for (std::uint32_t i = 0; i < ratio.size(); ++i) {
+        const float both = new_psi[i] + old_psi[i], share = both > 0 ? new_psi[i] / both : 0.5f;
+        ratio[i] = std::exp(share * std::log(here) + (1 - share) * std::log(there));
+    }
+    for (std::uint32_t e = 0; e < state.history.size(); ++e) state.history[e] *= ratio[state.forest->patch(e)];
+    for (std::uint32_t e = 0; e < unshot_.size(); ++e) unshot_[e] *= ratio[state.forest->patch(e)];
+    state.noise.scale_by_patch(*state.forest, ratio);
+    if (getenv("DBG")) fprintf(stderr, "here %g there %g\n", double(here), double(there));
+}
+
 void Passes::archive(StateArchive& archive) {
     archive("passes/stage", stage_);
     archive("passes/importance/is_under_way", importance_.is_under_way);
@@ -188,6 +267,10 @@ void Passes::archive(StateArchive& archive) {
     archive("passes/unshot", unshot_);
     archive("passes/unshot_rays", unshot_rays_);
     archive("passes/bounces", bounces_);
+    archive("passes/finds_importance", finds_importance_);
+    archive("passes/old_q", old_q_);
+    archive("passes/old_importance", old_importance_);
+    archive("passes/rays_before_adaptation", rays_before_adaptation_);
     archive("passes/is_final", is_final_);
     archive("passes/escaped_power", escaped_power_);
     archive("passes/importance_step_is_done", importance_step_is_done_);
@@ -201,7 +284,8 @@ bool Passes::fits(const ElementForest& forest) const {
     const bool importance_fits = !importance_.is_under_way || importance_.unshot.size() == forest.size();
     return stage_ >= Stage::importance && stage_ <= Stage::done && pass_fits && importance_fits &&
            is_whole(pass_.fresh.irradiance) && is_whole(pass_.fresh.variance) && is_whole(pass_.weights.elements) &&
-           is_whole(unshot_) &&
+           is_whole(unshot_) && is_whole(old_q_) &&
+           (old_q_.empty() || old_importance_.size() == forest.patch_count()) &&
            (pass_.weights.nearby.empty() || pass_.weights.nearby.size() == forest.patch_count()) &&
            elements_before_ <= forest.size();
 }
@@ -211,6 +295,7 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         importance_use(state.solution) == ImportanceUse::full && state.options.separate_iterations;
     const std::int64_t for_importance =
         has_importance_step ? std::llround(state.options.alpha * static_cast<double>(plan.rays)) : 0;
+    if (finds_importance_ && !importance_step_is_done_) adapt_to_views(state);
     if (!importance_step_is_done_) {
         escaped_power_ = RgbD(0, 0, 0);
         rays_before_ = rays_so_far(state);

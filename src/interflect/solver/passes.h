@@ -38,6 +38,8 @@ class Passes : public IterationMethod {
     void prepare(SolverState& state) override;
     /// A pass: its estimate is merged with the mean of those before (Eq. 6), then the mesh is refined.
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    /// What is known of the light is kept, and counts as much as it is worth.
+    void retarget(SolverState& state) override;
     void archive(StateArchive& archive) override;
     bool fits(const ElementForest& forest) const override;
 
@@ -46,6 +48,7 @@ class Passes : public IterationMethod {
 
   private:
     void start_importance(SolverState& state, std::int64_t rays);
+    void adapt_to_views(SolverState& state);
     FreshEstimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
     void begin_pass(SolverState& state, std::int64_t rays);
     std::int64_t trace_bounce(SolverState& state, std::int64_t rays, bool oracle_refines);
@@ -61,6 +64,9 @@ class Passes : public IterationMethod {
     double unshot_rays_ = 0;
     /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
     double bounces_ = 0;
+    bool finds_importance_ = false;                // before the next iteration: the views have changed
+    std::vector<float> old_q_, old_importance_;    // how rays were shared before, and by what, of patches
+    std::int64_t rays_before_adaptation_ = 0;
     bool is_final_ = false;               // no other pass will shoot what this one leaves
     RgbD escaped_power_{0, 0, 0};         // of this iteration
     bool importance_step_is_done_ = false;

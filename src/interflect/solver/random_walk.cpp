@@ -360,6 +360,13 @@ void RandomWalks::walk_light(SolverState& state, std::int64_t rays, const Iterat
     std::fill(state.history.begin(), state.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
+void RandomWalks::retarget(SolverState& state) {
+    IterationMethod::retarget(state);
+    importance_history_ = 0;
+    importance_.pilot_rays = 0;
+    importance_is_done_ = false;
+}
+
 void RandomWalks::archive(StateArchive& archive) {
     archive("random_walk/light", light_);
     archive("random_walk/importance", importance_);

@@ -38,6 +38,7 @@ class RandomWalks : public IterationMethod {
     /// bias.
     /// @return The power that leaves the scene, by all batches so far.
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    void retarget(SolverState& state) override;
     void archive(StateArchive& archive) override;
 
   private:

@@ -13,9 +13,10 @@ struct RiskCheck {
         return *this;
     }
     /// Enters one iteration's; earlier ones count half as much with each.
-    void add(const RiskCheck& fresh) {
-        expected = expected / 2 + fresh.expected;
-        measured = measured / 2 + fresh.measured;
+    /// @param weight  In [0, 1]: less for iterations that are too short to tell much.
+    void add(const RiskCheck& fresh, double weight) {
+        expected = expected * (1 - weight / 2) + weight * fresh.expected;
+        measured = measured * (1 - weight / 2) + weight * fresh.measured;
     }
     /// What expected errors are to be multiplied by; 1 where nothing is known.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }

@@ -59,7 +59,7 @@ IterationPlan Schedule::next(double seconds) {
     const std::int64_t left = options_.rays - rays_;
     std::int64_t rays = smallest_;
     if (options_.rays_per_iteration == 0 && !warming_up)
-        rays = std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_)), smallest_,
+        rays = std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)), smallest_,
                           largest_iteration);
     // A long one is lost if it is cut short: there is a short one before it, so that then something is known.
     const bool counts_iterations = options_.iterations > 0 || options_.warm_up > 0;
@@ -83,6 +83,7 @@ void Schedule::archive(StateArchive& archive) {
     archive("schedule/smallest", smallest_);
     archive("schedule/rays", rays_);
     archive("schedule/averaged_rays", averaged_rays_);
+    archive("schedule/averaged_at_restart", averaged_at_restart_);
     archive("schedule/finished", finished_);
     archive("schedule/is_over", is_over_);
     archive("schedule/planned_at", planned_at_);

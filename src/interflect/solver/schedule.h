@@ -33,6 +33,10 @@ class Schedule {
     /// Whether there is no next one, however much time is left.
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
+    /// Iterations begin small again, and grow with what is averaged from now on.
+    void restart() { averaged_at_restart_ = averaged_rays_; }
+    /// Enters rays that are averaged with none.
+    void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
     /// Replaces SolveOptions::rays and ::seconds; what they made of the first iterations stays.
     void set_limits(std::int64_t rays, double seconds);
@@ -49,6 +53,7 @@ class Schedule {
     std::int64_t smallest_;           // iteration [rays]
     std::int64_t rays_ = 0;           // traced so far
     std::int64_t averaged_rays_ = 0;  // of them in the running mean
+    std::int64_t averaged_at_restart_ = 0;
     int finished_ = 0;                // iterations
     bool is_over_ = false;            // the final one is done
     double planned_at_ = 0;           // when the last iteration was planned [s],

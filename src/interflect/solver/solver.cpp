@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "interflect/base/error.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/solver/detail.h"
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/require_solvable.h"
 
@@ -25,21 +27,16 @@ struct Solver::Run {
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
     bool is_prepared = false, is_finished = false;
+    double error = std::numeric_limits<double>::infinity();  // estimated, for the present views
     int iteration = 0;
     IterationPlan plan;                       // of the iteration under way; 0 rays: there is none
     std::optional<Solution> finished;  // solution() as of now
 
     void iterate_until(const Limits& limits);
     IterationPlan next_plan(std::int64_t rays_asked_for);
-    bool is_reached(double error) const;
     void limit_time();
     Solution snapshot();
 };
-
-bool Solver::Run::is_reached(double error) const {
-    const std::vector<IterationReport>& reports = state.solution.iterations;
-    return !reports.empty() && reports.back().error_estimate <= error;
-}
 
 void Solver::Run::limit_time() { state.stop.limit_time(state.start, state.options.seconds - state.earlier_seconds); }
 
@@ -62,7 +59,7 @@ void Solver::Run::iterate_until(const Limits& limits) {
     if (!is_prepared) method->prepare(state);
     is_prepared = true;
     limit_time();
-    while (!is_reached(std::max(limits.error, state.options.until)) && state.schedule.rays() < rays_asked_for) {
+    while (!(error <= std::max(limits.error, state.options.until)) && state.schedule.rays() < rays_asked_for) {
         if (plan.rays == 0) plan = next_plan(rays_asked_for);
         is_finished = plan.rays == 0;
         if (is_finished) return;
@@ -72,8 +69,9 @@ void Solver::Run::iterate_until(const Limits& limits) {
         state.schedule.done(plan);
         plan = {};
         report(state, ++iteration, escaped_power);
+        error = state.solution.iterations.back().error_estimate;
     }
-    is_finished = plan.rays == 0 && (is_reached(state.options.until) || method->is_fulfilled(state));
+    is_finished = plan.rays == 0 && (error <= state.options.until || method->is_fulfilled(state));
 }
 
 /// With a forest of its own, since that of the run grows.
@@ -130,8 +128,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     }
     const bool is_out_of_time = state.seconds() >= state.options.seconds;
     state.end_work();
-    const std::vector<IterationReport>& reports = state.solution.iterations;
-    return {.error = !is_lit ? 0 : reports.empty() ? AdvanceReport().error : reports.back().error_estimate,
+    return {.error = is_lit ? run.error : 0,
             .rays = state.schedule.rays(),
             .seconds = state.earlier_seconds,
             .is_finished = !is_lit || run.is_finished || is_out_of_time,
@@ -148,6 +145,7 @@ void Solver::set_views(std::vector<WeightedView> views) {
     run.is_finished = false;
     run.state.solution.options.views = std::move(options.views);
     run.method->retarget(run.state);
+    run.error = solution_error(run.state).total();
 }
 
 void Solver::set_plan(std::int64_t rays, double seconds, double until) {
@@ -181,6 +179,7 @@ void Solver::archive(StateArchive& archive) {
         throw std::runtime_error("the state of the run: arrays and elements differ in number");
     archive("is_prepared", run_->is_prepared);
     archive("is_finished", run_->is_finished);
+    archive("error", run_->error);
     archive("iteration", run_->iteration);
     archive("plan/rays", run_->plan.rays);
     archive("plan/warms_up", run_->plan.warms_up);
