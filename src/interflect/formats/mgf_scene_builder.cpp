@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "interflect/base/error.h"
+#include "interflect/geometry/polygon.h"
 #include "interflect/scene/limits.h"
-#include "interflect/scene/polygon.h"
 
 namespace interflect {
 

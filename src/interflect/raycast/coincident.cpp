@@ -6,10 +6,10 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/geometry/flat_surfaces.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/raycast/covered_area.h"
 #include "interflect/raycast/face_overlap.h"
-#include "interflect/scene/flat_surfaces.h"
-#include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
 

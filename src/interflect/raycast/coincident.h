@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/box_tree.h"
-#include "interflect/raycast/ranked_bits.h"
+#include "interflect/base/ranked_bits.h"
+#include "interflect/geometry/box_tree.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {

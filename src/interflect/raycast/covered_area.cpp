@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {
 

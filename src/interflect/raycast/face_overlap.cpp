@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "interflect/base/box_tree.h"
 #include "interflect/base/parallel.h"
+#include "interflect/geometry/box_tree.h"
 
 namespace interflect {
 
