@@ -11,17 +11,17 @@
 
 namespace interflect {
 
-/// Something with a box around it, as an element of a box tree.
+/// An element of a box tree: an object, by its index, and its bounding box.
 struct Boxed {
-    Imath::Box3f box;         ///< Once in a tree: around everything in this element's subtree.
-    std::uint32_t index = 0;  ///< What it stands for.
+    Imath::Box3f box;         ///< In an arranged tree: of all elements of its subtree.
+    std::uint32_t index = 0;  ///< Of the object.
 };
 
-/// Orders `elements` as a tree of boxes that needs no room of its own: the middle element is the root, those before and
-/// after it are its subtrees. O(n log n).
+/// Orders `elements` as an implicit bounding volume hierarchy: the middle element is the root, those before and after
+/// it are its subtrees. O(n log n).
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
-    Imath::Box3f all, centres;  // centres: twice them
+    Imath::Box3f all, centres;  // of twice the centres
     for (const Boxed& e : elements) {
         all.extendBy(e.box);
         centres.extendBy(e.box.min + e.box.max);
@@ -44,8 +44,8 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
     elements[middle].box = all;
 }
 
-/// Calls visit(index) for every element of an arranged tree but those whose subtree's box `reaches` (box -> bool) turns
-/// down. What is visited may lie outside: an element's own box is no longer there to be asked.
+/// Calls visit(index) for every element of an arranged tree whose subtree's box, and those of all subtrees around it,
+/// `reaches` (box -> bool) accepts. An element's own box is not kept, so the element itself may lie outside.
 template <class Reaches, class Visit>
 void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
     if (tree.empty()) return;

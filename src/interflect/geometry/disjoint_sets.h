@@ -8,7 +8,7 @@
 
 namespace interflect {
 
-/// Sets of numbers that grow together (path halving); the lowest member represents its set.
+/// Disjoint sets of the numbers 0 ... size - 1 (union-find with path halving). The lowest member represents its set.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }

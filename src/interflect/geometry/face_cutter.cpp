@@ -33,7 +33,7 @@ struct Piece {
     std::vector<PlanarSegment> segments;
 };
 
-/// The cheapest way to tell equal candidates apart that does not depend on their order.
+/// Orders candidates of equal cost by their geometry, whatever their order in memory.
 auto geometric_order(const PlanarSegment& s) {
     return std::make_tuple(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), s.a.x + s.b.x, s.a.y + s.b.y);
 }
@@ -65,8 +65,8 @@ double chord_length(const PlanarPolygon& polygon, const Line& line) {
     return std::max(0.0, to - from);
 }
 
-/// What a cut costs: segments that it divides, which then need a cut on each side, its own length where nothing touches
-/// the face, and a little for lopsided halves.
+/// Cost of a cut: segments that it divides, which then need a cut on each side; its own length where nothing touches
+/// the face; and, with less weight, unequal halves.
 double cost_of(const Piece& piece, const Line& line, double tolerance) {
     constexpr double of_division = 2, of_free_length = 1, of_imbalance = 0.5;
     std::size_t divided = 0;
@@ -137,10 +137,10 @@ PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     return {moved(s.a), moved(s.b)};
 }
 
-/// Hands a piece's segments to its halves; those on the line become contacts.
+/// Distributes a piece's segments over its halves; those on the line become contacts.
 void distribute(const std::vector<PlanarSegment>& segments, const Line& line, const PlanarSegment& chord,
                 double tolerance, Piece& left, Piece& right, std::vector<PlanarSegment>& contacts) {
-    const auto give = [&](Piece& piece, PlanarSegment s) {
+    const auto add_to = [&](Piece& piece, PlanarSegment s) {
         if (clip_to_interior(piece.polygon, tolerance, s)) piece.segments.push_back(s);
     };
     for (const PlanarSegment& s : segments) {
@@ -150,20 +150,18 @@ void distribute(const std::vector<PlanarSegment>& segments, const Line& line, co
             contacts.push_back(moved_onto(chord, s));
         } else if (a * b < 0) {
             const V2d crossing = s.a + (s.b - s.a) * (ha / (ha - hb));
-            give(a > 0 ? left : right, {s.a, crossing});
-            give(b > 0 ? left : right, {crossing, s.b});
+            add_to(a > 0 ? left : right, {s.a, crossing});
+            add_to(b > 0 ? left : right, {crossing, s.b});
         } else {
-            give(a + b > 0 ? left : right, s);
+            add_to(a + b > 0 ? left : right, s);
         }
     }
 }
 
 /// How compact a polygon is: its area over its squared perimeter.
 double compactness(const PlanarPolygon& polygon) {
-    double perimeter = 0;
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        perimeter += (polygon[(i + 1) % polygon.size()].position - polygon[i].position).length();
-    return doubled_area(polygon) / (perimeter * perimeter);
+    const double border = perimeter(polygon);
+    return doubled_area(polygon) / (border * border);
 }
 
 /// Corners first ... last, cyclically.
@@ -196,13 +194,6 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
 }
 
 }  // namespace
-
-double doubled_area(const PlanarPolygon& polygon) {
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        sum += (polygon[i].position - polygon[0].position).cross(polygon[i + 1].position - polygon[0].position);
-    return sum;
-}
 
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment) {
     const V2d d = segment.b - segment.a;

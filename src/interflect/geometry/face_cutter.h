@@ -1,43 +1,22 @@
 #pragma once
 
-#include <ImathVec.h>
-
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/geometry/planar_polygon.h"
 
 namespace interflect {
 
-/// A corner of a planar polygon.
-struct PlanarCorner {
-    Imath::V2d position;          ///< In the plane's own frame [m].
-    std::uint32_t vertex = none;  ///< Its vertex in the scene; none for a new one.
-};
-
-/// Convex, counter-clockwise.
-using PlanarPolygon = std::vector<PlanarCorner>;
-
-struct PlanarSegment {
-    Imath::V2d a, b;
-
-    double length() const { return (b - a).length(); }
-};
-
-/// Twice the polygon's area [m^2].
-double doubled_area(const PlanarPolygon& polygon);
-
 /// The part of `segment` that runs through the polygon's interior: at least `tolerance` long, and not within
 /// `tolerance` of one edge all along.
-/// @return  Whether there is one; `segment` is it then.
+/// @return  Whether there is one; if so, `segment` becomes it.
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment);
 
-/// What cut_polygon() makes of a polygon.
+/// Result of cut_polygon().
 struct CutPolygon {
     std::vector<PlanarPolygon> pieces;    ///< Convex, any number of corners.
     std::vector<PlanarSegment> contacts;  ///< The segments, moved onto the edges that the cuts made.
-    bool reached_limit = false;           ///< Pieces that some segments still run through are left.
+    bool reached_limit = false;           ///< Segments still run through some of the pieces.
 };
 
 /// Binary space partition of a convex polygon by the lines of segments in its interior, each through the piece it lies
@@ -47,10 +26,10 @@ struct CutPolygon {
 CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segments, double tolerance,
                        std::size_t most_pieces);
 
-/// How long pieces may be.
+/// Limits of the shape of pieces.
 struct PieceShape {
     double largest_aspect = 4;  ///< Length over width of a quadrilateral.
-    double least_width = 0;     ///< Narrower ones may be as long as they are [m].
+    double least_width = 0;     ///< Narrower ones may have any length [m].
 };
 
 /// Divides a convex polygon into triangles and quadrilaterals by diagonals that leave compact parts, and long

@@ -46,15 +46,15 @@ V3d doubled_area(const Scene& scene, const Loop& loop) {
     return sum;
 }
 
-/// The outline's size, plane and rounding: what the decisions below are made with.
-struct Frame {
+/// Size, normal and rounding of an outline, by which polygons are classified.
+struct OutlinePlane {
     V3d normal{0};        ///< Unit length; zero where the outline has no area.
     double size = 0;      ///< Diagonal of the bounding box [m].
     double rounding = 0;  ///< Heights below this are noise [m].
     bool degenerate = true;
     bool self_crossing = false;  ///< Degenerate only since the outline goes round both ways.
 
-    Frame(const Scene& scene, const Loop& outline) {
+    OutlinePlane(const Scene& scene, const Loop& outline) {
         if (outline.size() < 3) return;
         Imath::Box3d box;
         double largest = 0;
@@ -85,7 +85,7 @@ struct Frame {
     }
 };
 
-bool is_convex_near_planar_quadrilateral(const Scene& scene, const Loop& loop, const Frame& frame) {
+bool is_convex_near_planar_quadrilateral(const Scene& scene, const Loop& loop, const OutlinePlane& frame) {
     if (loop.size() != 4) return false;
     const V3d centre = 0.25 * (position(scene, loop[0]) + position(scene, loop[1]) + position(scene, loop[2]) +
                                position(scene, loop[3]));
@@ -111,7 +111,7 @@ class PatchAdder {
         const auto index = static_cast<std::uint32_t>(scene_.patches.size());
         Patch front = front_;
         front.vertices = {a, b, c, d};
-        // The rest of the program computes in single precision: its word counts.
+        // In single precision, as all later computations.
         if (!(patch_area(scene_, front) >= smallest_face_area)) return;
         if (two_sided_) front.other_side = index + 1;
         scene_.patches.push_back(front);
@@ -134,7 +134,7 @@ class PatchAdder {
 /// GLU's tessellator with the odd winding rule: handles concave outlines, holes, seams and self-intersection.
 class Triangulation {
   public:
-    Triangulation(Scene& scene, const Frame& frame, std::uint32_t origin)
+    Triangulation(Scene& scene, const OutlinePlane& frame, std::uint32_t origin)
         : scene_(scene), frame_(frame), origin_(position(scene, origin)) {}
 
     /// The corners of the triangles, three each; empty where the tessellator gave up.
@@ -159,7 +159,7 @@ class Triangulation {
     static void ignore_edge_flag(GLboolean, void*) {}
 
     Scene& scene_;
-    const Frame& frame_;
+    const OutlinePlane& frame_;
     V3d origin_;
     std::deque<std::uint32_t> handles_;  // what the tessellator's vertex pointers point to; a deque does not move them
     std::vector<std::uint32_t> corners_;
@@ -213,7 +213,7 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
     for (const Loop& loop : loops) clean.push_back(without_repeats(scene, loop));
     if (clean.empty()) return PolygonResult::degenerate;
     const Loop& outline = clean[0];
-    const Frame frame(scene, outline);
+    const OutlinePlane frame(scene, outline);
     if (frame.degenerate) return frame.self_crossing ? PolygonResult::self_crossing : PolygonResult::degenerate;
 
     PatchAdder patches(scene, material, object, two_sided);
@@ -226,7 +226,7 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
         for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
             const Loop triangle(corners.begin() + static_cast<std::ptrdiff_t>(i),
                                 corners.begin() + static_cast<std::ptrdiff_t>(i + 3));
-            if (!Frame(scene, triangle).degenerate) patches.add(triangle[0], triangle[1], triangle[2]);
+            if (!OutlinePlane(scene, triangle).degenerate) patches.add(triangle[0], triangle[1], triangle[2]);
         }
     }
     return patches.result();

@@ -8,7 +8,7 @@
 
 namespace interflect {
 
-/// What became of a polygon that was offered to a scene.
+/// Result of add_polygon().
 enum class PolygonResult {
     added,          ///< At least one patch was added.
     degenerate,     ///< Nothing was added: the polygon is no wider than the rounding of its vertices.

@@ -8,7 +8,7 @@
 
 #include "interflect/base/error.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/geometry/vertex_pool.h"
+#include "interflect/geometry/vertex_weld.h"
 #include "interflect/scene/core.h"
 
 namespace interflect {
@@ -50,9 +50,9 @@ void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> ve
     split.patches.push_back(back);
 }
 
-void split_quadrilateral(Scene& split, VertexPool& pool, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
+void split_quadrilateral(Scene& split, VertexWeld& weld, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
     const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
-        return pool.add(geometry.point(
+        return weld.vertex(geometry.point(
             {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.v)}));
     };
     for (std::uint64_t j = 0; j < n.v; ++j)
@@ -60,9 +60,9 @@ void split_quadrilateral(Scene& split, VertexPool& pool, const Patch& patch, con
             add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
 }
 
-void split_triangle(Scene& split, VertexPool& pool, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
+void split_triangle(Scene& split, VertexWeld& weld, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
     const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
-        return pool.add(geometry.point(
+        return weld.vertex(geometry.point(
             {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.u)}));
     };
     for (std::uint64_t j = 0; j < n.u; ++j)
@@ -92,16 +92,16 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
     split.vertices.clear();
     split.patches.clear();
     split.patches.reserve(static_cast<std::size_t>(count));
-    VertexPool pool(split.vertices);
+    VertexWeld weld(split.vertices);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side != none && patch.other_side < i) continue;  // went in with its front
         const PatchGeometry geometry(scene, patch);
         const Pieces n = pieces_of(scene, patch, largest_edge);
         if (patch.is_triangle())
-            split_triangle(split, pool, patch, geometry, n);
+            split_triangle(split, weld, patch, geometry, n);
         else
-            split_quadrilateral(split, pool, patch, geometry, n);
+            split_quadrilateral(split, weld, patch, geometry, n);
     }
     return split;
 }

@@ -9,8 +9,9 @@ namespace interflect {
 namespace {
 
 std::uint64_t hash(const V3f& position) {
-    const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x)}; };
-    return mix(bits(position.x) | bits(position.y) << 32, bits(position.z));
+    const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f)}; };
+    const V3f x = position + V3f(0);  // -0 + 0 = 0
+    return mix(bits(x.x) | bits(x.y) << 32, bits(x.z));
 }
 
 }  // namespace
@@ -19,7 +20,7 @@ std::uint64_t hash(const V3f& position) {
 std::uint32_t& VertexWeld::slot_of(const V3f& position) {
     const std::size_t mask = slots_.size() - 1;
     std::size_t i = hash(position) & mask;
-    while (slots_[i] != none && scene_.vertices[slots_[i]] != position) i = (i + 1) & mask;
+    while (slots_[i] != none && vertices_[slots_[i]] != position) i = (i + 1) & mask;
     return slots_[i];
 }
 
@@ -27,16 +28,15 @@ void VertexWeld::grow() {
     const std::vector<std::uint32_t> old = std::move(slots_);
     slots_.assign(2 * old.size(), none);
     for (const std::uint32_t vertex : old)
-        if (vertex != none) slot_of(scene_.vertices[vertex]) = vertex;
+        if (vertex != none) slot_of(vertices_[vertex]) = vertex;
 }
 
 std::uint32_t VertexWeld::vertex(const V3f& position) {
-    const V3f key = position + V3f(0);  // -0 + 0 = 0
     if (2 * (used_ + 1) > slots_.size()) grow();
-    std::uint32_t& slot = slot_of(key);
+    std::uint32_t& slot = slot_of(position);
     if (slot == none) {
-        slot = static_cast<std::uint32_t>(scene_.vertices.size());
-        scene_.vertices.push_back(key);
+        slot = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(position);
         ++used_;
     }
     return slot;

@@ -7,12 +7,13 @@
 
 namespace interflect {
 
-/// Gives one vertex of a scene to each distinct position: what meets in a point shares a vertex there, whatever names
-/// or copies the file used. Positions are compared as they are, in single precision; -0 counts as 0. Holds at most 16
-/// bytes a vertex: a hash table with linear probing, of indices into the scene's own vertices.
+/// Gives one vertex to each distinct position: what meets in a point shares a vertex there. Positions are compared as
+/// they are, in single precision; -0 counts as 0. Holds at most 16 bytes a vertex: a hash table with linear probing, of
+/// indices into the vertices.
 class VertexWeld {
   public:
-    explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
+    /// @param vertices  New ones go at the end; those that others add are not found.
+    explicit VertexWeld(std::vector<V3f>& vertices) : vertices_(vertices), slots_(16, none) {}
 
     /// The index of the vertex at `position`, which is added where it is new. @param position  Finite.
     std::uint32_t vertex(const V3f& position);
@@ -21,7 +22,7 @@ class VertexWeld {
     std::uint32_t& slot_of(const V3f& position);
     void grow();
 
-    Scene& scene_;
+    std::vector<V3f>& vertices_;
     std::vector<std::uint32_t> slots_;  // a power of two, never more than half full
     std::size_t used_ = 0;
 };

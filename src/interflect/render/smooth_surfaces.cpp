@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "interflect/base/random.h"
+#include "interflect/geometry/bounds.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/disjoint_sets.h"
 #include "interflect/geometry/patch_geometry.h"
@@ -49,7 +50,7 @@ class VertexGrid {
 
     /// An earlier vertex at the place of vertex `i`; where there is none, `i`, which later ones then find.
     std::uint32_t weld(std::uint32_t i) {
-        const Cell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
+        const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
             for (std::int64_t y = low.y; y <= high.y; ++y)
                 for (std::int64_t z = low.z; z <= high.z; ++z)
@@ -60,12 +61,12 @@ class VertexGrid {
     }
 
   private:
-    using Cell = Imath::Vec3<std::int64_t>;
+    using GridCell = Imath::Vec3<std::int64_t>;
     struct CellHash {
-        std::size_t operator()(const Cell& c) const { return mix(mix(c.x, c.y), c.z); }
+        std::size_t operator()(const GridCell& c) const { return mix(mix(c.x, c.y), c.z); }
     };
 
-    Cell cell_of(const V3f& p) const {
+    GridCell cell_of(const V3f& p) const {
         const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
         constexpr double last = 0x1p62;  // what lies beyond is far from the scene
         const auto index = [&](float v) {
@@ -73,7 +74,7 @@ class VertexGrid {
         };
         return {index(p.x), index(p.y), index(p.z)};
     }
-    std::uint32_t find_in(const Cell& cell, const V3f& p) const {
+    std::uint32_t find_in(const GridCell& cell, const V3f& p) const {
         const auto entry = first_.find(cell);
         if (entry == first_.end()) return none;
         std::uint32_t i = entry->second;
@@ -82,9 +83,9 @@ class VertexGrid {
     }
 
     const std::vector<V3f>& positions_;
-    std::unordered_map<Cell, std::uint32_t, CellHash> first_;  // the latest vertex in each cell
-    std::vector<std::uint32_t> next_;                          // the one before it in the same cell
-    float tolerance_;                                          // [m]
+    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;  // the latest vertex in each cell
+    std::vector<std::uint32_t> next_;                              // the one before it in the same cell
+    float tolerance_;                                              // [m]
 };
 
 /// For each vertex the first one at the same place.
@@ -146,16 +147,17 @@ SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
 }
 
 /// Parts of a line, as intervals of the distance along it [m].
-struct Interval {
+struct LineInterval {
     double from, to;
 };
 
 /// What is left of `whole` beside `covered`: in ascending order, each longer than `least`.
-std::vector<Interval> uncovered_parts(Interval whole, std::vector<Interval> covered, double least) {
-    std::sort(covered.begin(), covered.end(), [](const Interval& a, const Interval& b) { return a.from < b.from; });
-    std::vector<Interval> parts;
+std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineInterval> covered, double least) {
+    std::sort(covered.begin(), covered.end(),
+              [](const LineInterval& a, const LineInterval& b) { return a.from < b.from; });
+    std::vector<LineInterval> parts;
     covered.push_back({whole.to, whole.to});
-    for (const Interval& c : covered) {
+    for (const LineInterval& c : covered) {
         if (std::min(c.from, whole.to) - whole.from > least) parts.push_back({whole.from, std::min(c.from, whole.to)});
         whole.from = std::max(whole.from, c.to);
     }
@@ -180,7 +182,7 @@ class StraightEdge {
         return distance(a) <= tolerance && distance(b) <= tolerance;
     }
     /// The part of it that lies between a and b, which are on its line.
-    Interval part_between(const V3f& a, const V3f& b) const {
+    LineInterval part_between(const V3f& a, const V3f& b) const {
         const auto [low, high] = std::minmax({along(a), along(b)});
         return {std::max(0.0, low), std::min(length_, high)};
     }
@@ -193,9 +195,7 @@ class StraightEdge {
 Imath::Box3f box_around(const V3f& a, const V3f& b, float margin) {
     Imath::Box3f box(a);
     box.extendBy(b);
-    box.min -= V3f(margin);
-    box.max += V3f(margin);
-    return box;
+    return widened(box, margin);
 }
 
 /// Finds by boxes what lies along an edge: contacts, or other edges.
@@ -228,13 +228,13 @@ class ContactTree {
                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
     /// The parts of the segment from a to b along which there is a contact; longer than the tolerance.
-    std::vector<Interval> along(const V3f& a, const V3f& b) const {
+    std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
-        std::vector<Interval> found;
+        std::vector<LineInterval> found;
         tree_.visit(box_around(a, b, tolerance_), [&](std::uint32_t i) {
             const Contact& c = contacts_[i];
             if (!edge.is_collinear(c.a, c.b, tolerance_)) return;
-            const Interval part = edge.part_between(c.a, c.b);
+            const LineInterval part = edge.part_between(c.a, c.b);
             if (part.to - part.from > tolerance_) found.push_back(part);
         });
         return found;
@@ -292,10 +292,10 @@ class SeamFinder {
             return;
         const double b_start = line.along(start(b)), b_end = line.along(end(b));
         if (b_end >= b_start) return;  // one patch is upside down
-        const Interval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
+        const LineInterval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
         const double least = std::max(2.0 * tolerance_, least_seam_share * std::min(line.length(), other.length()));
         if (shared.to - shared.from <= least) return;
-        for (const Interval& part : uncovered_parts(shared, contacts_.along(start(a), end(a)), least)) {
+        for (const LineInterval& part : uncovered_parts(shared, contacts_.along(start(a), end(a)), least)) {
             const auto on_a = [&](double x) { return snapped(x / line.length(), line.length()); };
             const auto on_b = [&](double x) { return snapped((b_start - x) / (b_start - b_end), other.length()); };
             found.push_back({{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});

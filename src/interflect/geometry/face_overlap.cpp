@@ -1,11 +1,13 @@
-#include "interflect/raycast/face_overlap.h"
+#include "interflect/geometry/face_overlap.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "interflect/base/parallel.h"
+#include "interflect/geometry/bounds.h"
 #include "interflect/geometry/box_tree.h"
+#include "interflect/scene/patch_area.h"
 
 namespace interflect {
 
@@ -21,34 +23,21 @@ constexpr double least_facing = 0.7;
 /// Faces of one task of the search.
 constexpr std::size_t search_grain = 1024;
 
-/// A convex polygon of three or four corners; what clipping it leaves has up to four more.
-struct Polygon {
+/// A face of three or four corners, or what clipping leaves of it, which has up to four more.
+struct ClippedFace {
     std::array<V3d, 8> corners;
     std::size_t count = 0;
 
     void add(const V3d& corner) { corners[count++] = corner; }
+    /// Of a polygon that is not clipped.
+    std::span<const V3d> face_corners() const { return {corners.data(), count}; }
 };
 
-Polygon polygon_of(const Scene& scene, const Patch& patch) {
-    Polygon polygon;
+ClippedFace polygon_of(const Scene& scene, const Patch& patch) {
+    ClippedFace polygon;
     for (int i = 0; i < patch.vertex_count(); ++i)
         polygon.add(V3d(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]));
     return polygon;
-}
-
-/// Twice the area, along the normal.
-V3d area_vector(const Polygon& p) {
-    return p.count == 3 ? (p.corners[1] - p.corners[0]).cross(p.corners[2] - p.corners[0])
-                        : (p.corners[2] - p.corners[0]).cross(p.corners[3] - p.corners[1]);
-}
-
-Imath::Box3f box_of(const Scene& scene, const Patch& patch, float margin) {
-    Imath::Box3f box;
-    for (int i = 0; i < patch.vertex_count(); ++i)
-        box.extendBy(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]);
-    box.min -= V3f(margin);
-    box.max += V3f(margin);
-    return box;
 }
 
 /// {x: normal . x >= offset}, of unit normal; offset - normal . x is how far x lies outside.
@@ -59,13 +48,13 @@ struct HalfSpace {
     double height(const V3d& x) const { return normal.dot(x) - offset; }
 };
 
-bool lies_outside(const Polygon& polygon, const HalfSpace& half_space) {
+bool lies_outside(const ClippedFace& polygon, const HalfSpace& half_space) {
     return std::none_of(polygon.corners.begin(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(polygon.count),
                         [&](const V3d& corner) { return half_space.height(corner) >= 0; });
 }
 
-Polygon clipped(const Polygon& polygon, const HalfSpace& half_space) {
-    Polygon result;
+ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
+    ClippedFace result;
     for (std::size_t i = 0; i < polygon.count; ++i) {
         const V3d &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
         const double height_a = half_space.height(a), height_b = half_space.height(b);
@@ -81,7 +70,7 @@ class LargerFace {
   public:
     LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
         : scene_(scene), face_(face), tolerance_(tolerance), polygon_(polygon_of(scene, scene.patches[face])) {
-        const V3d area = area_vector(polygon_);
+        const V3d area = doubled_area_vector<double>(polygon_.face_corners());
         area_ = area.length();
         plane_.normal = area / area_;
         for (std::size_t i = 0; i < polygon_.count; ++i)
@@ -94,15 +83,13 @@ class LargerFace {
     }
 
     bool plane_meets(const Imath::Box3f& box) const {
-        const V3d centre = (V3d(box.min) + V3d(box.max)) * 0.5, half = V3d(box.max) - centre;
-        const V3d& n = plane_.normal;
-        const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
-        return std::abs(plane_.height(centre)) <= reach + static_cast<double>(tolerance_[face_]);
+        return meets_plane(
+            box, plane_.normal, [&](const V3d& x) { return plane_.height(x); }, static_cast<double>(tolerance_[face_]));
     }
 
     bool is_overlapped_by(std::uint32_t face) const {
         if (face == face_) return false;
-        Polygon shared = polygon_of(scene_, scene_.patches[face]);
+        ClippedFace shared = polygon_of(scene_, scene_.patches[face]);
         const double tolerance = pair_tolerance(tolerance_, {face_, face});
         const auto narrowed = [&](HalfSpace half_space) {
             half_space.offset += tolerance;
@@ -110,7 +97,7 @@ class LargerFace {
         };
         for (std::size_t i = 0; i < polygon_.count; ++i)
             if (lies_outside(shared, narrowed(inside_[i]))) return false;  // as most neighbours do
-        const V3d area = area_vector(shared);
+        const V3d area = doubled_area_vector<double>(shared.face_corners());
         const double facing = area.dot(plane_.normal);
         if (!is_smaller(face, area.length()) || std::abs(facing) < least_facing * area.length()) return false;
         if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
@@ -128,21 +115,21 @@ class LargerFace {
     const Scene& scene_;
     std::uint32_t face_;
     std::span<const float> tolerance_;
-    Polygon polygon_;
+    ClippedFace polygon_;
     double area_;  // twice
     HalfSpace plane_;
     std::array<HalfSpace, 4> inside_;
 };
 
 /// Of boxes that reach out by the tolerance of their faces.
-std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& left_out,
+std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
                                  std::span<const float> tolerance) {
     std::vector<Boxed> tree;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
-        if (scene.patches[i].other_side >= i && !left_out[i]) tree.push_back({Imath::Box3f(), i});
+        if (scene.patches[i].other_side >= i && !ignored[i]) tree.push_back({Imath::Box3f(), i});
     parallel_for_ranges(tree.size(), search_grain, [&](std::size_t begin, std::size_t end) {
         for (Boxed& face : std::span(tree).subspan(begin, end - begin))
-            face.box = box_of(scene, scene.patches[face.index], tolerance[face.index]);
+            face.box = widened(bounds_of(scene, scene.patches[face.index]), tolerance[face.index]);
     });
     arrange_box_tree(tree);
     return tree;
@@ -150,15 +137,15 @@ std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& le
 
 }  // namespace
 
-std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& left_out,
+std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance) {
-    const std::vector<Boxed> tree = tree_of_faces(scene, left_out, tolerance);
+    const std::vector<Boxed> tree = tree_of_faces(scene, ignored, tolerance);
     std::vector<std::vector<FacePair>> found((scene.patches.size() + search_grain - 1) / search_grain);
     parallel_for_ranges(scene.patches.size(), search_grain, [&](std::size_t begin, std::size_t end) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-            if (scene.patches[i].other_side < i || left_out[i]) continue;
+            if (scene.patches[i].other_side < i || ignored[i]) continue;
             const LargerFace larger(scene, i, tolerance);
-            const Imath::Box3f box = box_of(scene, scene.patches[i], tolerance[i]);
+            const Imath::Box3f box = widened(bounds_of(scene, scene.patches[i]), tolerance[i]);
             visit_box_tree(
                 std::span<const Boxed>(tree),
                 [&](const Imath::Box3f& b) { return b.intersects(box) && larger.plane_meets(b); },
