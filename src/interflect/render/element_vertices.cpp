@@ -34,13 +34,13 @@ class KeyTable {
     std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].number; }
     /// The number that the key has; where it has none it gets `number`.
     std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t number) {
-        Entry& entry = entries_[slot(key)];
+        TableEntry& entry = entries_[slot(key)];
         if (entry.number == none) entry = {key, number};
         return entry.number;
     }
 
   private:
-    struct Entry {
+    struct TableEntry {
         std::uint64_t key = 0;
         std::uint32_t number = none;  // none: free
     };
@@ -52,7 +52,7 @@ class KeyTable {
         return i;
     }
 
-    std::vector<Entry> entries_;
+    std::vector<TableEntry> entries_;
 };
 
 /// Gives elements their vertices, parents before children: those of patches are the corners of smooth surfaces; then

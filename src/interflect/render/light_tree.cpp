@@ -149,7 +149,7 @@ void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
         centres.extend({e.centre(), e.centre()});
     }
     const auto finish = [&](const Cone& cone, float power) {
-        Node& node = nodes_[index];
+        LightNode& node = nodes_[index];
         node.centre = 0.5f * (box.low + box.high);
         node.half = 0.5f * (box.high - box.low);
         node.radius2 = node.half.length2();
@@ -184,7 +184,7 @@ void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
 // The cosines at the box's nearest point are what lets a wide node that holds x, such as half the lamps of a storey,
 // outweigh one beside it: with d the distance to its nearest part and h their height over x, lamps that face down
 // light a floor by h^2 / d^4, of which the node's own distance only knows the mean.
-float LightTree::importance(const Node& node, const V3f& x, const V3f& n) {
+float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const V3f to_centre = node.centre - x;
     const V3f& axis = node.cone.axis;
     const float height = n.dot(to_centre) + support(node.half, n);       // of the box's highest point over the surface

@@ -45,7 +45,7 @@ class LightTree {
         V3f low, high;
         void extend(const Box& other);
     };
-    struct alignas(64) Node {
+    struct alignas(64) LightNode {
         V3f centre, half;  // of the bounding box; from its centre to a corner [m]
         Cone cone;
         float cone_sine = 0;
@@ -60,11 +60,11 @@ class LightTree {
     struct Bin;
 
     static Cone bounding_cone(const Cone& a, const Cone& b);
-    static float importance(const Node& node, const V3f& x, const V3f& n);
+    static float importance(const LightNode& node, const V3f& x, const V3f& n);
     static Split best_split(std::span<const Emitter> emitters, const Box& centres);
     void build(std::uint32_t index, std::span<Emitter> emitters);
 
-    std::vector<Node> nodes_;          // [0] is the root; empty without emitting patches
+    std::vector<LightNode> nodes_;     // [0] is the root; empty without emitting patches
     std::vector<std::uint32_t> leaf_;  // of each patch; none where it does not emit
 };
 

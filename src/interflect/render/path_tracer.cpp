@@ -5,22 +5,19 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/render/light_tree.h"
+#include "interflect/render/path_wavefront.h"
+#include "interflect/render/pixel_statistics.h"
 
 namespace interflect {
 
 namespace {
-
-constexpr float pi = std::numbers::pi_v<float>;
 
 /// Batches that a pixel's samples are divided into, at least: 7 degrees of freedom for its standard error.
 constexpr int least_batches = 8;
@@ -30,334 +27,12 @@ constexpr int largest_batch = 64;
 constexpr std::size_t paths_per_tile = 2048;
 /// Paths between two reports of progress, about.
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
-/// Throughput below which Russian roulette ends paths. Lower: less variance, longer paths; from 0.25 to 1 it is all
-/// one.
-constexpr float roulette_threshold = 0.5f;
-/// Vertices of a path with Sobol' points; later ones gain nothing by them and get pseudo-random numbers.
-constexpr std::uint32_t stratified_vertices = 4;
-/// Variance is averaged over the pixels at most this far away, in columns and in rows.
-constexpr int neighbourhood_radius = 3;
-
-double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
-
-/// What all paths share.
-struct PathScene {
-    const Scene& scene;
-    const RayCaster& ray_caster;
-    Camera camera;
-    std::vector<PatchGeometry> geometry;  // of each patch
-    LightTree lights;
-    EmitterSampling sampling;
-    std::uint64_t seed;
-    int width;
-    std::size_t batch_size;
-
-    const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
-};
 
 std::vector<PatchGeometry> geometry_of(const Scene& scene) {
     std::vector<PatchGeometry> geometry;
     geometry.reserve(scene.patches.size());
     for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
     return geometry;
-}
-
-/// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
-struct TangentFrame {
-    V3f s, t;
-    explicit TangentFrame(const V3f& n) {
-        const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-        s = V3f(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-        t = V3f(b, sign + n.y * n.y * a, -n.y);
-    }
-};
-
-/// A direction with density cosine / pi over the hemisphere of n: Malley's method.
-V3f cosine_direction(const V3f& n, float a, float b) {
-    const TangentFrame frame(n);
-    const float radius = std::sqrt(a), height = std::sqrt(1 - a), turn = 2 * pi * b;
-    return frame.s * (radius * std::cos(turn)) + frame.t * (radius * std::sin(turn)) + n * height;
-}
-
-/// Where a ray leaves the patch that another has hit at x: on the patch's surface, up by the ray caster's offset.
-V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
-    const PatchGeometry& geometry = s.geometry[patch];
-    return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
-}
-
-/// The random numbers of one vertex of a path.
-struct VertexSample {
-    double light;            // chooses the emitting patch
-    float light_u, light_v;  // and the point on it
-    float direction_u, direction_v;
-    float roulette;
-};
-
-VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
-    const std::uint64_t key = mix(batch_key, vertex);
-    const auto words = random_words(key, index);
-    if (vertex > stratified_vertices) {
-        const auto more = random_words(~key, index);
-        return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]),
-                unit_float(words[3]),       unit_float(more[0]),  unit_float(more[1])};
-    }
-    const auto of_light = shuffled_point(mix(key, 1), index), of_direction = shuffled_point(mix(key, 2), index);
-    // A point is the middle of one of 2^23 cells, too coarse for one of millions of lamps: move it within its cell.
-    const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
-    return {
-        of_light[0] + within_cell * 0x1p-23, of_light[1], of_light[2], of_direction[0], of_direction[1], of_light[3]};
-}
-
-/// Density per solid angle, seen from x over normal n, of sampling a point of an emitting patch in this direction.
-float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2) {
-    const float cosine = -lamp.normal().dot(direction);
-    return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;
-}
-
-/// The balance heuristic: the weight of a sample of density p where another technique has density q.
-float balance(float p, float q) { return p / (p + q); }
-
-/// One batch of a pixel, and its outcome: sums over the batch's paths.
-struct BatchOfPaths {
-    std::uint32_t pixel = 0, batch = 0;
-    bool done = false;
-    RgbD emitted{0, 0, 0};  // seen directly
-    RgbD reflected{0, 0, 0};
-};
-
-struct RayCounts {
-    std::int64_t rays = 0, shadow_rays = 0, escaped_rays = 0;
-    RayCounts& operator+=(const RayCounts& o) {
-        rays += o.rays;
-        shadow_rays += o.shadow_rays;
-        escaped_rays += o.escaped_rays;
-        return *this;
-    }
-};
-
-/// Some batches, whose paths advance side by side: all of them by a bounce, then all by the next.
-class Wavefront {
-  public:
-    explicit Wavefront(const PathScene& scene) : s_(scene) {}
-
-    void trace(std::span<BatchOfPaths> batches) {
-        start_paths(batches);
-        for (vertex_ = 1; !paths_.empty(); ++vertex_) advance_paths();
-        for (std::size_t i = 0; i < light_.size(); ++i) {
-            BatchOfPaths& batch = batches[i / s_.batch_size];
-            batch.emitted += RgbD(light_[i].emitted);
-            batch.reflected += RgbD(light_[i].reflected);
-            batch.done = true;
-        }
-    }
-    const RayCounts& counts() const { return counts_; }
-
-  private:
-    struct Path {
-        Rgb throughput;
-        std::uint32_t index;  // in light_
-        V3f normal;           // of the surface that its ray leaves
-    };
-    struct PathLight {
-        Rgb emitted{0, 0, 0}, reflected{0, 0, 0};
-    };
-    /// What a shadow ray brings if it hits the patch that it is sent to.
-    struct Connection {
-        std::uint32_t patch, index;
-        Rgb radiance;
-    };
-
-    void start_paths(std::span<const BatchOfPaths> batches) {
-        const std::size_t size = s_.batch_size;
-        thread_local PointBlock points;
-        light_.assign(batches.size() * size, {});
-        for (const BatchOfPaths& b : batches) {
-            const std::uint64_t key = mix(mix(s_.seed, b.pixel), b.batch);
-            keys_.push_back(key);
-            fill_points(PointSet::sobol, key, 0, size, points);
-            const auto width = static_cast<std::uint32_t>(s_.width);
-            const std::uint32_t column = b.pixel % width, row = b.pixel / width;
-            const auto left = static_cast<float>(column), top = static_cast<float>(row);
-            for (std::size_t i = 0; i < size; ++i) {
-                rays_.push_back(s_.camera.ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
-                paths_.push_back({Rgb(1, 1, 1), static_cast<std::uint32_t>(paths_.size()), V3f(0, 0, 0)});
-            }
-        }
-    }
-
-    /// Traces the rays of all paths and keeps those that go on.
-    void advance_paths() {
-        hits_.resize(rays_.size());
-        s_.ray_caster.trace(rays_, hits_);
-        counts_.rays += static_cast<std::int64_t>(rays_.size());
-        shadow_rays_.clear();
-        connections_.clear();
-        std::size_t alive = 0;
-        for (std::size_t i = 0; i < rays_.size(); ++i) {
-            Path path = paths_[i];
-            Ray ray = rays_[i];
-            if (!interact(hits_[i], ray, path)) continue;
-            rays_[alive] = ray;
-            paths_[alive++] = path;
-        }
-        rays_.resize(alive);
-        paths_.resize(alive);
-        trace_shadow_rays();
-    }
-
-    /// What happens where a ray hits; afterwards `ray` and `path` are the reflected ones. @return Whether it goes on.
-    bool interact(const Hit& hit, Ray& ray, Path& path) {
-        if (hit.patch == none) {
-            ++counts_.escaped_rays;
-            return false;
-        }
-        const Material& material = s_.material(hit.patch);
-        if (channel_sum(material.exitance) > 0) add_emission(hit, ray, path, material.exitance);
-
-        path.throughput *= material.reflectance;
-        if (largest_channel(path.throughput) <= 0) return false;
-        const std::uint32_t size = static_cast<std::uint32_t>(s_.batch_size);
-        const VertexSample sample = vertex_sample(keys_[path.index / size], vertex_, path.index % size);
-        ray.origin = offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction);
-        path.normal = s_.geometry[hit.patch].normal();
-        if (s_.sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
-
-        const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
-        if (sample.roulette >= survival) return false;
-        path.throughput /= survival;
-        ray.direction = cosine_direction(path.normal, sample.direction_u, sample.direction_v);
-        return true;
-    }
-
-    /// Light from the emitting patch that a ray has hit.
-    void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
-        const Rgb radiance = path.throughput * exitance / pi;
-        if (vertex_ == 1) {
-            light_[path.index].emitted += radiance;
-            return;
-        }
-        float weight = 1;
-        if (s_.sampling == EmitterSampling::lights) weight = 0;
-        if (s_.sampling == EmitterSampling::combined) {
-            const float probability = s_.lights.probability(hit.patch, ray.origin, path.normal);
-            const float of_light =
-                light_density(s_.geometry[hit.patch], probability, ray.direction, hit.distance * hit.distance);
-            weight = balance(path.normal.dot(ray.direction) / pi, of_light);
-        }
-        light_[path.index].reflected += radiance * weight;
-    }
-
-    /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
-    void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample) {
-        const LightTree::Choice choice = s_.lights.choose(x, path.normal, sample.light);
-        if (choice.patch == none) return;
-        const PatchGeometry& lamp = s_.geometry[choice.patch];
-        const V3f to_light = lamp.point(lamp.uniform_parameters(sample.light_u, sample.light_v)) - x;
-        const float distance2 = to_light.length2();
-        if (!(distance2 > 0)) return;
-        const V3f direction = to_light / std::sqrt(distance2);
-        const float of_direction = path.normal.dot(direction) / pi;  // density; also cosine / pi
-        const float of_light = light_density(lamp, choice.probability, direction, distance2);
-        if (!(of_direction > 0 && of_light > 0)) return;
-        const float weight = s_.sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
-        // The integral over the hemisphere of (rho / pi) (M / pi) cosine.
-        const Rgb radiance = s_.material(choice.patch).exitance / pi;
-        shadow_rays_.push_back({x, direction});
-        connections_.push_back(
-            {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight)});
-    }
-
-    void trace_shadow_rays() {
-        hits_.resize(shadow_rays_.size());
-        s_.ray_caster.trace(shadow_rays_, hits_);
-        counts_.rays += static_cast<std::int64_t>(shadow_rays_.size());
-        counts_.shadow_rays += static_cast<std::int64_t>(shadow_rays_.size());
-        for (std::size_t i = 0; i < connections_.size(); ++i)
-            if (hits_[i].patch == connections_[i].patch)
-                light_[connections_[i].index].reflected += connections_[i].radiance;
-    }
-
-    const PathScene& s_;
-    std::uint32_t vertex_ = 1;         // which vertex of the paths comes next; the camera is vertex 0
-    std::vector<std::uint64_t> keys_;  // of each batch
-    std::vector<PathLight> light_;     // of each path, those that have ended too
-    std::vector<Path> paths_;          // those that go on, as are rays_
-    std::vector<Ray> rays_, shadow_rays_;
-    std::vector<Hit> hits_;
-    std::vector<Connection> connections_;
-    RayCounts counts_;
-};
-
-/// Mean and variance of a pixel's batches, gathered one by one (Welford 1962).
-struct PixelStatistics {
-    RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared differences from the mean
-    double reflected = 0;                  // mean over the batches of the channels' mean
-    std::uint32_t batches = 0;
-
-    void add(const BatchOfPaths& b, double batch_size) {
-        ++batches;
-        const double count = batches;
-        const RgbD value = (b.emitted + b.reflected) / batch_size, difference = value - mean;
-        mean += difference / count;
-        squares += difference * (value - mean);
-        reflected += (mean_channel(b.reflected) / batch_size - reflected) / count;
-    }
-    /// Of one batch.
-    RgbD variance() const { return batches > 1 ? squares / (batches - 1.0) : RgbD(0, 0, 0); }
-    RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
-};
-
-using Statistics = std::vector<PixelStatistics>;
-
-double mean_reflected(const Statistics& pixels) {
-    double sum = 0;
-    for (const PixelStatistics& p : pixels) sum += p.reflected;
-    return sum / static_cast<double>(pixels.size());
-}
-
-/// What a pixel's error is measured against.
-double error_scale(const PixelStatistics& p, double picture_mean) {
-    return std::max(mean_channel(p.mean), picture_mean);
-}
-
-double relative_error(const Statistics& pixels) {
-    const double picture_mean = mean_reflected(pixels);
-    double sum = 0;
-    for (const PixelStatistics& p : pixels) {
-        const double scale = error_scale(p, picture_mean);
-        if (scale > 0) sum += mean_channel(p.squared_error()) / (scale * scale);
-    }
-    return std::sqrt(sum / static_cast<double>(pixels.size()));
-}
-
-/// Means over the pixels at most `neighbourhood_radius` away along one axis of a picture.
-std::vector<double> mean_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
-                               std::size_t length, std::size_t step) {
-    std::vector<double> means(values.size());
-    for (std::size_t line = 0; line < lines; ++line)
-        for (std::size_t i = 0; i < length; ++i) {
-            const std::size_t first = i - std::min<std::size_t>(i, neighbourhood_radius);
-            const std::size_t end = std::min(length, i + neighbourhood_radius + 1);
-            double sum = 0;
-            for (std::size_t k = first; k < end; ++k) sum += values[line * line_step + k * step];
-            means[line * line_step + i * step] = sum / static_cast<double>(end - first);
-        }
-    return means;
-}
-
-/// How many batches each pixel should have in all for the target, by the variance around it.
-std::vector<double> needed_batches(const Statistics& pixels, const PathOptions& options) {
-    const double picture_mean = mean_reflected(pixels);
-    std::vector<double> variance(pixels.size());
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const double scale = error_scale(pixels[i], picture_mean);
-        variance[i] = scale > 0 ? mean_channel(pixels[i].variance()) / (scale * scale) : 0;
-    }
-    const auto width = static_cast<std::size_t>(options.width), height = static_cast<std::size_t>(options.height);
-    variance = mean_along(variance, height, width, width, 1);
-    variance = mean_along(variance, width, 1, height, width);
-    for (double& v : variance) v /= options.until * options.until;
-    return variance;
 }
 
 /// A picture in the making.
@@ -443,7 +118,7 @@ class PathPicture {
         std::vector<RayCounts> counts((chunk.size() + per_tile - 1) / per_tile);
         parallel_for_ranges(chunk.size(), per_tile, [&](std::size_t begin, std::size_t end) {
             if (stopped()) return;
-            Wavefront wavefront(s_);
+            PathWavefront wavefront(s_);
             wavefront.trace(std::span(chunk).subspan(begin, end - begin));
             counts[begin / per_tile] = wavefront.counts();
         });
@@ -464,7 +139,7 @@ class PathPicture {
     const PathScene& s_;
     const PathOptions& options_;
     const PathMonitor& monitor_;
-    Statistics pixels_;
+    std::vector<PixelStatistics> pixels_;
     double foreseen_ = 0;  // batches in all
     std::int64_t batches_done_ = 0;
     RayCounts counts_;
