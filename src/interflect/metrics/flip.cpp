@@ -63,11 +63,11 @@ V3d perceived_colour(const V3d& rgb) {
 // --- Filters: all are sums of products of one function of x and one of y
 
 /// One number a pixel.
-struct Plane {
+struct Channel {
     int width = 0, height = 0;
     std::vector<float> values;  // row by row
 
-    Plane(int plane_width, int plane_height)
+    Channel(int plane_width, int plane_height)
         : width(plane_width),
           height(plane_height),
           values(static_cast<std::size_t>(plane_width) * static_cast<std::size_t>(plane_height)) {}
@@ -111,8 +111,8 @@ void for_each_row(int height, const Body& body) {
     });
 }
 
-Plane filter_rows(const Plane& plane, const Kernel& kernel) {
-    Plane result(plane.width, plane.height);
+Channel filter_rows(const Channel& plane, const Kernel& kernel) {
+    Channel result(plane.width, plane.height);
     const int radius = radius_of(kernel);
     for_each_row(plane.height, [&](int y) {
         const auto row = plane.row(y);
@@ -124,8 +124,8 @@ Plane filter_rows(const Plane& plane, const Kernel& kernel) {
     return result;
 }
 
-Plane filter_columns(const Plane& plane, const Kernel& kernel) {
-    Plane result(plane.width, plane.height);
+Channel filter_columns(const Channel& plane, const Kernel& kernel) {
+    Channel result(plane.width, plane.height);
     const int radius = radius_of(kernel);
     for_each_row(plane.height, [&](int y) {
         for (int k = 0; k <= 2 * radius; ++k)
@@ -135,7 +135,7 @@ Plane filter_columns(const Plane& plane, const Kernel& kernel) {
     return result;
 }
 
-Plane filter(const Plane& plane, const Kernel& along_x, const Kernel& along_y) {
+Channel filter(const Channel& plane, const Kernel& along_x, const Kernel& along_y) {
     return filter_columns(filter_rows(plane, along_x), along_y);
 }
 
@@ -149,10 +149,10 @@ constexpr std::array<Gaussian, 1> achromatic = {{{1, 0.0047}}}, red_green = {{{1
 constexpr std::array<Gaussian, 2> blue_yellow = {{{34.1, 0.04}, {13.5, 0.025}}};
 constexpr double widest = 0.04;  // b, by which the size of all filters goes
 
-using Opponent = std::array<Plane, 3>;
+using Opponent = std::array<Channel, 3>;
 
 Opponent opponent_colours(const Image& image) {
-    const Plane empty(image.width, image.height);
+    const Channel empty(image.width, image.height);
     Opponent planes{empty, empty, empty};
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const V3d colour = opponent_of_xyz(clamped(V3d(image.pixels[i])) * xyz_of_rgb);
@@ -162,7 +162,7 @@ Opponent opponent_colours(const Image& image) {
 }
 
 /// What is left of a channel after the eye. The filter's weights over the square of pixels add up to 1.
-Plane seen(const Plane& plane, std::span<const Gaussian> sensitivity, double pixels_per_degree) {
+Channel seen(const Channel& plane, std::span<const Gaussian> sensitivity, double pixels_per_degree) {
     using std::numbers::pi;
     const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
     std::vector<double> volumes;
@@ -176,7 +176,7 @@ Plane seen(const Plane& plane, std::span<const Gaussian> sensitivity, double pix
         volumes.push_back(a * std::sqrt(pi / b) * sum * sum);
         volume += volumes.back();
     }
-    Plane result(plane.width, plane.height);
+    Channel result(plane.width, plane.height);
     for (std::size_t k = 0; k < sensitivity.size(); ++k) {
         const Kernel kernel = normalised_kernel(radius, gaussian(sensitivity[k].b));
         add_scaled(result.values, static_cast<float>(volumes[k] / volume), filter(plane, kernel, kernel).values.data());
@@ -212,20 +212,20 @@ double colour_difference(const V3d& a, const V3d& b) {
 // --- The feature pipeline
 
 /// How strongly a detector of features responds, whatever their direction.
-Plane response(const Plane& lightness, const Kernel& detector, const Kernel& blur) {
-    const Plane across = filter(lightness, detector, blur), down = filter(lightness, blur, detector);
-    Plane length = across;
+Channel response(const Channel& lightness, const Kernel& detector, const Kernel& blur) {
+    const Channel across = filter(lightness, detector, blur), down = filter(lightness, blur, detector);
+    Channel length = across;
     for (std::size_t i = 0; i < length.values.size(); ++i)
         length.values[i] = std::hypot(across.values[i], down.values[i]);
     return length;
 }
 
 struct Features {
-    Plane edges, points;
+    Channel edges, points;
 };
 
 /// Responses to the first and second derivative of a Gaussian as wide as those by which the eye finds edges.
-Features find_features(const Plane& achromatic_channel, double pixels_per_degree) {
+Features find_features(const Channel& achromatic_channel, double pixels_per_degree) {
     constexpr double width = 0.082;  // from peak to trough [degrees]
     const double deviation = 0.5 * width * pixels_per_degree;
     const int radius = static_cast<int>(std::ceil(3 * deviation));
@@ -235,7 +235,7 @@ Features find_features(const Plane& achromatic_channel, double pixels_per_degree
     const Kernel point =
         normalised_kernel(radius, [=](double x) { return (x * x / (deviation * deviation) - 1) * gaussian(x); });
 
-    Plane lightness = achromatic_channel;
+    Channel lightness = achromatic_channel;
     for (float& value : lightness.values) value = (value + 16) / 116;  // in [0, 1]
     return {response(lightness, edge, blur), response(lightness, point, blur)};
 }

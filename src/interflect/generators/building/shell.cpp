@@ -12,7 +12,7 @@ namespace {
 
 /// The corners of an opening in the face of a wall, once round: from the floor at its low end to the floor at its high
 /// end, up, and back down.
-using Frame = std::array<std::uint32_t, 4>;
+using DoorFrame = std::array<std::uint32_t, 4>;
 
 /// The coordinates at which the walls of a room are divided along one axis: its ends, and those of the doorways in the
 /// two walls along that axis.
@@ -49,23 +49,23 @@ class RoomShell {
     }
 
     /// The corners of the opening in each wall that has a doorway; known after add_faces().
-    const std::array<Frame, side_count>& frames() const { return frames_; }
+    const std::array<DoorFrame, side_count>& frames() const { return frames_; }
 
   private:
-    using Cell = std::array<std::size_t, 3>;  // indices of a grid point
+    using GridPoint = std::array<std::size_t, 3>;  // indices of a grid point
 
     /// The floor (axis z, low), a wall or the ceiling.
     void add_face(int axis, bool high) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        Cell cell;
+        GridPoint cell;
         cell[axis] = high ? lines_[axis].size() - 1 : 0;
         for (cell[v] = 0; cell[v] + 1 < lines_[v].size(); ++cell[v])
             for (cell[u] = 0; cell[u] + 1 < lines_[u].size(); ++cell[u]) add_cell(cell, axis, high, u, v);
     }
 
-    void add_cell(const Cell& cell, int axis, bool high, int u, int v) {
+    void add_cell(const GridPoint& cell, int axis, bool high, int u, int v) {
         const auto corner = [&](std::size_t du, std::size_t dv) {
-            Cell point = cell;
+            GridPoint point = cell;
             point[u] += du;
             point[v] += dv;
             return vertex(point);
@@ -75,7 +75,7 @@ class RoomShell {
         const auto side = static_cast<Side>(axis + (high ? 2 : 0));  // of a wall
         if (axis < 2 && is_opening(side, cell)) {
             // A frame starts along the wall: for walls along y that is u, for those along x it is v.
-            frames_[side] = along_x(side) ? Frame{corners[0], corners[3], corners[2], corners[1]} : corners;
+            frames_[side] = along_x(side) ? DoorFrame{corners[0], corners[3], corners[2], corners[1]} : corners;
             return;
         }
         if (high) std::reverse(corners.begin(), corners.end());
@@ -83,13 +83,13 @@ class RoomShell {
         scene_.patches.push_back({.vertices = corners, .material = material, .object = object_});
     }
 
-    bool is_opening(Side side, const Cell& cell) const {
+    bool is_opening(Side side, const GridPoint& cell) const {
         const int along = along_x(side) ? 0 : 1;
         return room_.doorway[side] != none && cell[2] == 0 &&
                lines_[along][cell[along]] == plan_.doorways[room_.doorway[side]].opening.low;
     }
 
-    std::uint32_t vertex(const Cell& point) {
+    std::uint32_t vertex(const GridPoint& point) {
         std::uint32_t& index = vertices_[(point[2] * lines_[1].size() + point[1]) * lines_[0].size() + point[0]];
         if (index == none) {
             index = static_cast<std::uint32_t>(scene_.vertices.size());
@@ -105,11 +105,11 @@ class RoomShell {
     std::uint32_t object_;
     std::array<std::vector<float>, 3> lines_;  // in x, y and z
     std::vector<std::uint32_t> vertices_;      // of the grid, made when first needed
-    std::array<Frame, side_count> frames_{};
+    std::array<DoorFrame, side_count> frames_{};
 };
 
 /// Threshold, jambs and soffit, between the openings in the two faces of a wall.
-void add_passage(Scene& scene, const Doorway& doorway, const std::array<Frame, 2>& frames, const Finish& finish,
+void add_passage(Scene& scene, const Doorway& doorway, const std::array<DoorFrame, 2>& frames, const Finish& finish,
                  std::uint32_t object) {
     const auto& [near, far] = frames;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -124,7 +124,7 @@ void add_passage(Scene& scene, const Doorway& doorway, const std::array<Frame, 2
 }  // namespace
 
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes) {
-    std::vector<std::array<Frame, 2>> frames(plan.doorways.size());
+    std::vector<std::array<DoorFrame, 2>> frames(plan.doorways.size());
     const auto first_object = static_cast<std::uint32_t>(scene.objects.size());
     for (std::uint32_t i = 0; i < plan.rooms.size(); ++i) {
         scene.objects.push_back(fmt::format("room-{}.shell", i));
