@@ -124,7 +124,7 @@ void MgfReader::apply(const Entity& entity, MgfWords arguments) {
     (this->*entity.handle)(arguments);
 }
 
-/// Leaves a fault to the colour or material that has it, with a warning in case that no face uses it.
+/// Records a fault with the colour or material that has it, and warns in case that no face uses it.
 void MgfReader::defer(Defines defines, const std::string& message) {
     if (unused_fault_.empty())
         unused_fault_ = "fault in a colour or material that no face uses is ignored, such as: " + message;
@@ -142,7 +142,7 @@ void MgfReader::count_repeated(std::uint64_t words) {
     if (include_depth_ > 0 || repeating_arrays_ > 0) repeated_.add(words, scene_.patch_count());
 }
 
-/// At the end of a file: what is still open was cut off, or forgotten.
+/// At the end of a file: warns of transforms and objects that are still open, and closes them.
 void MgfReader::close_all() {
     for (; transforms_.size() > file_->outer_transforms; transforms_.pop_back()) {
         const OpenMgfTransform& transform = transforms_.back();

@@ -33,7 +33,7 @@ void MgfReader::add_loop(MgfWords names) {
     if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
 
-/// Index of the current material, which a face uses: now its faults count.
+/// Index of the current material, for a face. @throws MgfFault where a definition of the material has one.
 std::uint32_t MgfReader::usable_material() {
     MgfMaterial& material = materials_.current();
     faults_.refuse_faults_of(material);

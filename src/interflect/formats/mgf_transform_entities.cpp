@@ -66,7 +66,7 @@ void MgfReader::place_copy(OpenMgfTransform& transform) {
     if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());
 }
 
-/// Counts on to the next copy, the last array fastest. @return false after the last one
+/// Goes on to the next copy, the last array fastest. @return false after the last one
 bool MgfReader::next_copy(OpenMgfTransform& transform) {
     if (!transform.repeating) {
         // The first copy is done: now its content is known, and whether all copies will fit.

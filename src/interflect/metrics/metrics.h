@@ -7,7 +7,7 @@
 
 namespace interflect {
 
-/// How far luminances are apart when noise within square blocks of pixels is averaged out first.
+/// Difference of luminances after averaging over square blocks of pixels, which reduces noise.
 struct BlockDifference {
     int block = 1;  ///< Side [pixels]; what is left over at the right and at the bottom does not count.
     /// sqrt(mean of ((A - B) / (B + 0.01 m))^2), A and B mean luminances of a block, m that of the whole reference.

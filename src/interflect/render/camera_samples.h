@@ -12,11 +12,11 @@
 
 namespace interflect {
 
-/// Where the camera rays of a picture go.
+/// The camera rays of a picture.
 struct CameraSampling {
     int width = 1, height = 1;  ///< [pixels], as the camera has them.
-    int samples = 16;           ///< Places a pixel, >= 1: a low-discrepancy sequence of each pixel's own.
-    std::uint64_t seed = 1;     ///< Of these places.
+    int samples = 16;           ///< A pixel, >= 1: a low-discrepancy sequence of each pixel's own.
+    std::uint64_t seed = 1;     ///< Of these sequences.
 };
 
 /// A step on the picture from the place of a sample [pixels]: right and down.
@@ -31,20 +31,20 @@ struct PixelSamples {
     std::span<const Hit> hits;
 };
 
-/// How far a picture is.
+/// Progress of a picture.
 struct PictureProgress {
     std::int64_t rays = 0;  ///< So far.
     double fraction = 0;    ///< Of all rays, in [0, 1].
 };
 
-/// How a caller follows a picture in the making, and ends it early.
+/// How a caller watches the progress of a picture, and ends it early.
 struct PictureMonitor {
     /// Called from the calling thread, about every million rays; may be empty.
     std::function<void(const PictureProgress&)> on_progress;
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is left in milliseconds.
 };
 
-/// Traces a ray from the eye at each of `offsets` from every sample, and hands the pixels one by one to `visit`, from
+/// Traces a camera ray at each of `offsets` from every sample, and calls `visit` for one pixel after the other, from
 /// any thread and in any order. The same rays for the same seed and any number of threads.
 /// @throws InputError for less than one sample or one pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,

@@ -56,7 +56,7 @@ class ElementVertices {
 
 /// One value a vertex from one an element, of which only those of leaves count. At most vertices: the mean over the
 /// leaves that have the vertex as a corner, weighted by their angles there. An angle does not change when a face is cut
-/// into triangles (Thuermer and Wuethrich 1998), so the way in which a file happened to be tessellated leaves no mark.
+/// into triangles (Thuermer and Wuethrich 1998), so the result does not depend on how a face was tessellated.
 /// At a hanging vertex: the interpolated value of its edge's ends, so that the leaves on both sides of the edge agree
 /// along all of it. Across a seam leaves of about equal size whose vertices lie apart differ by what linear
 /// interpolation leaves out: by the square of their size.

@@ -107,8 +107,8 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// Large where importance() is vague: power x area x solid angle, about; one direction lights a hemisphere well
-    /// enough, normals of all directions the whole sphere.
+    /// The surface area orientation heuristic, about: power x area x solid angle, which is large where importance() is
+    /// a loose bound. A single normal counts as a hemisphere, normals of all directions as the whole sphere.
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());

@@ -15,7 +15,7 @@ namespace interflect {
 /// root takes a child with a probability proportional to power x cosines / squared distance. The cosines, of the
 /// receiving surface and of the emitting ones, are the largest that the box and the cone allow. The distance is that to
 /// the box's centre, at least half its diagonal. A node that lies behind the surface, or faces away from the point as a
-/// whole, is never taken. After Conty and Kulla 2018. Occlusion is not known. Immutable, shared by all threads; 64
+/// whole, is never taken. After Conty and Kulla 2018. Occlusion is ignored. Immutable, shared by all threads; 64
 /// bytes a node, two nodes an emitting patch, and 4 bytes a patch.
 class LightTree {
   public:

@@ -18,7 +18,7 @@ struct OutlineOptions {
 /// Draws the borders of all leaves in sight over a picture of `view`: wherever two places closer than the lines' width
 /// show different leaves. So there are lines at silhouettes as well, and none where two pieces of one leaf meet.
 /// @param picture  As a display shows it (tone-mapped): linear Rec. 709 in [0, 1]. Its size is the camera's.
-/// @param samples  Places a pixel, >= 1, of three rays each.
+/// @param samples  Samples a pixel, >= 1, of three rays each.
 /// @return         The same bits for the same seed and any number of threads.
 /// @throws InputError as render() does, and for options out of range.
 Image draw_outlines(const Image& picture, const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,

@@ -23,7 +23,7 @@ namespace {
 constexpr int least_batches = 8;
 /// Samples of a batch, at most: beyond them stratification gains little, and more batches tell the error better.
 constexpr int largest_batch = 64;
-/// Paths that advance together, about: many enough to hide the cost of a call, few enough to stay in the cache.
+/// Paths of one wavefront, about: many enough to hide the cost of a call, few enough to stay in the cache.
 constexpr std::size_t paths_per_tile = 2048;
 /// Paths between two reports of progress, about.
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
@@ -35,7 +35,7 @@ std::vector<PatchGeometry> geometry_of(const Scene& scene) {
     return geometry;
 }
 
-/// A picture in the making.
+/// A picture while it is traced: statistics of its pixels, and the batches that they still need.
 class PathPicture {
   public:
     PathPicture(const PathScene& scene, const PathOptions& options, const PathMonitor& monitor)

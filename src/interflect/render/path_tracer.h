@@ -29,21 +29,21 @@ struct PathOptions {
     std::uint64_t seed = 1;
 };
 
-/// How far a picture is.
+/// Progress of a picture.
 struct PathProgress {
     std::int64_t rays = 0;      ///< So far, of all kinds.
     double fraction = 0;        ///< Of the work foreseen so far, in [0, 1]; a target not yet reached foresees more.
     double relative_error = 0;  ///< As in PathTracing.
 };
 
-/// What the caller is told, and how it ends a run.
+/// How a caller watches the progress of a picture, and ends it early.
 struct PathMonitor {
     /// Called from the calling thread, about every quarter million paths.
     std::function<void(const PathProgress&)> on_progress;
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
 };
 
-/// A picture and what is known of its error.
+/// A picture with its standard error.
 struct PathTracing {
     /// Radiance L = (M + rho H) / pi of what each pixel sees, the mean over its square; black where rays escape. In the
     /// units of render(). No approximation: the expected value is the exact solution's. A pixel that an interrupted run
@@ -75,8 +75,8 @@ struct PathTracing {
 ///
 /// Without a target the estimate is unbiased. With one, pixels get samples in rounds that at most double their number.
 /// The samples that a pixel still needs follow from the relative variance of all samples so far, averaged over the 7 x
-/// 7 pixels around it: one pixel's own luck neither stops nor prolongs its sampling. What bias remains is far below the
-/// standard error; for a picture without any give no target.
+/// 7 pixels around it: the noise of one pixel's own variance neither stops nor prolongs its sampling. The bias that
+/// remains is far below the standard error; without a target there is none.
 ///
 /// @param ray_caster  Of the same scene.
 /// @return            The same bits for the same seed and any number of threads, unless interrupted.

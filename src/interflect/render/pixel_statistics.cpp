@@ -17,7 +17,7 @@ double mean_reflected(const std::vector<PixelStatistics>& pixels) {
     return sum / static_cast<double>(pixels.size());
 }
 
-/// What a pixel's error is measured against.
+/// What a pixel's error is relative to.
 double error_scale(const PixelStatistics& p, double picture_mean) {
     return std::max(mean_channel(p.mean), picture_mean);
 }

@@ -12,7 +12,7 @@
 
 namespace interflect {
 
-/// A number that every element has, and how it is to be shown.
+/// A number for each element, and how it is shown.
 struct Quantity {
     std::string name;               ///< ASCII, as is the unit: "irradiance".
     std::string unit;               ///< "lm/m^2"; empty for a pure number.
@@ -23,7 +23,7 @@ struct Quantity {
     std::string label() const { return unit.empty() ? name : name + " [" + unit + "]"; }
 };
 
-/// A quantity as a view sees it.
+/// A picture of a quantity.
 struct QuantityPicture {
     Image values;  ///< In all three channels: the mean over what a pixel sees, 0 where that is nothing. To measure.
     Image shown;   ///< In false colours, what escapes black. To look at, with a legend (legend.h).
@@ -32,7 +32,7 @@ struct QuantityPicture {
     bool interrupted = false;            ///< Stopped by the caller: pixels that were not reached show nothing.
 };
 
-/// Shows one flat value a leaf, whatever light there is.
+/// Draws each leaf in the false colour of its value, without shading.
 /// @param forest    Of the same scene, as is `ray_caster`.
 /// @return          The same bits for the same seed and any number of threads.
 /// @throws InputError as render() does.

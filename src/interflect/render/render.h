@@ -12,7 +12,7 @@
 
 namespace interflect {
 
-/// How the irradiance of elements becomes that of points.
+/// How irradiance is reconstructed at points from that of elements.
 enum class Shading {
     flat,    ///< Every leaf has one irradiance.
     smooth,  ///< Interpolated between the leaves of a smooth surface: see SmoothField.
@@ -27,7 +27,7 @@ struct RenderOptions {
     std::uint64_t seed = 1;             ///< Of the rays' places within their pixels.
 };
 
-/// A picture and what happened while it was made.
+/// A picture with counts of its rays.
 struct Rendering {
     /// Luminance L = (M + rho H) / pi of what each pixel sees, the mean over its square; black where rays escape.
     /// [cd/m^2] where exitance M and irradiance H are photometric [lm/m^2], else [W/(m^2 sr)].

@@ -10,7 +10,7 @@
 
 namespace interflect {
 
-/// Any quantity of elements, irradiance above all, as a function on the scene's surfaces that is continuous wherever
+/// A quantity of elements, such as irradiance, as a function on the scene's surfaces that is continuous wherever
 /// they are smooth: interpolated from the corners of leaves, linearly on a triangle and bilinearly on a quadrilateral,
 /// without cracks where large leaves meet small ones. A patch that is whole and has no smooth neighbours keeps its one
 /// value.
@@ -21,7 +21,7 @@ class SmoothField {
     /// @throws InputError where the sizes disagree.
     SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
 
-    /// The value at a point of a patch. Any number of threads may ask.
+    /// The value at a point of a patch. Any number of threads may call it.
     Rgb at(std::uint32_t patch, Parameters p) const;
 
   private:

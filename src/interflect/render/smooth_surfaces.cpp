@@ -246,13 +246,13 @@ class ContactTree {
     SegmentTree tree_;
 };
 
-/// Joins shorter than this share of an edge are left out: gaps between the end of a wall and the next one.
+/// Seams shorter than this share of an edge are ignored: gaps between the end of a wall and the next one.
 constexpr double least_seam_share = 1e-3;
 
 /// Where patches continue each other across parts of edges; only pairs with at least one patch of a cut surface.
 class SeamFinder {
   public:
-    /// @param edges  Those across which nothing continues as a whole.
+    /// @param edges  Those across which no whole patch continues.
     SeamFinder(const Scene& scene, std::vector<PatchEdge> edges, const ContactTree& contacts)
         : scene_(scene),
           edges_(std::move(edges)),
@@ -267,7 +267,7 @@ class SeamFinder {
             if (!is_piece(edges_[i])) continue;
             std::vector<std::uint32_t> others;
             tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
-                if (is_piece(edges_[j]) && j <= i) return;  // comes up from the other side
+                if (is_piece(edges_[j]) && j <= i) return;  // is found from the other side
                 if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
                     others.push_back(j);
             });
@@ -291,7 +291,7 @@ class SeamFinder {
                                             : !other.is_collinear(start(a), end(a), tolerance_))
             return;
         const double b_start = line.along(start(b)), b_end = line.along(end(b));
-        if (b_end >= b_start) return;  // one patch is upside down
+        if (b_end >= b_start) return;  // the patches have opposite orientations
         const LineInterval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
         const double least = std::max(2.0 * tolerance_, least_seam_share * std::min(line.length(), other.length()));
         if (shared.to - shared.from <= least) return;
