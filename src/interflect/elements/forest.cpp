@@ -139,6 +139,23 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
     return old_numbers;
 }
 
+void ElementForest::rebuild(std::span<const std::uint32_t> parents) {
+    for (const std::uint32_t parent : parents) {
+        const std::uint32_t next = size();
+        if (parent >= next || subdivide(parent) != next)
+            throw InputError(fmt::format("element {} cannot be subdivided there", parent));
+        if (parent >= generations_.back()) generations_.push_back(next);
+    }
+    if (!parents.empty()) generations_.push_back(size());
+}
+
+std::vector<std::uint32_t> ElementForest::subdivided() const {
+    std::vector<std::uint32_t> parents;
+    parents.reserve((size() - patch_count()) / 4);
+    for (std::uint32_t e = patch_count(); e < size(); e += 4) parents.push_back(parent(e));
+    return parents;
+}
+
 std::uint32_t ElementForest::drop_last_siblings() {
     const std::uint32_t parent = this->parent(size() - 1);
     nodes_[parent].first_child = none;

@@ -84,6 +84,12 @@ class ElementForest {
     /// @return  Their old numbers: what is element first + i now was old_numbers[i].
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
+    /// Of every four siblings their parent, in the order of these: what rebuild() takes.
+    std::vector<std::uint32_t> subdivided() const;
+    /// Makes the trees of another forest of the same scene, with the same numbers. Call on a forest without children.
+    /// @throws InputError where an element cannot be subdivided in its turn.
+    void rebuild(std::span<const std::uint32_t> parents);
+
     /// Takes back the last four siblings, which must be leaves: their parent is one again. Call while no thread uses
     /// the forest, and it is in order. @return  The parent.
     std::uint32_t drop_last_siblings();

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "interflect/base/error.h"
 #include "interflect/exports/checksums.h"
 #include "interflect/exports/description.h"
+#include "interflect/exports/json_text.h"
 
 namespace interflect {
 
@@ -77,6 +79,19 @@ template <>
 hid_t native_type<char>() {
     return H5T_NATIVE_CHAR;
 }
+template <>
+hid_t native_type<std::byte>() {
+    return H5T_NATIVE_UCHAR;
+}
+
+Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space) {
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
+    H5Pset_obj_track_times(properties, false);
+    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "cannot make properties");
+    H5Pset_create_intermediate_group(links, 1);
+    return {H5Dcreate2(file, name.c_str(), type, space, links, properties, H5P_DEFAULT), H5Dclose,
+            "cannot write an array"};
+}
 
 /// Writes `rows` rows of `columns` numbers; no time stamps, so that equal contents are equal bytes.
 /// @return Where they are in the file.
@@ -84,12 +99,7 @@ template <class T>
 FileRange write_array(hid_t file, const std::string& name, const T* data, std::size_t rows, std::size_t columns) {
     const std::array<hsize_t, 2> size{rows, columns};
     const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose, "cannot size an array");
-    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
-    H5Pset_obj_track_times(properties, false);
-    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "cannot make properties");
-    H5Pset_create_intermediate_group(links, 1);
-    const Handle set(H5Dcreate2(file, name.c_str(), native_type<T>(), space, links, properties, H5P_DEFAULT), H5Dclose,
-                     "cannot write an array");
+    const Handle set = new_dataset(file, name, native_type<T>(), space);
     if (rows * columns == 0) return {name, checksum_block_size, 0};
     require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write '" + name + "'");
     return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
@@ -175,22 +185,11 @@ std::vector<Contact> contacts_of(const std::vector<V3f>& ends) {
     return contacts;
 }
 
-/// The elements that have children, in the order of their children: what a forest is rebuilt from.
-std::vector<std::uint32_t> subdivided_elements(const ElementForest& forest) {
-    std::vector<std::uint32_t> parents;
-    for (std::uint32_t e = forest.patch_count(); e < forest.size(); e += 4) parents.push_back(forest.parent(e));
-    return parents;
-}
-
 std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<std::uint32_t>& parents) {
     const std::size_t size = scene.patches.size() + 4 * parents.size();
     if (size >= none) throw std::runtime_error("too many elements");
     auto forest = std::make_shared<ElementForest>(scene, size);
-    for (const std::uint32_t parent : parents) {
-        const std::uint32_t next = forest->size();
-        if (parent >= next || forest->subdivide(parent) != next)
-            throw std::runtime_error(fmt::format("element {} cannot be subdivided there", parent));
-    }
+    forest->rebuild(parents);
     return forest;
 }
 
@@ -296,7 +295,7 @@ SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
 /// @return Where the arrays are in the file.
 std::vector<FileRange> write_arrays(hid_t file, const std::string& description, const Scene& scene,
                                     const Solution& solution) {
-    const std::vector<std::uint32_t> parents = subdivided_elements(*solution.forest);
+    const std::vector<std::uint32_t> parents = solution.forest->subdivided();
     std::vector<FileRange> ranges = {
         write_array(file, "/description", description.data(), description.size(), 1),
         write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3),
@@ -311,9 +310,63 @@ std::vector<FileRange> write_arrays(hid_t file, const std::string& description, 
     return ranges;
 }
 
+constexpr const char *state_index = "/state/index", *state_bytes = "/state/bytes";
+/// Of what the arrays of a state are: to be raised whenever one of them changes.
+constexpr int state_version = 1;
+
+/// Writes the arrays of a state one after the other as one, and a list of them. @return Where they are in the file.
+std::vector<FileRange> write_state(hid_t file, const StateArchive& state) {
+    Json arrays = Json::array();
+    hsize_t size = 0;
+    for (const auto& [name, bytes] : state.written()) {
+        arrays.push_back({name, bytes.size()});
+        size += bytes.size();
+    }
+    const std::string index =
+        json_text({{"state_version", state_version}, {"version", INTERFLECT_VERSION}, {"arrays", arrays}});
+    const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "cannot size an array");
+    const Handle set = new_dataset(file, state_bytes, native_type<std::byte>(), space);
+    hsize_t begin = 0;
+    for (const auto& [name, bytes] : state.written()) {
+        const hsize_t count = bytes.size();
+        if (count == 0) continue;
+        const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose, "cannot size an array");
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
+        require(H5Dwrite(set, native_type<std::byte>(), memory, space, H5P_DEFAULT, bytes.data()),
+                "cannot write the state of the run");
+        begin += count;
+    }
+    return {write_array(file, state_index, index.data(), index.size(), 1),
+            {state_bytes, H5Dget_offset(set), H5Dget_storage_size(set)}};
+}
+
+StateArchive read_state_unchecked(const std::filesystem::path& path) {
+    verify_checksums(path);
+    prepare_hdf5();
+    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
+    if (H5Lexists(file, "/state", H5P_DEFAULT) <= 0)
+        throw std::runtime_error("it has only the result of a run, not its state: see solve --checkpoint");
+    const std::vector<char> text = read_array<char>(file, state_index, 1);
+    const Json index = parse_json_text({text.data(), text.size()});
+    if (index.at("state_version") != state_version || index.at("version") != INTERFLECT_VERSION)
+        throw std::runtime_error(fmt::format("its run was saved by Interflect {}; this is {}",
+                                             index.at("version").get<std::string>(), INTERFLECT_VERSION));
+    const std::vector<std::byte> bytes = read_array<std::byte>(file, state_bytes, 1);
+    std::map<std::string, std::vector<std::byte>> arrays;
+    std::span<const std::byte> left = bytes;
+    for (const Json& array : index.at("arrays")) {
+        const auto size = array.at(1).get<std::size_t>();
+        if (size > left.size()) throw std::runtime_error("the state of the run is cut short");
+        const auto some = left.first(size);
+        arrays[array.at(0).get<std::string>()].assign(some.begin(), some.end());
+        left = left.subspan(size);
+    }
+    return StateArchive(std::move(arrays));
+}
+
 /// An HDF5 file that begins with an empty block for checksums.
 std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
-                                  const Solution& solution) {
+                                  const Solution& solution, const StateArchive* state) {
     prepare_hdf5();
     errno = 0;
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make properties");
@@ -321,13 +374,16 @@ std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::
     const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose,
                       "cannot create the file");
     std::vector<FileRange> ranges = write_arrays(file, description, scene, solution);
+    if (state)
+        for (FileRange& range : write_state(file, *state)) ranges.push_back(std::move(range));
     require(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot write the file");
     return ranges;
 }
 
 }  // namespace
 
-void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution) {
+void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
+                    const StateArchive* state) {
     std::string description;
     try {
         require_valid(scene);
@@ -336,7 +392,7 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
     } catch (const std::exception& e) {
         throw std::runtime_error(fmt::format("the solution is not written: {}", e.what()));
     }
-    write_checksums(path, write_hdf5(path, description, scene, solution));
+    write_checksums(path, write_hdf5(path, description, scene, solution, state));
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
@@ -347,6 +403,15 @@ SolvedScene read_solution(const std::filesystem::path& path) {
         return read_solution_unchecked(path);
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("not a solution file that can be read: {}", e.what()));
+    }
+}
+
+StateArchive read_state(const std::filesystem::path& path) {
+    if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
+    try {
+        return read_state_unchecked(path);
+    } catch (const std::exception& e) {
+        throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "interflect/scene/scene.h"
 #include "interflect/solver/solve.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -21,11 +22,17 @@ struct SolvedScene {
 /// gives the same bytes, and what is written can be read. To be given a name by a PendingFile.
 /// @throws std::runtime_error when the file cannot be written, or when the scene has a fault, or a quantity is negative
 /// or not finite or has not one entry for every element: then nothing is written.
-void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution);
+/// @param state  Of the run, so that it can go on: see Solver::save(). Null: the file has none.
+void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
+                    const StateArchive* state = nullptr);
 
 /// Reads what write_solution wrote, and files of the versions 2 and 3, which have no checksums.
 /// @throws InputError for a file that is missing, damaged or something else.
 SolvedScene read_solution(const std::filesystem::path& path);
+
+/// For reading the state of the run in a file that write_solution() wrote. @throws InputError where it has none, and as
+/// read_solution().
+StateArchive read_state(const std::filesystem::path& path);
 
 /// Whether the file at `path` begins like a solution file, of this version or an older one; false when it cannot be
 /// read. True of a new one whose first bytes are damaged.

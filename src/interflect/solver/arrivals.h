@@ -26,6 +26,10 @@ class Arrivals {
 
     /// To be called before a step. @param elements  Of the forest so far.
     void begin(std::size_t elements);
+    /// Nothing has arrived at the first `elements`.
+    void clear(std::size_t elements) {
+        for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
+    }
     /// What arrived at an element; nothing has from then on.
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
     void add(std::size_t element, const Contribution& contribution) {

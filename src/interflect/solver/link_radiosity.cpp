@@ -9,12 +9,17 @@
 
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
-#include "interflect/solver/exchange.h"
 #include "interflect/solver/radiosity.h"
-#include "interflect/solver/solver_state.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {
+
+/// A link whose error bound exceeds the threshold, and which of its elements is to be subdivided.
+struct RefinementCandidate {
+    std::size_t link;
+    std::uint32_t divided;
+    double factor;  // over the threshold
+};
 
 namespace {
 
@@ -27,26 +32,6 @@ constexpr double bound_if_blocked = 1.0 / 16;
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
 /// Of one task.
 constexpr std::size_t pairs_per_task = 256, patches_per_task = 8;
-
-struct Link {
-    ElementPair ends;
-    Exchange exchange;
-
-    double area() const { return static_cast<double>(exchange.area) * static_cast<double>(exchange.visibility); }
-};
-
-/// Two elements that are to be linked.
-struct LinkCandidate {
-    ElementPair ends;
-    Effort effort;
-};
-
-/// A link whose error bound exceeds the threshold, and which of its elements is to be subdivided.
-struct RefinementCandidate {
-    std::size_t link;
-    std::uint32_t divided;
-    double factor;  // over the threshold
-};
 
 struct Sphere {
     V3f centre;
@@ -108,59 +93,33 @@ class RelativeChange {
     double change_ = 0, sum_ = 0;
 };
 
-class LinkedElements {
-  public:
-    LinkedElements(const Scene& scene, SolverState& state, std::size_t link_limit)
-        : scene_(scene),
-          state_(state),
-          forest_(*state.forest),
-          estimator_(*state.forest, state.ray_caster, state.options.seed),
-          link_limit_(link_limit) {}
+}  // namespace
 
-    /// Links all patches that face each other.
-    void link_patches();
-    /// Carries light one bounce further. @return what arrived at no element.
-    RgbD gather_light();
-    /// Carries importance one bounce further, against the light.
-    void gather_importance();
-    /// Of the last bounce.
-    double change() const { return std::max(light_change_, importance_change_); }
-    /// Subdivides links whose error bound exceeds the threshold. @return whether any was.
-    bool refine();
-
-    std::int64_t rays() const { return rays_; }
-
-  private:
-    void require_room_for(std::size_t more) const;
-    void link(const std::vector<LinkCandidate>& link_candidates);
-    std::vector<RefinementCandidate> refinement_candidates() const;
-    bool may_divide(std::uint32_t element) const;
-    void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
-    void describe_new_elements(std::uint32_t first);
-
-    const Scene& scene_;
-    SolverState& state_;
-    ElementForest& forest_;
-    ExchangeEstimator estimator_;
-    std::size_t link_limit_;
-    std::vector<Link> links_;
-    double light_change_ = 0, importance_change_ = 0;
-    std::int64_t rays_ = 0;
-};
+LinkedElements::LinkedElements(SolverState& state, std::size_t link_limit)
+    : state_(state),
+      forest_(*state.forest),
+      estimator_(*state.forest, state.ray_caster, state.options.seed),
+      link_limit_(link_limit),
+      refines_(state.options.method.refines) {}
 
 void LinkedElements::require_room_for(std::size_t more) const {
     if (links_.size() + more <= link_limit_) return;
-    throw InputError("'" + scene_.name + "' needs more than " + std::to_string(link_limit_) + " links between its " +
+    throw InputError("'" + state_.scene.name + "' needs more than " + std::to_string(link_limit_) + " links between its " +
                      std::to_string(forest_.patch_count()) + " patches and their elements, " +
                      std::to_string(sizeof(Link)) +
                      " bytes each: raise epsilon or min_area, lower rays, or use a method without links, such as "
                      "hsrr");
 }
 
-void LinkedElements::link_patches() {
+void LinkedElements::prepare(SolverState&) {
+    if (candidates_.empty()) find_patches_to_link();
+    link_candidates();
+}
+
+void LinkedElements::find_patches_to_link() {
     double surface = 0;
     std::vector<Sphere> spheres;
-    for (const Patch& patch : scene_.patches) spheres.push_back(sphere_around(scene_, patch));
+    for (const Patch& patch : state_.scene.patches) spheres.push_back(sphere_around(state_.scene, patch));
     for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) surface += forest_.area(i);
     const auto emits = [&](std::uint32_t i) { return channel_sum(state_.materials.exitance(i)) > 0; };
     // A reflector as bright as the average sends no more than the threshold over so small an exchange.
@@ -182,28 +141,26 @@ void LinkedElements::link_patches() {
         }
     });
     require_room_for(count);
-    std::vector<LinkCandidate> all;
-    all.reserve(count);
-    for (const std::vector<LinkCandidate>& link_candidates : of_patch)
-        all.insert(all.end(), link_candidates.begin(), link_candidates.end());
-    link(all);
+    candidates_.reserve(count);
+    for (const std::vector<LinkCandidate>& some : of_patch)
+        candidates_.insert(candidates_.end(), some.begin(), some.end());
 }
 
-/// Adds links, but none between elements that exchange nothing even unoccluded.
-void LinkedElements::link(const std::vector<LinkCandidate>& link_candidates) {
-    require_room_for(link_candidates.size());
-    const std::size_t first = links_.size();
-    links_.resize(first + link_candidates.size());
+/// Turns candidates into links, but for those between elements that exchange nothing even unoccluded.
+void LinkedElements::link_candidates() {
+    require_room_for(candidates_.size());
+    std::vector<Link> made(candidates_.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(link_candidates.size(), pairs_per_task, state_.stop, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(made.size(), pairs_per_task, state_.stop, [&](std::size_t begin, std::size_t end) {
         std::int64_t used = 0;
         for (std::size_t i = begin; i < end; ++i)
-            links_[first + i] = {link_candidates[i].ends,
-                                 estimator_.estimate(link_candidates[i].ends, link_candidates[i].effort, used)};
+            made[i] = {candidates_[i].ends, estimator_.estimate(candidates_[i].ends, candidates_[i].effort, used)};
         rays += used;
     });
     rays_ += rays;
+    links_.insert(links_.end(), made.begin(), made.end());
     std::erase_if(links_, [](const Link& l) { return l.exchange.area == 0; });
+    candidates_.clear();
 }
 
 RgbD LinkedElements::gather_light() {
@@ -236,6 +193,8 @@ void LinkedElements::gather_importance() {
     importance_change_ = change.value();
 }
 
+namespace {
+
 /// The largest and the smallest radiosity of each element's parts.
 struct RadiosityRange {
     std::vector<Rgb> least, most;
@@ -256,6 +215,8 @@ double error_bound(const Exchange& exchange, float spread) {
     if (exchange.visibility == 0) return exchange.area * bound_if_blocked;
     return exchange.visibility < 1 ? exchange.area : spread;
 }
+
+}  // namespace
 
 /// What the links carry wrongly at most, after Smits et al. 1992: what element i receives from j is taken as the same
 /// all over i, where the form factor varies by its spread over i times B_j, and by its spread over j times the
@@ -315,11 +276,17 @@ void LinkedElements::describe_new_elements(std::uint32_t first) {
 }
 
 bool LinkedElements::refine() {
-    std::vector<RefinementCandidate> candidates = refinement_candidates();
-    keep_affordable(candidates);
+    if (candidates_.empty()) subdivide_links();
+    const bool is_refined = !candidates_.empty();
+    link_candidates();
+    return is_refined;
+}
+
+void LinkedElements::subdivide_links() {
+    std::vector<RefinementCandidate> refined = refinement_candidates();
+    keep_affordable(refined);
     const std::uint32_t before = forest_.size();
-    std::vector<LinkCandidate> link_candidates;
-    for (const RefinementCandidate& candidate : candidates) {
+    for (const RefinementCandidate& candidate : refined) {
         Link& link = links_[candidate.link];
         const std::uint32_t divided = candidate.divided;
         const std::uint32_t other = link.ends.a == divided ? link.ends.b : link.ends.a;
@@ -327,50 +294,66 @@ bool LinkedElements::refine() {
             forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);
         if (child == none) continue;
         const Effort effort = link.exchange.visibility == 1 ? Effort::quick : Effort::thorough;
-        for (std::uint32_t k = 0; k < 4; ++k) link_candidates.push_back({{child + k, other}, effort});
-        link.exchange.area = 0;  // link() removes it
+        for (std::uint32_t k = 0; k < 4; ++k) candidates_.push_back({{child + k, other}, effort});
+        link.exchange.area = 0;  // link_candidates() removes it
     }
     describe_new_elements(before);
-    link(link_candidates);
-    return !link_candidates.empty();
 }
 
-/// Sweeps until light and links have settled, or a limit is reached. @throws Interrupted in the middle of a sweep
-void sweep(SolverState& state, LinkedElements& elements) {
-    elements.link_patches();
-    bool refines = state.options.method.refines;
-    for (int iteration = 1;; ++iteration) {
-        const RgbD escaped_power = elements.gather_light();
-        if (importance_use(state.solution) == ImportanceUse::full) elements.gather_importance();
-        state.schedule.done({elements.rays() - state.power_rays, false});
-        state.power_rays = elements.rays();
-        report(state, iteration, escaped_power);
-        if (state.options.iterations > 0 && iteration >= state.options.iterations) return;
-        if (state.stop.is_due()) throw Interrupted();
-        if (refines && elements.change() <= settled)
-            refines = elements.refine();
-        else if (!refines && elements.change() <= negligible_change)
-            return;
-    }
+bool LinkedElements::is_fulfilled(const SolverState& state) const {
+    return is_settled_ || (state.options.iterations > 0 && sweeps_ >= state.options.iterations);
 }
 
-}  // namespace
+IterationPlan LinkedElements::plan(SolverState& state) {
+    return is_fulfilled(state) ? IterationPlan{} : IterationPlan{.rays = 1};
+}
 
-Solution solve_by_links(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
-                        const Monitor& monitor, std::size_t link_limit) {
-    SolverState state(scene, ray_caster, options, monitor);
-    state.stop.limit_time(state.start, options.seconds);
-    LinkedElements elements(scene, state, link_limit);
-    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else it is dark, and exactly so
-    try {
-        if (is_lit) sweep(state, elements);
-    } catch (const Interrupted&) {
-        state.solution.interrupted = state.stop.is_asked_for();
-    }
-    state.solution.standard_error.assign(state.forest->size(), 0.0f);
-    state.solution.discretisation_error.assign(state.forest->size(), 0.0f);
-    state.solution.rays.assign(state.forest->size(), 0.0f);
-    return std::move(state.solution);
+RgbD LinkedElements::iterate(SolverState&, IterationPlan& plan) {
+    if (refines_next_) refines_ = refine();
+    refines_next_ = false;
+    const RgbD escaped_power = gather_light();
+    if (importance_use(state_.solution) == ImportanceUse::full) gather_importance();
+    ++sweeps_;
+    const double change = std::max(light_change_, importance_change_);
+    if (refines_)
+        refines_next_ = change <= settled;
+    else
+        is_settled_ = change <= negligible_change;
+    plan.rays = rays_ - state_.power_rays;
+    state_.power_rays = rays_;
+    return escaped_power;
+}
+
+void LinkedElements::finish(SolverState& state) const {
+    for (std::vector<float> Solution::*numbers :
+         {&Solution::standard_error, &Solution::discretisation_error, &Solution::rays})
+        (state.solution.*numbers).assign(state.forest->size(), 0.0f);
+}
+
+void LinkedElements::retarget(SolverState& state) {
+    look(state);
+    refines_ = state_.options.method.refines;
+    refines_next_ = is_settled_ = false;
+}
+
+bool LinkedElements::fits(const ElementForest& forest) const {
+    const auto joins_elements = [&](const auto& link) {
+        return link.ends.a < forest.size() && link.ends.b < forest.size();
+    };
+    return std::all_of(links_.begin(), links_.end(), joins_elements) &&
+           std::all_of(candidates_.begin(), candidates_.end(), joins_elements);
+}
+
+void LinkedElements::archive(StateArchive& archive) {
+    archive("links/links", links_);
+    archive("links/candidates", candidates_);
+    archive("links/light_change", light_change_);
+    archive("links/importance_change", importance_change_);
+    archive("links/rays", rays_);
+    archive("links/sweeps", sweeps_);
+    archive("links/refines", refines_);
+    archive("links/refines_next", refines_next_);
+    archive("links/is_settled", is_settled_);
 }
 
 }  // namespace interflect

@@ -1,13 +1,32 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
-#include "interflect/solver/solve.h"
+#include "interflect/solver/exchange.h"
+#include "interflect/solver/iteration_method.h"
 
 namespace interflect {
 
 /// As many as fit the memory of a common computer: 24 bytes each.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
+
+/// Two elements that exchange light.
+struct Link {
+    ElementPair ends;
+    Exchange exchange;
+
+    double area() const { return static_cast<double>(exchange.area) * static_cast<double>(exchange.visibility); }
+};
+
+/// Two elements that are to be linked.
+struct LinkCandidate {
+    ElementPair ends;
+    Effort effort;
+};
+
+struct RefinementCandidate;
 
 /// Solves Eq. 1 of Prikryl et al. 2000 without chance: hierarchical radiosity, Hanrahan, Salzman and Aupperle 1991.
 /// Pairs of elements that face each other are linked, and each gathers light over its links; form factors are
@@ -30,11 +49,49 @@ inline constexpr std::size_t most_links = std::size_t{1} << 27;
 /// and seconds limit the sweeps. Options of random sampling, and `until`, have no meaning here. IterationReport has one
 /// entry a sweep; `rays` are those of visibility, `escaped_power` is what left the surfaces and arrived at none: in a
 /// closed scene the error of the form factors' sum, of either sign. Solution::standard_error and ::rays are 0.
-/// @param scene, options  As solve() accepts them. options.method says whether the mesh is refined and what steers.
-/// @param link_limit      Most links at a time.
-/// @throws InputError where there would be more links. Same seed, same bits, for any number of threads.
-/// Cost: O(patches^2 + links) time.
-Solution solve_by_links(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options,
-                        const Monitor& monitor = {}, std::size_t link_limit = most_links);
+/// Same seed, same bits, for any number of threads. Cost: O(patches^2 + links) time.
+class LinkedElements : public IterationMethod {
+  public:
+    /// @param state       Must outlive this. @param link_limit  Most links at a time.
+    explicit LinkedElements(SolverState& state, std::size_t link_limit = most_links);
+
+    /// Links all patches that face each other. @throws InputError where there would be too many links.
+    void prepare(SolverState& state) override;
+    bool is_fulfilled(const SolverState& state) const override;
+    /// Another sweep, until light and links have settled.
+    IterationPlan plan(SolverState& state) override;
+    /// A sweep: refines the links if light had settled, then carries light, and importance, one bounce further.
+    /// @throws InputError as prepare().
+    RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    void finish(SolverState& state) const override;
+    void retarget(SolverState& state) override;
+    void archive(StateArchive& archive) override;
+    bool fits(const ElementForest& forest) const override;
+
+  private:
+    RgbD gather_light();
+    void gather_importance();
+    bool refine();
+    void find_patches_to_link();
+    void link_candidates();
+    void subdivide_links();
+    void require_room_for(std::size_t more) const;
+    std::vector<RefinementCandidate> refinement_candidates() const;
+    bool may_divide(std::uint32_t element) const;
+    void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
+    void describe_new_elements(std::uint32_t first);
+
+    SolverState& state_;
+    ElementForest& forest_;
+    ExchangeEstimator estimator_;
+    std::size_t link_limit_;
+    std::vector<Link> links_;
+    std::vector<LinkCandidate> candidates_;  // that are not links yet
+    double light_change_ = 0, importance_change_ = 0;  // of the last sweep
+    std::int64_t rays_ = 0;
+    int sweeps_ = 0;
+    bool refines_ = false;  // there may be links to refine, once light has settled
+    bool refines_next_ = false, is_settled_ = false;
+};
 
 }  // namespace interflect

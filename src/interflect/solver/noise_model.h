@@ -9,6 +9,7 @@
 
 #include "interflect/base/colour.h"
 #include "interflect/elements/forest.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -45,6 +46,15 @@ class NoiseModel {
     /// @param weight   How much a leaf's squared error counts; inner elements count as their leaves together.
     void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
+
+    std::size_t elements() const { return per_ray_.size(); }
+    void archive(StateArchive& archive) {
+        archive("noise/per_ray", per_ray_);
+        archive("noise/scale", scale_);
+        archive("noise/observed", spread_.observed);
+        archive("noise/independent", spread_.independent);
+        archive("noise/iterations", iterations_);
+    }
 
   private:
     static constexpr std::size_t rarities = 48;

@@ -2,42 +2,70 @@
 
 #include <vector>
 
-#include "interflect/solver/solver_state.h"
+#include "interflect/solver/bounce_budget.h"
+#include "interflect/solver/iteration_method.h"
+#include "interflect/solver/steps.h"
 
 namespace interflect {
 
-/// What one pass hands to the next.
-struct PassState {
-    /// Irradiance that was received and not shot when the last pass ended, as many rays as it had, by element: the next
-    /// one shoots it too, so that the mean of all lacks nothing.
-    std::vector<Rgb> unshot;
-    double unshot_rays = 0;
-    /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
-    /// Tells how many rays a bounce may have.
-    double bounces = 0;
-    bool is_final = false;  ///< The next pass is the last one.
+/// A pass under way: what one bounce leaves to the next.
+struct Pass {
+    bool is_under_way = false;
+    bool emits = true;         ///< The next bounce is the first.
+    FreshEstimate fresh;       ///< What all bounces so far brought.
+    std::vector<Rgb> unshot;   ///< Of that, what is to be shot next.
+    ImportanceWeights weights;
+    BounceBudget budget;
+    double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce, see PowerStep.
 };
 
-/// One pass: shoots what the emitters emit, then what that brought, and so on, bounce by bounce, until little is left
-/// ('incremental shooting', Neumann et al. 1995). Each bounce gets rays in proportion to what is left to shoot, weighed
-/// as rays are (Eq. 3, 10). An unbiased estimate of all bounces on the mesh as it is, independent of earlier passes.
-/// @param oracle_refines  Whether pairs are refined by Eq. 14, 15 on the way; else the mesh stays as it is.
-/// @param escaped_power   Receives what left the scene [lm or W].
-/// @return                Of every element.
-FreshEstimate trace_pass(SolverState& state, PassState& passes, std::int64_t rays, bool oracle_refines,
-                         RgbD& escaped_power);
+/// Importance on its way from the views, before the first pass.
+struct ImportanceStart {
+    bool is_under_way = false;
+    std::vector<float> unshot;
+    BounceBudget budget;
+    double left = 1;  ///< Of all importance, still to be shot.
+};
 
-/// Finds importance and, where the method refines, an initial mesh by Eq. 14 and 15, from two small passes. The light
-/// of the second is the estimate until passes are merged, but none of it counts then.
-/// @return The state that the first pass begins with.
-PassState prepare_passes(SolverState& state);
+/// Iterations that are passes. A pass shoots what the emitters emit, then what that brought, and so on, bounce by
+/// bounce, until little is left ('incremental shooting', Neumann et al. 1995). Each bounce gets rays in proportion to
+/// what is left to shoot, weighed as rays are (Eq. 3, 10). An unbiased estimate of all bounces on the mesh as it is,
+/// independent of earlier passes.
+class Passes : public IterationMethod {
+  public:
+    /// Finds importance and, where the method refines, an initial mesh by Eq. 14 and 15, from two small passes. The
+    /// light of the second is the estimate until passes are merged, but none of it counts then.
+    void prepare(SolverState& state) override;
+    /// A pass: its estimate is merged with the mean of those before (Eq. 6), then the mesh is refined.
+    RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    void archive(StateArchive& archive) override;
+    bool fits(const ElementForest& forest) const override;
 
-/// A pass as an iteration: its estimate is merged with the mean of those before (Eq. 6), then the mesh is refined.
-/// @param plan  Its rays become those that were traced.
-/// @return      The power that left the scene.
-RgbD iterate_pass(SolverState& state, PassState& passes, IterationPlan& plan);
+    /// A first estimate for iterations of another kind: prepare(), then a pass if that traced no power.
+    void make_first_estimate(SolverState& state);
 
-/// A first estimate for iterations of another kind: as above, with a pass on the mesh that was made.
-void make_first_estimate(SolverState& state);
+  private:
+    void start_importance(SolverState& state, std::int64_t rays);
+    FreshEstimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
+    void begin_pass(SolverState& state, std::int64_t rays);
+    std::int64_t trace_bounce(SolverState& state, std::int64_t rays, bool oracle_refines);
+
+    /// What is done before the first iteration, in this order.
+    enum class Stage : int { importance, coarse_pass, refining_pass, report, done };
+    Stage stage_ = Stage::importance;
+    ImportanceStart importance_;
+    Pass pass_;
+    /// Irradiance that was received and not shot when the last pass ended, as many rays as it had, by element: the next
+    /// one shoots it too, so that the mean of all lacks nothing.
+    std::vector<Rgb> unshot_;
+    double unshot_rays_ = 0;
+    /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
+    double bounces_ = 0;
+    bool is_final_ = false;               // no other pass will shoot what this one leaves
+    RgbD escaped_power_{0, 0, 0};         // of this iteration
+    bool importance_step_is_done_ = false;
+    std::int64_t rays_before_ = 0;        // this iteration
+    std::uint32_t elements_before_ = 0;
+};
 
 }  // namespace interflect

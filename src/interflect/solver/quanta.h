@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "interflect/solver/state_archive.h"
+
 namespace interflect {
 
 /// How much power rays carry, counted in bins of a quarter of an octave.
@@ -15,6 +17,13 @@ class Quanta {
     double largest_over_mean() const;  ///< 1 where nothing was carried.
     /// The power over the mean that a share of the rays exceeds, to 19%.
     double quantile_over_mean(double share) const;
+
+    void archive(StateArchive& archive) {
+        archive("quanta/rays", rays_);
+        archive("quanta/power", power_);
+        archive("quanta/largest", largest_);
+        archive("quanta/count", count_);
+    }
 
   private:
     static constexpr int bins_per_octave = 4, middle_bin = 512, bins = 2 * middle_bin;

@@ -224,8 +224,10 @@ struct Arrived {
 
 /// Follows so many paths, and enters their rays.
 Arrived follow_paths(SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key) {
+    if (!state.may_begin_step()) throw Interrupted();
     PathBatch batch(state, payload, paths, key);
     const Sums& sums = batch.follow();
+    state.has_traced_step = true;
     state.escaped_rays += sums.escaped_rays;
     state.streams.used.resize(sums.started.size(), 0);
     Arrived arrived;
@@ -250,18 +252,17 @@ FreshEstimate independent_arrivals(const SolverState& state, const Arrived& arri
 
 /// Follows as many paths as take about this many rays.
 Arrived walk(SolverState& state, const Payload& payload, std::int64_t rays, PathSeries& series) {
-    std::int64_t pilot_rays = 0;
-    if (series.batches == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
+    if (series.pilot_rays == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
-        pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
-        series.rays_per_path = static_cast<double>(pilot_rays) / static_cast<double>(paths);
+        series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
+        series.rays_per_path = static_cast<double>(series.pilot_rays) / static_cast<double>(paths);
     }
     const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
     const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
     Arrived arrived =
-        follow_paths(state, payload, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches++));
+        follow_paths(state, payload, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches));
     series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
-    arrived.rays += pilot_rays;
+    if (series.batches++ == 0) arrived.rays += series.pilot_rays;
     return arrived;
 }
 
@@ -318,9 +319,11 @@ Payload importance_from_cameras(const SolverState& state) {
 
 }  // namespace
 
-RandomWalks::RandomWalks(SolverState& state)
+RandomWalks::RandomWalks(const SolverState& state)
     : light_{sub_key(state.options.seed, WalkPurpose::light)},
-      importance_{sub_key(state.options.seed, WalkPurpose::importance)} {
+      importance_{sub_key(state.options.seed, WalkPurpose::importance)} {}
+
+void RandomWalks::prepare(SolverState& state) {
     walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.rays)));
     state.schedule.began_with(0, state.importance_rays);
 }
@@ -357,13 +360,26 @@ void RandomWalks::walk_light(SolverState& state, std::int64_t rays, const Iterat
     std::fill(state.history.begin(), state.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
+void RandomWalks::archive(StateArchive& archive) {
+    archive("random_walk/light", light_);
+    archive("random_walk/importance", importance_);
+    archive("random_walk/escaped", escaped_);
+    archive("random_walk/importance_history", importance_history_);
+    archive("random_walk/importance_is_done", importance_is_done_);
+    archive("random_walk/for_importance", for_importance_);
+    archive("random_walk/rays_before", rays_before_);
+}
+
 RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
-    const std::int64_t rays_before = state.power_rays + state.importance_rays;
-    const std::int64_t for_importance =
-        std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
-    walk_importance(state, for_importance);
-    walk_light(state, plan.rays - for_importance, plan);
-    const std::int64_t traced = state.power_rays + state.importance_rays - rays_before;
+    if (!importance_is_done_) {
+        rays_before_ = state.power_rays + state.importance_rays;
+        for_importance_ = std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
+        walk_importance(state, for_importance_);
+        importance_is_done_ = true;
+    }
+    walk_light(state, plan.rays - for_importance_, plan);
+    importance_is_done_ = false;
+    const std::int64_t traced = state.power_rays + state.importance_rays - rays_before_;
     if (traced > 0) plan.rays = traced;  // else no view shows what reflects, and the plan is used up
     return escaped_;
 }

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/solver/solver_state.h"
+#include "interflect/solver/iteration_method.h"
 
 namespace interflect {
 
@@ -10,7 +10,8 @@ namespace interflect {
 struct PathSeries {
     std::uint64_t key;  ///< Of their random numbers.
     std::uint64_t batches = 0;
-    double rays_per_path = 0;  ///< Of the last batch; 0: there was none.
+    std::int64_t pilot_rays = 0;  ///< Of the pilot of the first batch.
+    double rays_per_path = 0;     ///< Of the last batch, or of the pilot; 0: there was none.
 };
 
 /// Solves Eq. 1 of Prikryl et al. 2000 by random walks of particles (Pattanaik and Mudur 1992): a particle leaves an
@@ -25,18 +26,19 @@ struct PathSeries {
 /// Paths are followed to their end, so the rays of a batch come out a per cent or so off the plan. A walk needs no
 /// incremental start. Same seed, same bits, for any number of threads. Cost: O(N log(patches)) time on all threads, 150
 /// bytes a patch.
-class RandomWalks {
+class RandomWalks : public IterationMethod {
   public:
+    explicit RandomWalks(const SolverState& state);
+
     /// Begins with importance, so that light does not start before it is known where it matters.
-    /// @param run  On a forest of one element a patch; some patch emits.
-    explicit RandomWalks(SolverState& state);
+    void prepare(SolverState& state) override;
 
     /// Follows paths that take about plan.rays rays, and merges what they bring with the running mean (Eq. 6). A batch
     /// counts by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a
     /// bias.
-    /// @param plan  Its rays become those that were traced.
     /// @return The power that leaves the scene, by all batches so far.
-    RgbD iterate(SolverState& state, IterationPlan& plan);
+    RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    void archive(StateArchive& archive) override;
 
   private:
     std::int64_t lacking_importance(const SolverState& state, std::int64_t planned) const;
@@ -46,6 +48,8 @@ class RandomWalks {
     PathSeries light_, importance_;
     RgbD escaped_{0, 0, 0};                // power, mean of all batches
     std::int64_t importance_history_ = 0;  // rays planned for the batches that psi is the mean of
+    bool importance_is_done_ = false;      // of this iteration
+    std::int64_t for_importance_ = 0, rays_before_ = 0;
 };
 
 }  // namespace interflect

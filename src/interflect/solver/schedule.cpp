@@ -48,10 +48,14 @@ std::int64_t Schedule::affordable_rays(double seconds) {
     return is_worth_while ? std::llround(std::clamp(rays, 1.0, static_cast<double>(options_.rays))) : 0;
 }
 
+bool Schedule::is_fulfilled() const {
+    return is_over_ || rays_ >= options_.rays ||
+           (options_.iterations > 0 && finished_ >= options_.warm_up + options_.iterations);
+}
+
 IterationPlan Schedule::next(double seconds) {
     const bool warming_up = finished_ < options_.warm_up;
-    if (is_over_) return {};
-    if (options_.iterations > 0 && finished_ >= options_.warm_up + options_.iterations) return {};
+    if (is_fulfilled()) return {};
     const std::int64_t left = options_.rays - rays_;
     std::int64_t rays = smallest_;
     if (options_.rays_per_iteration == 0 && !warming_up)
@@ -65,6 +69,24 @@ IterationPlan Schedule::next(double seconds) {
     if (std::isfinite(options_.seconds)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};
     return {rays, warming_up, rays == left};
+}
+
+void Schedule::set_limits(std::int64_t rays, double seconds) {
+    options_.rays = rays;
+    options_.seconds = seconds;
+    is_over_ = false;
+}
+
+void Schedule::archive(StateArchive& archive) {
+    archive("schedule/budget", options_.rays);
+    archive("schedule/first_rays", first_rays_);
+    archive("schedule/smallest", smallest_);
+    archive("schedule/rays", rays_);
+    archive("schedule/averaged_rays", averaged_rays_);
+    archive("schedule/finished", finished_);
+    archive("schedule/is_over", is_over_);
+    archive("schedule/planned_at", planned_at_);
+    archive("schedule/planned_after", planned_after_);
 }
 
 void Schedule::done(const IterationPlan& plan) {

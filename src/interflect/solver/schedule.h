@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "interflect/solver/solve.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -29,7 +30,13 @@ class Schedule {
     /// With a limit of time an iteration is planned to end before it, since one that does not is lost.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
+    /// Whether there is no next one, however much time is left.
+    bool is_fulfilled() const;
     void done(const IterationPlan& plan);
+
+    /// Replaces SolveOptions::rays and ::seconds; what they made of the first iterations stays.
+    void set_limits(std::int64_t rays, double seconds);
+    void archive(StateArchive& archive);
 
     std::int64_t rays() const { return rays_; }
     std::int64_t averaged_rays() const { return averaged_rays_; }

@@ -1,7 +1,10 @@
 #include "interflect/solver/solver_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "interflect/base/address_space.h"
@@ -33,35 +36,143 @@ V3f centre_of(const ElementForest& forest, std::uint32_t element) {
 
 }  // namespace
 
-SolverState::SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m)
-    : materials(scene, caster),
+SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOptions& o)
+    : scene(s),
+      materials(scene, caster),
       ray_caster(caster),
-      options(o),
-      monitor(m),
       forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
       view(o.views, o.seed),
       floor(scene, o),
       streams(o.points, o.seed),
       arrivals(forest->capacity()),
       schedule(o, scene.patches.size()),
-      noise(scene.patches.size()),
-      stop(m.stop) {
+      noise(scene.patches.size()) {
     solution.forest = forest;
     solution.options = o;
     solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
     history.assign(forest->size(), 0.0f);
     solution.emitted_power = radiated_power(*forest, Radiosity(materials, solution.irradiance));
-    view.trace_view_rays(*forest, caster, o.camera_rays);
-    if (view.empty()) return;
-    neighbourhoods = Neighbourhoods(*forest);
-    solution.view_importance = view.per_area(*forest, !o.importance_at_elements);
-    solution.indirect_importance.assign(forest->size(), 0.0f);
+    look(*this);
+}
+
+void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
+    using Clock = StopRequest::Clock;
+    constexpr double for_ever = 1e9;
+    on_report = monitor.report;
+    stop = StopRequest(monitor.stop);
+    start = Clock::now();
+    has_traced_step = false;
+    last_step = step_seconds < for_ever
+                    ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_seconds))
+                    : Clock::time_point::max();
+}
+
+void look(SolverState& state) {
+    state.view = ViewImportance(state.options.views, state.options.seed);
+    state.floor = ElementFloor(state.scene, state.options);
+    state.view.trace_view_rays(*state.forest, state.ray_caster, state.options.camera_rays);
+    state.solution.view_importance.clear();
+    state.solution.indirect_importance.clear();
+    if (state.view.empty()) return;
+    if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
+    state.solution.view_importance = state.view.per_area(*state.forest, !state.options.importance_at_elements);
+    state.solution.indirect_importance.assign(state.forest->size(), 0.0f);
+}
+
+namespace {
+
+/// What reports are saved as.
+using ReportNumbers = std::array<double, 19>;
+
+ReportNumbers numbers_of(const IterationReport& r) {
+    return {static_cast<double>(r.iteration),
+            r.seconds,
+            static_cast<double>(r.rays),
+            static_cast<double>(r.power_rays),
+            static_cast<double>(r.importance_rays),
+            static_cast<double>(r.escaped_rays),
+            static_cast<double>(r.elements),
+            static_cast<double>(r.leaves),
+            r.total_power.x,
+            r.total_power.y,
+            r.total_power.z,
+            r.escaped_power.x,
+            r.escaped_power.y,
+            r.escaped_power.z,
+            r.error_estimate,
+            r.noise_estimate,
+            r.discretisation_estimate,
+            r.largest_quantum,
+            r.high_quantum};
+}
+
+IterationReport report_of(const ReportNumbers& n) {
+    return {.iteration = static_cast<int>(n[0]),
+            .seconds = n[1],
+            .rays = static_cast<std::int64_t>(n[2]),
+            .power_rays = static_cast<std::int64_t>(n[3]),
+            .importance_rays = static_cast<std::int64_t>(n[4]),
+            .escaped_rays = static_cast<std::int64_t>(n[5]),
+            .elements = static_cast<std::uint32_t>(n[6]),
+            .leaves = static_cast<std::uint32_t>(n[7]),
+            .total_power = {n[8], n[9], n[10]},
+            .escaped_power = {n[11], n[12], n[13]},
+            .error_estimate = n[14],
+            .noise_estimate = n[15],
+            .discretisation_estimate = n[16],
+            .largest_quantum = n[17],
+            .high_quantum = n[18]};
+}
+
+void require(bool holds, const char* what) {
+    if (!holds) throw std::runtime_error(std::string("the state of the run: ") + what);
+}
+
+}  // namespace
+
+void SolverState::archive(StateArchive& archive) {
+    std::vector<ReportNumbers> reports;
+    for (const IterationReport& r : solution.iterations) reports.push_back(numbers_of(r));
+    reports = archive.by_value("reports", std::move(reports));
+    const std::vector<std::uint32_t> parents = archive.by_value("subdivided", forest->subdivided());
+    archive("seconds", earlier_seconds);
+    archive("irradiance", solution.irradiance);
+    archive("indirect_importance", solution.indirect_importance);
+    archive("non_finite", solution.non_finite);
+    archive("history", history);
+    view.archive(archive);
+    noise.archive(archive);
+    schedule.archive(archive);
+    archive("risk", risk_check);
+    quanta.archive(archive);
+    archive("points/used", streams.used);
+    archive("points/allocations", streams.allocations);
+    archive("power_rays", power_rays);
+    archive("importance_rays", importance_rays);
+    archive("escaped_rays", escaped_rays);
+    archive("rays_of_other_views", rays_of_other_views);
+    if (!archive.reads()) return;
+    solution.iterations.clear();
+    for (const ReportNumbers& numbers : reports) solution.iterations.push_back(report_of(numbers));
+    forest->rebuild(parents);
+    const std::size_t elements = forest->size();
+    require(solution.irradiance.size() == elements, "expected the irradiance of every element");
+    const bool has_noise = options.method.scheme != Scheme::links;
+    require(!has_noise || (history.size() == elements && noise.elements() == elements),
+            "expected the noise of every element");
+    require(streams.used.size() <= elements, "expected points of elements that there are");
+    require(solution.indirect_importance.size() == (view.empty() ? 0 : elements),
+            "expected the importance of every element");
+    require(view.fits(*forest), "expected points of views on patches of the scene");
+    if (!view.empty()) solution.view_importance = view.per_area(*forest, !options.importance_at_elements);
 }
 
 Received run_step(SolverState& state, TransportStep step) {
+    if (!state.may_begin_step()) throw Interrupted();
     const std::uint32_t before = state.forest->size();
     Received received = transport(state.materials, *state.forest, state.ray_caster, std::move(step), state.streams,
                                   state.arrivals, state.stop);
+    state.has_traced_step = true;
     state.escaped_rays += received.escaped_rays;
     if (state.forest->size() > before) grow_with_forest(state, before);
     return received;
@@ -118,7 +229,7 @@ void report(SolverState& state, int iteration, const RgbD& escaped_power) {
     r.largest_quantum = state.quanta.largest_over_mean();
     r.high_quantum = state.quanta.quantile_over_mean(share_with_more);
     state.solution.iterations.push_back(r);
-    if (state.monitor.report) state.monitor.report(r);
+    if (state.on_report) state.on_report(r);
 }
 
 }  // namespace interflect

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "interflect/solver/risk_check.h"
 #include "interflect/solver/schedule.h"
 #include "interflect/solver/solve.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/stop_request.h"
 #include "interflect/solver/transport.h"
 #include "interflect/solver/view_importance.h"
@@ -20,30 +22,52 @@ namespace interflect {
 
 /// The state of a run: everything that one iteration hands to the next.
 struct SolverState {
-    SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o, const Monitor& m);
+    /// @param scene, caster  Must outlive it.
+    SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
+    SolverState(const SolverState&) = delete;
 
+    const Scene& scene;
     const Materials materials;
     const RayCaster& ray_caster;
-    const SolveOptions& options;
-    const Monitor& monitor;
+    Solution solution;
+    const SolveOptions& options = solution.options;
     const std::shared_ptr<ElementForest> forest;
     ViewImportance view;
-    const ElementFloor floor;
+    ElementFloor floor;
     Neighbourhoods neighbourhoods;  // none without a view
     SampleStreams streams;
     Arrivals arrivals;
     Schedule schedule;
-    Solution solution;
     std::vector<float> history;  // of each element: rays that its mean stands for
     NoiseModel noise;
     RiskCheck risk_check;
-    Quanta quanta;     // of the last iteration
-    StopRequest stop;  // by the caller; once there is a first estimate, by the limit of time too
+    Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    StopRequest::Clock::time_point start = StopRequest::Clock::now();
+    std::int64_t rays_of_other_views = 0;  // averaged before the views were changed
 
-    double seconds() const { return std::chrono::duration<double>(StopRequest::Clock::now() - start).count(); }
+    // Of the work that is under way:
+    std::function<void(const IterationReport&)> on_report;
+    StopRequest stop;  // by the caller; once there is a first estimate, by the limit of time too
+    StopRequest::Clock::time_point start;
+    StopRequest::Clock::time_point last_step = StopRequest::Clock::time_point::max();  // none begins later, but the first
+    bool has_traced_step = false;
+    double earlier_seconds = 0;  // that earlier work took
+
+    /// @param step_seconds  In which steps may begin.
+    void begin_work(const Monitor& monitor, double step_seconds);
+    void end_work() { earlier_seconds = seconds(); }
+    /// Of all work so far.
+    double seconds() const {
+        return earlier_seconds + std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
+    }
+    bool may_begin_step() const { return !has_traced_step || StopRequest::Clock::now() < last_step; }
+
+    /// @throws std::runtime_error where what is read does not fit together.
+    void archive(StateArchive& archive);
 };
+
+/// Finds what the views of the options show; importance is not known then.
+void look(SolverState& state);
 
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);

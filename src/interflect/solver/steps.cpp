@@ -64,7 +64,7 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     return weights;
 }
 
-PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosity& light,
+PowerStep power_step(const Materials& materials, const Solution& so_far, const Radiosity& light,
                      const ImportanceWeights& weights, bool combined, std::int64_t rays) {
     TransportStep step;
     const MixtureWeights shares = power_step_shares(so_far, combined, !weights.nearby.empty());
@@ -75,8 +75,7 @@ PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosi
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;
-    so_far.non_finite += lost_leaves;
-    return {std::move(step), power, weighted_power};
+    return {std::move(step), power, weighted_power, lost_leaves};
 }
 
 TransportStep importance_step(const Materials& materials, const Solution& so_far, const Importance& importance,

@@ -34,16 +34,16 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
 struct PowerStep {
     TransportStep step;
     double power = 0, weighted_power = 0;
+    std::int64_t lost_leaves = 0;  ///< Those of which nothing can be shot, since it is not finite.
 };
 
 /// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
 /// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
 /// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
 /// taken for unimportant the few rays that start there carry much. No oracle is set.
-/// @param so_far  Leaves of which nothing can be shot, since it is not finite, are counted there.
 /// @param weights  importance_weights(so_far).
-/// @param light   What is to be shot. The step refers to what `so_far` and `light` do.
-PowerStep power_step(const Materials& materials, Solution& so_far, const Radiosity& light,
+/// @param light    What is to be shot. The step refers to what `so_far` and `light` do.
+PowerStep power_step(const Materials& materials, const Solution& so_far, const Radiosity& light,
                      const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to

@@ -340,6 +340,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     try {
         parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop, trace_batch);
     } catch (const Interrupted&) {
+        arrivals.clear(forest.size());
         forget_new_elements(forest, old_size);
         throw;
     }
@@ -355,7 +356,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     drop_excess(forest, arrived, step.oracle.max_elements, old_size);
     step.oracle.importance = std::vector<float>();  // what has served makes room for what is received
     if (!gathered) step.q = std::vector<float>();
-    received.irradiance = std::move(step.spent);
+    if (step.spent) received.irradiance = std::move(*step.spent);
     collect(forest, step, units, arrived, received);
     if (gathered) blend(forest, step, allocation, *gathered, all, received.importance);
     balance(forest, step, received);

@@ -43,8 +43,9 @@ struct TransportStep {
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
-    /// Storage for what is received: it may be what `light` refers to, which has been shot by then.
-    std::vector<Rgb> spent;
+    /// Storage that what is received may take once all rays are traced, such as that of what `light` refers to; may be
+    /// null.
+    std::vector<Rgb>* spent = nullptr;
     /// What inner elements receive is of no interest: it stays 0. Not with an oracle that refines.
     bool leaves_only = false;
 };
@@ -72,8 +73,8 @@ struct Received {
 /// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
 /// @param arrivals  Nothing has arrived yet, and nothing has afterwards: for as many elements as the forest may have.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.
-/// @throws Interrupted where `stop` is due before the last ray is traced; the forest and the streams are then as
-/// before.
+/// @throws Interrupted where `stop` is due before the last ray is traced; the forest, the streams, the arrivals and
+/// what the step refers to are then as before.
 ///
 /// Cost: O(N (log(patches) + levels)) time on all threads; 32 bytes an element while rays arrive, then what is
 /// received.

@@ -51,6 +51,19 @@ void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaste
     ++rounds_;
 }
 
+void ViewImportance::archive(StateArchive& archive) {
+    archive("view/points", points_);
+    archive("view/rounds", rounds_);
+    archive("view/rays", rays_);
+    archive("view/shares", shares_);
+}
+
+bool ViewImportance::fits(const ElementForest& forest) const {
+    return std::all_of(points_.begin(), points_.end(), [&](const Point& p) {
+        return p.leaf < forest.size() && p.patch == forest.patch(p.leaf);
+    });
+}
+
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
     constexpr std::size_t points_at_once = 4096;
     if (!at_patches)

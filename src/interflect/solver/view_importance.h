@@ -8,6 +8,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -37,6 +38,10 @@ class ViewImportance {
     /// weighted over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
     /// @param at_patches  Spread each patch's V evenly over it.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
+
+    void archive(StateArchive& archive);
+    /// Whether all points lie on elements of this forest.
+    bool fits(const ElementForest& forest) const;
 
   private:
     struct Point {

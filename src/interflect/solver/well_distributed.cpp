@@ -12,10 +12,25 @@ namespace interflect {
 WellDistributedRays::WellDistributedRays(const SolverState& state)
     : shot_(state.forest->size(), 0.0), arrived_(state.forest->size(), Rgb(0)) {}
 
+void WellDistributedRays::prepare(SolverState& state) {
+    if (state.options.complete_passes) passes_.make_first_estimate(state);
+    shot_.assign(state.forest->size(), 0.0);
+    arrived_.assign(state.forest->size(), Rgb(0));
+}
+
+void WellDistributedRays::archive(StateArchive& archive) {
+    passes_.archive(archive);
+    archive("well_distributed/shot", shot_);
+    archive("well_distributed/arrived", arrived_);
+    archive("well_distributed/escaped", escaped_);
+    archive("well_distributed/total", total_);
+}
+
 RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
-    TransportStep step = power_step(state.materials, state.solution, light, {}, false, plan.rays).step;
+    auto [step, power, weighted_power, lost_leaves] =
+        power_step(state.materials, state.solution, light, {}, false, plan.rays);
     step.equal_quanta = true;
     // These methods know no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(forest, light));
@@ -26,14 +41,15 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
         lacking += step.q[e];
     }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
-    total_ += step.rays;
-    if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_, state.floor.unseen());
+    const std::int64_t rays = step.rays;
+    if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_ + rays, state.floor.unseen());
 
     std::vector<std::uint64_t> used_before = state.streams.used;
     const std::uint32_t elements_before = forest.size();
     used_before.resize(elements_before, 0);
-    const std::int64_t rays = step.rays;
     const Received received = run_step(state, std::move(step));
+    total_ += rays;
+    state.solution.non_finite += lost_leaves;
     for (std::uint32_t e = 0; e < elements_before; ++e)
         shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
     shot_.resize(state.forest->size());

@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "interflect/solver/solver_state.h"
+#include "interflect/solver/iteration_method.h"
+#include "interflect/solver/passes.h"
 
 namespace interflect {
 
@@ -12,16 +13,22 @@ namespace interflect {
 /// an iteration shoots what each leaf lacks, and old hits count on with the new quantum. A leaf that has shot more than
 /// its share shoots again when N has grown enough; until then N is a little larger than was planned, so that all rays
 /// together carry sum P. The colour of a ray stays what it was when it was shot.
-class WellDistributedRays {
+class WellDistributedRays : public IterationMethod {
   public:
     explicit WellDistributedRays(const SolverState& state);
 
+    /// With complete passes: a first estimate by one of them.
+    void prepare(SolverState& state) override;
     /// Grows N by plan.rays and takes the irradiance from all rays so far.
-    /// @param plan  Its rays become those that were shot.
-    /// @return The power that leaves the scene.
-    RgbD iterate(SolverState& state, IterationPlan& plan);
+    RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    void archive(StateArchive& archive) override;
+    bool fits(const ElementForest& forest) const override {
+        const auto is_whole = [&](std::size_t size) { return size == forest.size() || total_ == 0; };
+        return passes_.fits(forest) && is_whole(shot_.size()) && is_whole(arrived_.size());
+    }
 
   private:
+    Passes passes_;             // before the first iteration
     std::vector<double> shot_;  // rays of each leaf
     std::vector<Rgb> arrived_;  // quanta per area at each element, split to colours [1/m^2]
     RgbD escaped_{0, 0, 0};     // quanta that left the scene

@@ -1,0 +1,47 @@
+// Solver::save() and Solver::open(): here, since the solver knows no file formats.
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "interflect/base/error.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/exports/solution_file.h"
+#include "interflect/solver/solver.h"
+
+namespace interflect {
+
+namespace {
+
+/// Options that a solution file does not have: they depend on the machine that a run began on.
+void archive_options(StateArchive& archive, SolveOptions& options) {
+    options.max_elements = archive.by_value("options/max_elements", std::vector{options.max_elements}).at(0);
+}
+
+}  // namespace
+
+void Solver::save(const std::filesystem::path& path) {
+    PendingFile file(path);
+    const Solution& result = solution();  // before the archive refers to what this works on
+    StateArchive state;
+    SolveOptions saved = options();
+    archive_options(state, saved);
+    archive(state);
+    write_solution(file.temporary_path(), scene(), result, &state);
+    file.commit();
+}
+
+Solver Solver::open(const std::filesystem::path& path) {
+    SolvedScene solved = read_solution(path);
+    StateArchive state = read_state(path);
+    try {
+        archive_options(state, solved.solution.options);
+        Solver solver(std::move(solved.scene), solved.solution.options);
+        solver.archive(state);
+        return solver;
+    } catch (const std::runtime_error& e) {
+        throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
+    }
+}
+
+}  // namespace interflect

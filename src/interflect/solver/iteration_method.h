@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include "interflect/solver/solver_state.h"
+#include "interflect/solver/state_archive.h"
+
+namespace interflect {
+
+/// How one family of methods does its iterations, with the state that is its own. What throws Interrupted may be called
+/// again, and goes on with the step of rays that was cut short.
+class IterationMethod {
+  public:
+    virtual ~IterationMethod() = default;
+
+    /// What comes before the first iteration. @throws Interrupted
+    virtual void prepare(SolverState&) {}
+    /// Whether all is done that the options ask for.
+    virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
+    /// The next iteration; of 0 rays where there is none.
+    virtual IterationPlan plan(SolverState& state);
+    /// Does an iteration. @param plan  Its rays become those that were traced. @return The power that left the scene.
+    /// @throws Interrupted
+    virtual RgbD iterate(SolverState& state, IterationPlan& plan) = 0;
+    /// Completes the solution: what is known of each element beside its irradiance.
+    virtual void finish(SolverState& state) const;
+    /// Looks at the views that the options have now; importance is found anew.
+    virtual void retarget(SolverState& state);
+
+    virtual void archive(StateArchive& archive) = 0;
+    /// Whether what archive() has read can belong to this forest.
+    virtual bool fits(const ElementForest&) const { return true; }
+};
+
+/// The one that the options ask for. The state must outlive it.
+std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state);
+
+}  // namespace interflect

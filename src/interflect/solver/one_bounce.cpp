@@ -1,0 +1,58 @@
+#include "interflect/solver/one_bounce.h"
+
+#include <cmath>
+#include <utility>
+
+#include "interflect/solver/detail.h"
+#include "interflect/solver/merge.h"
+#include "interflect/solver/radiosity.h"
+#include "interflect/solver/steps.h"
+
+namespace interflect {
+
+RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
+    Solution& solution = state.solution;
+    const bool with_importance = importance_use(solution) == ImportanceUse::full;
+    const bool combined = with_importance && !state.options.separate_iterations;
+    const std::int64_t for_importance =
+        with_importance ? std::llround(state.options.alpha * static_cast<double>(plan.rays)) : 0;
+    if (!importance_step_is_done_) {
+        elements_before_ = state.forest->size();
+        if (with_importance && !combined && for_importance > 0) {
+            const Received received =
+                run_step(state, importance_step(state.materials, solution, importance_of(solution), for_importance));
+            merge(state, solution.indirect_importance, received.importance, plan);
+        }
+        importance_step_is_done_ = true;
+    }
+    RgbD escaped_power(0, 0, 0);
+    const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
+    if (rays > 0) {
+        const Radiosity light(state.materials, solution.irradiance);
+        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods);
+        auto [step, power, weighted_power, lost_leaves] =
+            power_step(state.materials, solution, light, weights, combined, rays);
+        const bool deferred = state.options.defer_refinement && plan.warms_up;
+        if (state.options.method.refines && !deferred)
+            step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
+        Received received = run_step(state, std::move(step));
+        solution.non_finite += lost_leaves;
+        const FreshEstimate fresh{std::move(received.irradiance), std::move(received.variance)};
+        if (!plan.warms_up) estimate_noise(state, fresh, rays);
+        merge(state, solution.irradiance, fresh.irradiance, plan);
+        if (combined) merge(state, solution.indirect_importance, received.importance, plan);
+        escaped_power = received.escaped_power;
+    }
+    state.importance_rays += for_importance;
+    state.power_rays += plan.rays - for_importance;
+    update_history(state, plan, elements_before_);
+    importance_step_is_done_ = false;
+    return escaped_power;
+}
+
+void OneBounce::archive(StateArchive& archive) {
+    archive("one_bounce/importance_step_is_done", importance_step_is_done_);
+    archive("one_bounce/elements_before", elements_before_);
+}
+
+}  // namespace interflect

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "interflect/solver/solve.h"
+
+namespace interflect {
+
+/// @throws InputError that lists every option out of range and every fault of the scene.
+void require_solvable(const Scene& scene, const SolveOptions& options);
+
+}  // namespace interflect

@@ -1,0 +1,188 @@
+#include "interflect/solver/solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "interflect/base/error.h"
+#include "interflect/raycast/camera.h"
+#include "interflect/solver/iteration_method.h"
+#include "interflect/solver/require_solvable.h"
+
+namespace interflect {
+
+struct Solver::Run {
+    Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options)
+        : scene(std::move(s)),
+          ray_caster(std::move(caster)),
+          state(*scene, *ray_caster, options),
+          method(make_iteration_method(state)) {}
+
+    const std::shared_ptr<const Scene> scene;
+    const std::shared_ptr<const RayCaster> ray_caster;
+    SolverState state;
+    const std::unique_ptr<IterationMethod> method;
+    bool is_prepared = false, is_finished = false;
+    int iteration = 0;
+    IterationPlan plan;                       // of the iteration under way; 0 rays: there is none
+    std::optional<Solution> finished;  // solution() as of now
+
+    void iterate_until(const Limits& limits);
+    IterationPlan next_plan(std::int64_t rays_asked_for);
+    bool is_reached(double error) const;
+    void limit_time();
+    Solution snapshot();
+};
+
+bool Solver::Run::is_reached(double error) const {
+    const std::vector<IterationReport>& reports = state.solution.iterations;
+    return !reports.empty() && reports.back().error_estimate <= error;
+}
+
+void Solver::Run::limit_time() { state.stop.limit_time(state.start, state.options.seconds - state.earlier_seconds); }
+
+/// @param rays_asked_for  In all; a plan that is fulfilled is extended to them.
+IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
+    const IterationPlan next = method->plan(state);
+    const bool is_more_asked_for = rays_asked_for < std::numeric_limits<std::int64_t>::max() &&
+                                   rays_asked_for > std::max(state.schedule.rays(), state.options.rays);
+    if (next.rays > 0 || !is_more_asked_for) return next;
+    state.solution.options.rays = rays_asked_for;
+    state.schedule.set_limits(rays_asked_for, state.options.seconds);
+    return method->plan(state);
+}
+
+/// @throws Interrupted in the middle of an iteration.
+void Solver::Run::iterate_until(const Limits& limits) {
+    const std::int64_t all = std::numeric_limits<std::int64_t>::max(), before = state.schedule.rays();
+    const std::int64_t rays_asked_for = limits.rays < all - before ? before + limits.rays : all;
+    if (state.options.method.scheme == Scheme::links) limit_time();  // others find a first estimate at any price
+    if (!is_prepared) method->prepare(state);
+    is_prepared = true;
+    limit_time();
+    while (!is_reached(std::max(limits.error, state.options.until)) && state.schedule.rays() < rays_asked_for) {
+        if (plan.rays == 0) plan = next_plan(rays_asked_for);
+        if (plan.rays == 0 || !state.may_begin_step()) break;
+        const RgbD escaped_power = method->iterate(state, plan);
+        state.has_traced_step = true;
+        state.schedule.done(plan);
+        plan = {};
+        report(state, ++iteration, escaped_power);
+    }
+    is_finished = plan.rays == 0 && (is_reached(state.options.until) || method->is_fulfilled(state));
+}
+
+/// With a forest of its own, since that of the run grows.
+Solution Solver::Run::snapshot() {
+    Solution& solution = state.solution;
+    std::vector<Rgb> irradiance = solution.irradiance;
+    method->finish(state);
+    std::swap(irradiance, solution.irradiance);
+    Solution copy = solution;
+    copy.irradiance = std::move(irradiance);
+    const auto forest = std::make_shared<ElementForest>(*scene, state.forest->size());
+    forest->rebuild(state.forest->subdivided());
+    copy.forest = forest;
+    return copy;
+}
+
+namespace {
+
+std::shared_ptr<const RayCaster> caster_of(const Scene& scene, const SolveOptions& options) {
+    require_solvable(scene, options);
+    return std::make_shared<RayCaster>(scene);
+}
+
+}  // namespace
+
+Solver::Solver(Scene scene, const SolveOptions& options)
+    : Solver(std::make_shared<const Scene>(std::move(scene)), options) {}
+
+Solver::Solver(std::shared_ptr<const Scene> scene, const SolveOptions& options)
+    : Solver(scene, caster_of(*scene, options), options) {}
+
+Solver::Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
+               const SolveOptions& options) {
+    require_solvable(*scene, options);
+    ray_caster->require_made_for(*scene);
+    run_ = std::make_unique<Run>(std::move(scene), std::move(ray_caster), options);
+}
+
+Solver::~Solver() = default;
+Solver::Solver(Solver&&) noexcept = default;
+Solver& Solver::operator=(Solver&&) noexcept = default;
+
+AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
+    Run& run = *run_;
+    SolverState& state = run.state;
+    run.finished.reset();
+    state.begin_work(monitor, limits.seconds);
+    state.solution.interrupted = false;
+    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else it is dark, and exactly so
+    try {
+        if (is_lit) run.iterate_until(limits);
+    } catch (const Interrupted&) {
+        state.solution.interrupted = state.stop.is_asked_for();
+    }
+    const bool is_out_of_time = state.seconds() >= state.options.seconds;
+    state.end_work();
+    const std::vector<IterationReport>& reports = state.solution.iterations;
+    return {.error = !is_lit ? 0 : reports.empty() ? AdvanceReport().error : reports.back().error_estimate,
+            .rays = state.schedule.rays(),
+            .seconds = state.earlier_seconds,
+            .is_finished = !is_lit || run.is_finished || is_out_of_time,
+            .is_stopped = state.solution.interrupted};
+}
+
+void Solver::set_views(std::vector<WeightedView> views) {
+    Run& run = *run_;
+    SolveOptions options = run.state.options;
+    options.views = std::move(views);
+    require_solvable(*run.scene, options);
+    for (const WeightedView& v : options.views) Camera(v.view, 1, 1, run.ray_caster->origin());  // throws InputError
+    run.finished.reset();
+    run.is_finished = false;
+    run.state.solution.options.views = std::move(options.views);
+    run.method->retarget(run.state);
+}
+
+void Solver::set_plan(std::int64_t rays, double seconds, double until) {
+    Run& run = *run_;
+    SolveOptions options = run.state.options;
+    options.rays = rays, options.seconds = seconds, options.until = until;
+    require_solvable(*run.scene, options);
+    run.state.solution.options = std::move(options);
+    run.state.schedule.set_limits(rays, seconds);
+    run.is_finished = false;
+}
+
+const Solution& Solver::solution() const {
+    if (!run_->finished) run_->finished = run_->snapshot();
+    return *run_->finished;
+}
+
+Solution Solver::take_solution() && {
+    run_->method->finish(run_->state);
+    return std::move(run_->state.solution);
+}
+
+const Scene& Solver::scene() const { return *run_->scene; }
+const SolveOptions& Solver::options() const { return run_->state.options; }
+const RayCaster& Solver::ray_caster() const { return *run_->ray_caster; }
+
+void Solver::archive(StateArchive& archive) {
+    run_->state.archive(archive);
+    run_->method->archive(archive);
+    if (archive.reads() && !run_->method->fits(*run_->state.forest))
+        throw std::runtime_error("the state of the run: arrays and elements differ in number");
+    archive("is_prepared", run_->is_prepared);
+    archive("is_finished", run_->is_finished);
+    archive("iteration", run_->iteration);
+    archive("plan/rays", run_->plan.rays);
+    archive("plan/warms_up", run_->plan.warms_up);
+    archive("plan/is_final", run_->plan.is_final);
+}
+
+}  // namespace interflect

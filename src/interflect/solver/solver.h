@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+#include "interflect/solver/solve.h"
+#include "interflect/solver/state_archive.h"
+
+namespace interflect {
+
+/// How far Solver::advance() goes: to the first of these.
+struct Limits {
+    std::int64_t rays = std::numeric_limits<std::int64_t>::max();  ///< More than there are; the last iteration is whole.
+    /// Time from now on [s]. No step of rays begins later, but one is always traced.
+    double seconds = std::numeric_limits<double>::infinity();
+    double error = 0;  ///< Estimated relative error (IterationReport::error_estimate).
+};
+
+/// Where a run stands.
+struct AdvanceReport {
+    double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite as long as it is not known.
+    std::int64_t rays = 0;                                   ///< Since the run began.
+    double seconds = 0;                                      ///< Spent in advance(), likewise.
+    bool is_finished = false;  ///< There is nothing left to do within SolveOptions.
+    bool is_stopped = false;   ///< Monitor::stop ended it.
+};
+
+/// Solves Eq. 1 of Prikryl et al. 2000 step by step: each iteration shoots N rays, chosen by power (Eq. 3) or by power
+/// and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is merged with the running
+/// mean (Eq. 6).
+///
+/// SolveOptions are the plan of the whole run: they alone decide how its iterations are sized, and where it ends.
+/// Limits only decide when advance() returns; the work that is then under way goes on with the next call. So many small
+/// calls, or saving and opening in between, give the same bits as one call, on any number of threads. Only
+/// SolveOptions::seconds makes iterations depend on how fast they are.
+class Solver {
+  public:
+    /// @throws InputError listing every option out of range and every fault of the scene; for a view that defines no
+    /// picture. A scene without light is legal.
+    Solver(Scene scene, const SolveOptions& options);
+    Solver(std::shared_ptr<const Scene> scene, const SolveOptions& options);
+    /// @param ray_caster  Of the same scene, otherwise InputError.
+    Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
+           const SolveOptions& options);
+    ~Solver();
+    Solver(Solver&&) noexcept;
+    Solver& operator=(Solver&&) noexcept;
+
+    /// Goes on until a limit is reached, the plan is fulfilled, or Monitor::stop is set, which another thread or a
+    /// signal handler may do. Rays that are asked for beyond a plan that is fulfilled are added to it.
+    AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
+
+    /// Goes on with other views: what is known of the light is kept, importance is found anew.
+    /// @throws InputError as the constructor does; then the views are as before.
+    void set_views(std::vector<WeightedView> views);
+    /// Replaces the limits of the plan: rays in all, time in all [s], error.
+    void set_plan(std::int64_t rays, double seconds, double until);
+
+    /// The light as far as it is known. Made when it is first asked for, in O(elements); the reference holds until the
+    /// solver changes, a copy for ever.
+    const Solution& solution() const;
+    /// The same without a copy; the solver is of no use any more.
+    Solution take_solution() &&;
+    const Scene& scene() const;
+    const SolveOptions& options() const;
+    const RayCaster& ray_caster() const;
+
+    /// Writes all that is needed to go on to a solution file (docs/solution-file.md), by way of a temporary file.
+    /// @throws std::runtime_error where it cannot be written.
+    void save(const std::filesystem::path& path);
+    /// What save() wrote. @throws InputError for a file that is missing, damaged, without the state of a run, or of
+    /// another version of Interflect.
+    static Solver open(const std::filesystem::path& path);
+
+  private:
+    struct Run;
+    void archive(StateArchive& archive);
+
+    std::unique_ptr<Run> run_;
+};
+
+}  // namespace interflect

@@ -1,0 +1,222 @@
+// A run in many calls, saved and opened between them, or stopped anywhere, has the bits of one that is left alone.
+// Meant to fail when a member is left out of an archive(), or a step that is cut short is not begun anew.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+
+#include "interflect/base/error.h"
+#include "interflect/base/random.h"
+#include "interflect/exports/solution_file.h"
+#include "interflect/solver/solver.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+namespace fs = std::filesystem;
+
+struct Case {
+    std::string name;
+    SolveOptions options;
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+const View into_the_room = {"room", {0.2f, 0.2f, 2}, {3.5f, 2.5f, 0.5f}, {0, 0, 1}, 60};
+
+/// A room without a ceiling's quarter, a lamp below it and a table.
+Scene open_room() {
+    Scene scene = closed_box({4.1f, 2.9f, 2.5f}, 2, {{"wall", {0.7f, 0.6f, 0.5f}, Rgb(0)}});
+    scene.patches.pop_back();
+    const std::uint32_t lamp = add_material(scene, Rgb(0.2f), {90, 100, 70}), grey = add_material(scene, Rgb(0.3f), Rgb(0));
+    add_rectangle(scene, {1.3f, 1.1f, 2.3f}, {0, 0.4f, 0}, {0.3f, 0, 0}, lamp, 1, 1, true);
+    add_box(scene, {2.1f, 0.9f, 0}, {3.2f, 1.8f, 0.7f}, grey);
+    return scene;
+}
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    const auto add = [&](const std::string& name, const std::string& method, const auto& change) {
+        SolveOptions options;
+        options.method = find_method(method);
+        if (options.method.importance != ImportanceUse::off) options.views = {{into_the_room}};
+        options.rays = 60'000;
+        options.camera_rays = 2000;
+        change(options);
+        all.push_back({name, options});
+    };
+    const auto as_it_is = [](SolveOptions&) {};
+    for (const Method& method : methods) {
+        std::string name = method.name;
+        std::replace(name.begin(), name.end(), '-', '_');
+        add(name, method.name, as_it_is);
+    }
+    add("hr_with_importance", "hr", [](SolveOptions& o) {
+        o.method.importance = ImportanceUse::full;
+        o.views = {{into_the_room}};
+        o.epsilon = 1e-4;
+    });
+    add("random_walk_with_importance", "random-walk", [](SolveOptions& o) {
+        o.method.importance = ImportanceUse::full;
+        o.views = {{into_the_room}};
+    });
+    add("ihsrr_si", "ihsrr", [](SolveOptions& o) { o.separate_iterations = true; });
+    add("ihsrr_by_power", "ihsrr", [](SolveOptions& o) { o.refinement = Refinement::power; });
+    add("ihsrr_one_bounce", "ihsrr", [](SolveOptions& o) {
+        o.complete_passes = false;
+        o.warm_up = 1;
+        o.rays_per_iteration = 10'000;
+    });
+    add("ihsrr_one_bounce_si", "ihsrr", [](SolveOptions& o) {
+        o.complete_passes = false;
+        o.separate_iterations = true;
+    });
+    add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.complete_passes = false; });
+    return all;
+}
+
+class SavedRun : public testing::TestWithParam<Case> {
+  protected:
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "run.h5";
+    const Scene scene = open_room();
+};
+INSTANTIATE_TEST_SUITE_P(Methods, SavedRun, testing::ValuesIn(cases()),
+                         [](const auto& test) { return test.param.name; });
+
+void expect_same(const Solution& s, const Solution& expected) {
+    ASSERT_EQ(s.iterations.size(), expected.iterations.size());
+    for (std::size_t i = 0; i < s.iterations.size(); ++i) {
+        EXPECT_EQ(s.iterations[i].rays, expected.iterations[i].rays);
+        EXPECT_EQ(s.iterations[i].escaped_rays, expected.iterations[i].escaped_rays);
+        EXPECT_EQ(s.iterations[i].elements, expected.iterations[i].elements);
+        EXPECT_EQ(s.iterations[i].total_power, expected.iterations[i].total_power);
+        EXPECT_EQ(s.iterations[i].escaped_power, expected.iterations[i].escaped_power);
+        EXPECT_EQ(s.iterations[i].error_estimate, expected.iterations[i].error_estimate);
+        EXPECT_EQ(s.iterations[i].high_quantum, expected.iterations[i].high_quantum);
+    }
+    ASSERT_EQ(s.forest->subdivided(), expected.forest->subdivided());
+    EXPECT_EQ(s.irradiance, expected.irradiance);
+    EXPECT_EQ(s.view_importance, expected.view_importance);
+    EXPECT_EQ(s.indirect_importance, expected.indirect_importance);
+    EXPECT_EQ(s.standard_error, expected.standard_error);
+    EXPECT_EQ(s.discretisation_error, expected.discretisation_error);
+    EXPECT_EQ(s.rays, expected.rays);
+    EXPECT_EQ(s.non_finite, expected.non_finite);
+}
+
+TEST_P(SavedRun, HasTheSameBitsInManyCalls) {
+    const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
+    for (const Limits& limits : {Limits{.rays = 1}, Limits{.seconds = 0}}) {
+        Solver solver(scene, GetParam().options);
+        int calls = 1;
+        while (!solver.advance(limits).is_finished) {
+            solver.solution();  // looking changes nothing
+            ASSERT_LT(++calls, 1000);
+        }
+        EXPECT_GT(calls, 2);
+        expect_same(std::move(solver).take_solution(), expected);
+    }
+}
+
+TEST_P(SavedRun, HasTheSameBitsWhenSavedAndOpenedAfterEveryStep) {
+    const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
+    Solver solver(scene, GetParam().options);
+    while (!solver.advance({.seconds = 0}).is_finished) {
+        solver.save(file);
+        solver = Solver::open(file);
+    }
+    expect_same(solver.solution(), expected);
+}
+
+TEST_P(SavedRun, HasTheSameBitsWhereverItIsStopped) {
+    const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
+    Solver solver(scene, GetParam().options);
+    std::uint64_t random = 7;
+    for (bool is_finished = false; !is_finished;) {
+        std::atomic<bool> stop = false;
+        random = mix(random, 1);
+        std::thread stopper([&] {
+            std::this_thread::sleep_for(std::chrono::microseconds(1000 + random % 20000));
+            stop = true;
+        });
+        is_finished = solver.advance({}, {{}, &stop}).is_finished;
+        stopper.join();
+    }
+    expect_same(solver.solution(), expected);
+}
+
+TEST_P(SavedRun, WritesTheSameFileAsOneLeftAlone) {
+    const auto bytes_of = [&](const Solution& solution) {
+        write_solution(file, scene, solution);
+        std::ifstream in(file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    Solver solver(scene, GetParam().options);
+    solver.advance({.rays = 20'000});
+    solver.save(file);
+    Solver opened = Solver::open(file);
+    opened.advance({});
+    EXPECT_EQ(opened.scene().patches.size(), scene.patches.size());
+    const std::string expected = bytes_of(solve(scene, RayCaster(scene), GetParam().options));
+    EXPECT_TRUE(bytes_of(opened.solution()) == expected);
+}
+
+TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
+    SolveOptions options;
+    options.method = find_method("hsrr");
+    options.rays = 50'000;
+    Solver solver(open_room(), options);
+    EXPECT_TRUE(solver.advance({}).is_finished);
+    const AdvanceReport report = solver.advance({.rays = 200'000});
+    EXPECT_GE(report.rays, 240'000);
+    EXPECT_LE(report.rays, 260'000);
+}
+
+TEST(Solver, EndsAtTheErrorThatIsAskedFor) {
+    SolveOptions options;
+    options.method = find_method("hsrr");
+    options.rays = 10'000'000;
+    Solver solver(open_room(), options);
+    const AdvanceReport report = solver.advance({.error = 0.3});
+    EXPECT_LE(report.error, 0.3);
+    EXPECT_LT(report.rays, 10'000'000);
+    EXPECT_FALSE(report.is_finished);
+}
+
+TEST(Solver, IsDarkAndFinishedWithoutLight) {
+    Scene scene = closed_box({1, 2, 3}, 2, {{"grey", Rgb(0.5f), Rgb(0)}});
+    Solver solver(scene, {});
+    const AdvanceReport report = solver.advance({.rays = 1000});
+    EXPECT_TRUE(report.is_finished);
+    EXPECT_EQ(report.error, 0);
+    EXPECT_EQ(solver.solution().irradiance, std::vector<Rgb>(scene.patches.size(), Rgb(0)));
+}
+
+TEST(Solver, OpensOnlyFilesWithTheStateOfARun) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "result.h5";
+    const Scene scene = open_room();
+    SolveOptions options;
+    options.rays = 1000;
+    write_solution(file, scene, solve(scene, RayCaster(scene), options));
+    try {
+        Solver::open(file);
+        ADD_FAILURE() << "expected an error";
+    } catch (const InputError& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("not its state"));
+    }
+    EXPECT_THROW(Solver::open(folder.path() / "missing.h5"), InputError);
+}
+
+}  // namespace
+}  // namespace interflect
