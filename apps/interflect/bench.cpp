@@ -165,7 +165,7 @@ struct BenchResult {
     std::array<std::pair<const char*, double>, 5> shares;  // of the solver's time
 };
 
-Json json_of(const BenchResult& result) {
+Json figures_of(const BenchResult& result) {
     Json by_interface;
     for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = result.embree[i];
     Json shares_of_time;
@@ -177,7 +177,7 @@ Json json_of(const BenchResult& result) {
             {"shares_of_time", shares_of_time}};
 }
 
-void print(const BenchResult& result) {
+void print_figures(const BenchResult& result) {
     for (std::size_t i = 0; i < interfaces.size(); ++i)
         fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, result.embree[i] / 1e6);
     fmt::print("  whole solver          {:8.2f} M rays/s\n", result.solver / 1e6);
@@ -214,14 +214,14 @@ void run(const BenchArguments& options) {
                   {"threads", threads},
                   {"rays", options.rays},
                   {"rounds", options.rounds}};
-        json.update(json_of(result));
+        json.update(figures_of(result));
         json["ray_tracer_bytes"] = ray_caster.memory();
         std::cout << json_text(json, 2) << '\n';
         return;
     }
     print_line("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds", scene.name,
                solve_options.method.name, scene.patches.size(), work.solution.forest->size(), threads, options.rounds);
-    print(result);
+    print_figures(result);
 }
 
 }  // namespace
