@@ -10,6 +10,7 @@ enum ExitCode { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, interrupte
 // Each adds one subcommand; `exit_code` is set when it ends other than done and other than by an exception.
 void add_info(CLI::App& app);
 void add_solve(CLI::App& app, int& exit_code);
+void add_resume(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);

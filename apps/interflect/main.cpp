@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     int exit_code = done;
     add_info(app);
     add_solve(app, exit_code);
+    add_resume(app, exit_code);
     add_render(app, exit_code);
     add_compare(app);
     add_bench(app);

@@ -65,6 +65,18 @@ std::int64_t parse_iteration_size(const std::string& text) {
     return count;
 }
 
+double parse_duration(const std::string& text) {
+    double number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [unit, error] = std::from_chars(text.data(), end, number);
+    const std::string_view word(unit, static_cast<std::size_t>(end - unit));
+    const double seconds = number * (word == "h" ? 3600 : word == "m" ? 60 : 1);
+    const bool is_known = word.empty() || word == "s" || word == "m" || word == "h";
+    if (error != std::errc() || !is_known || !(seconds >= 0.1 && seconds <= 1e9))
+        refuse(text, "a time of 0.1 s or more, such as 30s, 5m or 2h");
+    return seconds;
+}
+
 std::uint64_t parse_seed(const std::string& text) {
     std::uint64_t seed = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

@@ -22,6 +22,8 @@ std::size_t parse_element_count(const std::string& text);
 std::int64_t parse_iteration_size(const std::string& text);
 /// "1.5G" -> 1.5 * 2^30 [bytes]: with k, M, G or T for powers of 1024.
 std::size_t parse_memory(const std::string& text);
+/// "90", "90s", "1.5m", "2h" -> seconds, from 0.1 to 10^9.
+double parse_duration(const std::string& text);
 /// "42" -> 42: a whole number of 64 bits, >= 0.
 std::uint64_t parse_seed(const std::string& text);
 /// "2%" or "0.02" -> 0.02, above 0 and below 1.

@@ -159,7 +159,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     const SolveOptions solve_options = options.solver.resolved({view}, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
-    StatsFile stats(options.solver, solved.scene);
+    StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
     const RayCaster ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
     if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "apps/interflect/leaks.h"
 #include "apps/interflect/machine_memory.h"
@@ -79,20 +81,37 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
                  covered.wholly, covered.partly, luminance(covered.power));
 }
 
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory) {
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
+                   const Checkpoints& checkpoints) {
     warn_of_covered_emission(scene, ray_caster);
     const SolveOptions options = within_limits(scene, ray_caster, asked_for, memory);
-    Solution solution;
+    const std::shared_ptr<void> unowned;  // they outlive the solver
+    return run_to_end(Solver(std::shared_ptr<const Scene>(unowned, &scene),
+                             std::shared_ptr<const RayCaster>(unowned, &ray_caster), options),
+                      checkpoints);
+}
+
+Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
     {
         ProgressBar bar;
+        const SolveOptions options = solver.options();
         const auto show = [&](const IterationReport& report) {
             bar.show({fraction_done(options, report), report.seconds, report.rays, report.error_estimate});
         };
         const Monitor monitor{show, &stop_on_signal()};
-        solution = solve(scene, ray_caster, options, monitor);
+        Limits limits;
+        if (!checkpoints.file.empty()) limits.seconds = checkpoints.every;
+        for (bool is_over = false; !is_over;) {
+            const AdvanceReport report = solver.advance(limits, monitor);
+            is_over = report.is_finished || report.is_stopped;
+            checkpoints.save(solver);
+        }
     }
+    const std::shared_ptr<const Scene> scene = solver.shared_scene();
+    const std::shared_ptr<const RayCaster> ray_caster = solver.shared_ray_caster();
+    Solution solution = std::move(solver).take_solution();
     log_outcome(solution);
-    warn_of_leaks(scene, ray_caster, solution);
+    warn_of_leaks(*scene, *ray_caster, solution);
     return solution;
 }
 

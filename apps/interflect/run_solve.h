@@ -1,8 +1,10 @@
 #pragma once
 
+#include "apps/interflect/checkpoints.h"
 #include "apps/interflect/shared_options.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
+#include "interflect/solver/solver.h"
 
 namespace interflect::command {
 
@@ -12,6 +14,10 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster);
 /// Solves with progress on stderr and Ctrl-C heeded: what `solve` and `render` share.
 /// @param asked_for  SolverOptions::resolved().
 /// @param memory     SolverOptions::memory.
-Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory);
+Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
+                   const Checkpoints& checkpoints = {});
+
+/// Goes on with a run to its end, likewise.
+Solution run_to_end(Solver solver, const Checkpoints& checkpoints);
 
 }  // namespace interflect::command

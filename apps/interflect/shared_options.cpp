@@ -124,6 +124,23 @@ void add_method(CLI::App& app, std::optional<Method>& method) {
         ->group(solver_group);
 }
 
+void add_limits(CLI::App& app, std::optional<std::int64_t>& rays, std::optional<double>& seconds,
+                std::optional<double>& until) {
+    add_parsed(app, "--rays", rays, parse_count,
+               "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
+        ->type_name("COUNT")
+        ->group(solver_group);
+    app.add_option("--time", seconds,
+                   "Most seconds to solve; reading and cutting the scene, and drawing and writing, come on top")
+        ->type_name("SECONDS")
+        ->check(number_between(1e-3, 1e9))
+        ->group(solver_group);
+    add_parsed(app, "--until", until, parse_share,
+               "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
+        ->type_name("SHARE")
+        ->group(solver_group);
+}
+
 void SolverOptions::add_to(CLI::App& app) {
     add_method(app, method_);
     add_limits(app);
@@ -137,19 +154,7 @@ void SolverOptions::add_to(CLI::App& app) {
 }
 
 void SolverOptions::add_limits(CLI::App& app) {
-    rays_ = add_parsed(app, "--rays", solve_.rays, parse_count,
-                       "Most rays to trace, such as 20M (default 20M, unless --time or --until is given)")
-                ->type_name("COUNT")
-                ->group(solver_group);
-    app.add_option("--time", solve_.seconds,
-                   "Most seconds to solve; reading and cutting the scene, and drawing and writing, come on top")
-        ->type_name("SECONDS")
-        ->check(number_between(1e-3, 1e9))
-        ->group(solver_group);
-    add_parsed(app, "--until", solve_.until, parse_share,
-               "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
-        ->type_name("SHARE")
-        ->group(solver_group);
+    command::add_limits(app, rays_, seconds_, until_);
 }
 
 void SolverOptions::add_sampling(CLI::App& app) {
@@ -264,8 +269,10 @@ SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspec
     options.method = method_.value_or(find_method(views.empty() ? "hsrr" : "ihsrr"));
     options.method.importance = importance_.value_or(options.method.importance);
     for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
-    const bool other_limit = std::isfinite(options.seconds) || options.until > 0;
-    if (other_limit && rays_->count() == 0) options.rays = std::numeric_limits<std::int64_t>::max();
+    constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();
+    options.rays = rays_.value_or(seconds_ || until_ ? all : SolveOptions().rays);
+    options.seconds = seconds_.value_or(std::numeric_limits<double>::infinity());
+    options.until = until();
     return options;
 }
 

@@ -64,7 +64,7 @@ struct SolverOptions {
     /// @param aspect  Width over height of the pictures.
     SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
     std::uint64_t seed() const { return solve_.seed; }
-    double until() const { return solve_.until; }  ///< Target of the relative error; 0 where none was given.
+    double until() const { return until_.value_or(0); }  ///< Target of the relative error; 0 where none was given.
 
   private:
     void add_limits(CLI::App& app);
@@ -75,11 +75,16 @@ struct SolverOptions {
     SolveOptions solve_;
     std::optional<Method> method_;
     std::optional<ImportanceUse> importance_;
-    CLI::Option* rays_ = nullptr;
+    std::optional<std::int64_t> rays_;
+    std::optional<double> seconds_, until_;
 };
 
 /// How to solve, where it is named.
 void add_method(CLI::App& app, std::optional<Method>& method);
+
+/// When a run ends.
+void add_limits(CLI::App& app, std::optional<std::int64_t>& rays, std::optional<double>& seconds,
+                std::optional<double>& until);
 
 void add_threads(CLI::App& app, int& threads);
 

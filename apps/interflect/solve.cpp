@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
@@ -39,6 +42,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         MeshOptions mesh;
         ViewOptions view;
         SolverOptions solver;
+        Checkpoints checkpoints;
         std::filesystem::path output;
     };
     const auto options = std::make_shared<Options>();
@@ -46,6 +50,7 @@ void add_solve(CLI::App& app, int& exit_code) {
     options->scene.add_to(command);
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
     options->solver.add_to(command);
+    options->checkpoints.add_to(command, "Save the run to this file now and then (.h5); `resume` goes on with it");
     options->mesh.add_to(command);
     options->view.add_to(command);
     command.callback([options, &exit_code] {
@@ -53,19 +58,65 @@ void add_solve(CLI::App& app, int& exit_code) {
         require_solution_name(options->output);
         require_distinct_files(
             input_files(options->scene, options->view),
-            std::array<NamedFile, 2>{{{"--output", options->output}, {"--stats", options->solver.stats}}});
+            std::array<NamedFile, 3>{{{"--output", options->output},
+                                      {"--stats", options->solver.stats},
+                                      {"--checkpoint", options->checkpoints.file}}});
+        options->checkpoints.require_writable();
         PendingFile output(options->output);
         Scene scene = options->scene.load();
         const std::vector<View> views = options->view.views(scene);
         const SolveOptions solve_options = options->solver.resolved(views);
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
-        StatsFile stats(options->solver, scene);
-        const RayCaster ray_caster(scene);
-        const Solution solution = run_solve(scene, ray_caster, solve_options, options->solver.memory);
         // What was asked for comes first: `render` takes the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
+        StatsFile stats(options->solver.threads, options->solver.stats, scene);
+        const RayCaster ray_caster(scene);
+        const Solution solution =
+            run_solve(scene, ray_caster, solve_options, options->solver.memory, options->checkpoints);
         write(output, scene, solution);
         stats.write(scene, solution);
+        if (is_stop_requested()) exit_code = interrupted;
+    });
+}
+
+void add_resume(CLI::App& app, int& exit_code) {
+    struct Options {
+        std::filesystem::path input, output, stats;
+        std::optional<std::int64_t> rays;
+        std::optional<double> seconds, until;
+        Checkpoints checkpoints;
+        int threads = 0;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *app.add_subcommand("resume", "Go on with a run that was saved, as if it had never ended");
+    command.add_option("FILE", options->input, "What --checkpoint wrote")->required();
+    command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
+    add_limits(command, options->rays, options->seconds, options->until);
+    options->checkpoints.add_to(command, "Save the run to this file now and then (default: FILE itself)");
+    command.add_option("--stats", options->stats, "Write what each iteration did to this file, as JSON lines")
+        ->type_name("FILE");
+    add_threads(command, options->threads);
+    command.callback([options, &exit_code] {
+        const ThreadLimit threads(options->threads);
+        if (options->checkpoints.file.empty()) options->checkpoints.file = options->input;
+        require_solution_name(options->output);
+        require_distinct_files(std::array<NamedFile, 1>{{{"FILE", options->input}}},
+                               std::array<NamedFile, 2>{{{"--output", options->output}, {"--stats", options->stats}}});
+        require_distinct_files({}, std::array<NamedFile, 3>{{{"--output", options->output},
+                                                             {"--stats", options->stats},
+                                                             {"--checkpoint", options->checkpoints.file}}});
+        options->checkpoints.require_writable();
+        PendingFile output(options->output);
+        Solver solver = Solver::open(options->input);
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        if (options->rays || options->seconds || options->until)
+            solver.set_plan(options->rays.value_or(std::numeric_limits<std::int64_t>::max()),
+                            options->seconds.value_or(infinity), options->until.value_or(0));
+        const std::shared_ptr<const Scene> scene = solver.shared_scene();
+        StatsFile stats(options->threads, options->stats, *scene);
+        const Solution solution = run_to_end(std::move(solver), options->checkpoints);
+        write(output, *scene, solution);
+        stats.write(*scene, solution);
         if (is_stop_requested()) exit_code = interrupted;
     });
 }

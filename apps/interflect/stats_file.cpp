@@ -38,12 +38,12 @@ Json line_of(const IterationReport& report) {
 
 }  // namespace
 
-StatsFile::StatsFile(const SolverOptions& command, const Scene& scene) : threads_(command.threads) {
-    if (command.stats.empty()) return;
+StatsFile::StatsFile(int threads, const std::filesystem::path& stats, const Scene& scene) : threads_(threads) {
+    if (stats.empty()) return;
     for (const std::string& file : scene.files)
         require_distinct_files(std::array<NamedFile, 1>{{{"a file of the scene", file}}},
-                               std::array<NamedFile, 1>{{{"--stats", command.stats}}});
-    file_.emplace(command.stats);
+                               std::array<NamedFile, 1>{{{"--stats", stats}}});
+    file_.emplace(stats);
 }
 
 void StatsFile::write(const Scene& scene, const Solution& solution) {

@@ -1,5 +1,5 @@
 // A run in many calls, saved and opened between them, or stopped anywhere, has the bits of one that is left alone.
-// Meant to fail when a member is left out of an archive(), or a step that is cut short is not begun anew.
+// Seen to fail when arrivals of a step that is cut short stay, and when the file is written after the state has changed.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

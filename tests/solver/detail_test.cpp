@@ -32,16 +32,14 @@ constexpr double sure = 4;  // standard deviations: a normal variable is farther
 struct Setting {
     Scene scene;
     RayCaster ray_caster;
-    SolveOptions options;
-    Monitor monitor;
     SolverState state;
+    SolveOptions& options = state.solution.options;
     std::mt19937_64 random{1};
 
     Setting(int n, int levels, float exitance = 1)
         : scene(closed_box({1, 1, 1}, n, {{"wall", Rgb(0.5f), Rgb(exitance)}})),
           ray_caster(scene),
-          options(hierarchical()),
-          state(scene, ray_caster, options, monitor) {
+          state(scene, ray_caster, hierarchical()) {
         for (int level = 0; level < levels; ++level) divide();
     }
     static SolveOptions hierarchical() {
@@ -151,8 +149,7 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     const RayCaster ray_caster(scene);
     SolveOptions options = Setting::hierarchical();
     options.views.push_back({{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}});
-    const Monitor monitor;
-    interflect::SolverState state(scene, ray_caster, options, monitor);
+    interflect::SolverState state(scene, ray_caster, options);
     state.solution.view_importance.assign(state.forest->size(), 1.0f);
     state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // of luminance 0.02, but what is reflected has 0.4
     EXPECT_LE(error_weight(state, 0), 0.8 * 0.8);

@@ -51,7 +51,7 @@ SolveOptions unrefined() {
 }
 
 Solution solve_scene(const Scene& scene, const SolveOptions& options) {
-    return solve_by_links(scene, RayCaster(scene), options);
+    return solve(scene, RayCaster(scene), options);
 }
 
 // The polygon from a point.
@@ -318,17 +318,26 @@ TEST(LinkRadiosity, ClosedBoxLosesNoPowerOnAnyMesh) {
     }
 }
 
+/// With so many links at most.
+void solve_with_links(const Scene& scene, const SolveOptions& options, std::size_t link_limit) {
+    const RayCaster ray_caster(scene);
+    SolverState state(scene, ray_caster, options);
+    LinkedElements elements(state, link_limit);
+    elements.prepare(state);
+    for (IterationPlan plan = elements.plan(state); plan.rays > 0; plan = elements.plan(state))
+        elements.iterate(state, plan);
+}
+
 TEST(LinkRadiosity, SaysWhatToDoWhereThereAreTooManyLinks) {
     const Scene scene = colourful_box();
-    const RayCaster ray_caster(scene);
     try {
-        solve_by_links(scene, ray_caster, unrefined(), {}, 1000);
+        solve_with_links(scene, unrefined(), 1000);
         FAIL() << "expected an InputError";
     } catch (const InputError& e) {
         EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr("closed box"), testing::HasSubstr("1000 links"),
                                              testing::HasSubstr("epsilon")));
     }
-    EXPECT_THROW(solve_by_links(scene, ray_caster, refined_to(1e-5), {}, 2000), InputError);
+    EXPECT_THROW(solve_with_links(scene, refined_to(1e-5), 2000), InputError);
 }
 
 TEST(LinkRadiosity, StopsWhenAskedAndAtItsLimits) {
@@ -345,7 +354,7 @@ TEST(LinkRadiosity, StopsWhenAskedAndAtItsLimits) {
 
     std::atomic<bool> stop{false};
     const Monitor monitor{[&](const IterationReport& report) { stop = report.iteration == 2; }, &stop};
-    const Solution s = solve_by_links(scene, RayCaster(scene), refined_to(1e-3), monitor);
+    const Solution s = solve(scene, RayCaster(scene), refined_to(1e-3), monitor);
     EXPECT_TRUE(s.interrupted);
     EXPECT_EQ(s.iterations.size(), 2u);
     EXPECT_GT(s.irradiance[0].x, 0);

@@ -64,7 +64,9 @@ void Solver::Run::iterate_until(const Limits& limits) {
     limit_time();
     while (!is_reached(std::max(limits.error, state.options.until)) && state.schedule.rays() < rays_asked_for) {
         if (plan.rays == 0) plan = next_plan(rays_asked_for);
-        if (plan.rays == 0 || !state.may_begin_step()) break;
+        is_finished = plan.rays == 0;
+        if (is_finished) return;
+        if (state.stop.is_due() || !state.may_begin_step()) throw Interrupted();
         const RgbD escaped_power = method->iterate(state, plan);
         state.has_traced_step = true;
         state.schedule.done(plan);
@@ -168,9 +170,9 @@ Solution Solver::take_solution() && {
     return std::move(run_->state.solution);
 }
 
-const Scene& Solver::scene() const { return *run_->scene; }
+std::shared_ptr<const Scene> Solver::shared_scene() const { return run_->scene; }
+std::shared_ptr<const RayCaster> Solver::shared_ray_caster() const { return run_->ray_caster; }
 const SolveOptions& Solver::options() const { return run_->state.options; }
-const RayCaster& Solver::ray_caster() const { return *run_->ray_caster; }
 
 void Solver::archive(StateArchive& archive) {
     run_->state.archive(archive);

@@ -66,9 +66,11 @@ class Solver {
     const Solution& solution() const;
     /// The same without a copy; the solver is of no use any more.
     Solution take_solution() &&;
-    const Scene& scene() const;
+    const Scene& scene() const { return *shared_scene(); }
+    const RayCaster& ray_caster() const { return *shared_ray_caster(); }
+    std::shared_ptr<const Scene> shared_scene() const;
+    std::shared_ptr<const RayCaster> shared_ray_caster() const;
     const SolveOptions& options() const;
-    const RayCaster& ray_caster() const;
 
     /// Writes all that is needed to go on to a solution file (docs/solution-file.md), by way of a temporary file.
     /// @throws std::runtime_error where it cannot be written.

@@ -1,0 +1,87 @@
+"""Checkpoints: a run that is killed anywhere and resumed ends with the bytes of one that is left alone."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+from command import BAD_INPUT, COMMAND, DONE, INTERRUPTED, VIEW, CommandTest, room
+
+RUN = ("solve", "room.mgf", "--rays", "1M", "--mesh-size", "0.5")
+METHODS = (("--method", "hsrr"), (*VIEW, "--method", "ihsrr"), ("--method", "hwdrs"), ("--method", "random-walk"))
+OFTEN = ("--checkpoint", "run.h5", "--every", "0.1s")
+
+
+class Resume(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def start_and_end(self, *arguments, signal_number, seconds):
+        """Sends a signal after so many seconds."""
+        process = subprocess.Popen(
+            [COMMAND, *arguments], cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+        )
+        time.sleep(seconds)
+        process.send_signal(signal_number)
+        process.wait()
+        return process.returncode
+
+    def kill_and_resume(self, whole, options, step):
+        """Kills the run again and again, each time a little later, until one ends by itself."""
+        (self.folder / "run.h5").unlink(missing_ok=True)
+        kills = 0
+        arguments = (*RUN, *options, "-o", "killed.h5", *OFTEN)
+        while True:
+            code = self.start_and_end(
+                *arguments, signal_number=signal.SIGKILL, seconds=0.1 + step * kills
+            )
+            kills += 1
+            if (self.folder / "run.h5").exists():
+                arguments = ("resume", "run.h5", "-o", "killed.h5", *OFTEN)
+            if code == DONE:
+                break
+        self.assertGreater(kills, 1)
+        self.assertEqual(self.bytes("killed.h5"), whole)
+
+    def test_a_run_that_is_killed_and_resumed_has_the_bytes_of_one_left_alone(self):
+        for options in METHODS:
+            with self.subTest(options=options):
+                self.interflect(*RUN, *options, "-o", "whole.h5")
+                whole = self.bytes("whole.h5")
+                self.kill_and_resume(whole, options, step=0.07)
+                self.assertEqual([f.name for f in self.folder.glob("*.part*")], [])
+
+    def test_goes_on_to_other_limits_and_keeps_the_previous_checkpoint(self):
+        self.interflect(*RUN, "-o", "a.h5", "--checkpoint", "run.h5")
+        first = self.bytes("run.h5")
+        self.interflect("resume", "run.h5", "-o", "b.h5", "--rays", "2M", "--stats", "stats.jsonl")
+        self.assertEqual(self.bytes("run.previous.h5"), first)
+        info = self.json("info", "b.h5", "--json")
+        self.assertEqual(info["result"]["rays"], 2_000_000)
+        self.interflect("render", "run.h5", "-o", "picture.png", *VIEW, "--size", "32x18")
+
+    def test_ctrl_c_keeps_a_state_to_go_on_from(self):
+        self.interflect(*RUN, "-o", "whole.h5")
+        code = self.start_and_end(*RUN, "-o", "cut.h5", "--checkpoint", "run.h5", signal_number=signal.SIGINT, seconds=0.3)
+        if code == INTERRUPTED:  # else it was faster
+            self.interflect("resume", "run.h5", "-o", "resumed.h5")
+            whole, resumed = self.bytes("whole.h5"), self.bytes("resumed.h5")
+            self.assertEqual(resumed, whole)
+        else:
+            self.assertIn(code, (DONE, -signal.SIGINT))
+
+    def test_what_cannot_be_resumed_is_refused(self):
+        self.interflect(*RUN, "-o", "result.h5")
+        for arguments, reason in (
+            (("resume", "result.h5", "-o", "out.h5"), "not its state"),
+            (("resume", "room.mgf", "-o", "out.h5"), "a checkpoint is a solution file"),
+            ((*RUN, "-o", "out.h5", "--checkpoint", "run.mgf"), "ends in .h5"),
+            ((*RUN, "-o", "out.h5", "--checkpoint", "out.h5"), "same file"),
+        ):
+            with self.subTest(arguments=arguments):
+                self.assertIn(reason, self.interflect(*arguments, exit_code=BAD_INPUT).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
