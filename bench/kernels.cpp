@@ -9,8 +9,8 @@
 
 #include "interflect/base/points.h"
 #include "interflect/elements/forest.h"
+#include "interflect/generators/maze.h"
 #include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/maze.h"
 #include "interflect/solver/arrivals.h"
 #include "interflect/solver/probabilities.h"
 #include "interflect/solver/radiosity.h"

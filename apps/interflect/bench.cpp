@@ -140,6 +140,55 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     return m;
 }
 
+/// Medians over the rounds.
+struct BenchResult {
+    explicit BenchResult(const std::vector<Measurement>& rounds) {
+        const auto median_of = [&](const auto& figure) {
+            std::vector<double> values(rounds.size());
+            std::transform(rounds.begin(), rounds.end(), values.begin(), figure);
+            return median(values);
+        };
+        ratio = median_of([](const Measurement& m) { return m.solver / m.ceiling; });
+        ceiling = median_of([](const Measurement& m) { return m.ceiling; });
+        solver = median_of([](const Measurement& m) { return m.solver; });
+        for (std::size_t i = 0; i < interfaces.size(); ++i)
+            embree[i] = median_of([i](const Measurement& m) { return m.embree[i]; });
+        shares = {{{"making_rays", median_of([](const Measurement& m) { return m.making_rays; })},
+                   {"tracing", median_of([](const Measurement& m) { return m.tracing; })},
+                   {"receiving", median_of([](const Measurement& m) { return m.receiving; })},
+                   {"refinement", median_of([](const Measurement& m) { return m.refinement; })},
+                   {"sweeps", median_of([](const Measurement& m) { return m.sweeps(); })}}};
+    }
+
+    double ratio, ceiling, solver;  // of the solver over the ceiling; [rays/s]
+    std::array<double, interfaces.size()> embree;
+    std::array<std::pair<const char*, double>, 5> shares;  // of the solver's time
+};
+
+Json figures_of(const BenchResult& result) {
+    Json by_interface;
+    for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = result.embree[i];
+    Json shares_of_time;
+    for (const auto& [name, share] : result.shares) shares_of_time[name] = share;
+    return {{"ceiling_rays_per_second", result.ceiling},
+            {"embree", by_interface},
+            {"solver_rays_per_second", result.solver},
+            {"ratio", result.ratio},
+            {"shares_of_time", shares_of_time}};
+}
+
+void print_figures(const BenchResult& result) {
+    for (std::size_t i = 0; i < interfaces.size(); ++i)
+        fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, result.embree[i] / 1e6);
+    fmt::print("  whole solver          {:8.2f} M rays/s\n", result.solver / 1e6);
+    fmt::print("  solver over Embree    {:8.3f}\n", result.ratio);
+    fmt::print(
+        "  of the solver's time  {:.0f}% making rays, {:.0f}% tracing, {:.0f}% receiving, {:.0f}% refinement, "
+        "{:.0f}% sweeps over the elements\n",
+        100 * result.shares[0].second, 100 * result.shares[1].second, 100 * result.shares[2].second,
+        100 * result.shares[3].second, 100 * result.shares[4].second);
+}
+
 void run(const BenchArguments& options) {
     const ThreadLimit limit(options.threads);
     Scene scene = options.scene.load();
@@ -154,57 +203,25 @@ void run(const BenchArguments& options) {
     std::vector<Measurement> rounds;
     rounds.reserve(static_cast<std::size_t>(options.rounds));
     for (int round = 0; round < options.rounds; ++round) rounds.push_back(measure(scene, ray_caster, work));
-    const auto median_of = [&](const auto& figure) {
-        std::vector<double> values(rounds.size());
-        std::transform(rounds.begin(), rounds.end(), values.begin(), figure);
-        return median(values);
-    };
-    const double ratio = median_of([](const Measurement& m) { return m.solver / m.ceiling; });
-    const double ceiling = median_of([](const Measurement& m) { return m.ceiling; });
-    const double solver = median_of([](const Measurement& m) { return m.solver; });
-    std::array<double, interfaces.size()> embree;
-    for (std::size_t i = 0; i < interfaces.size(); ++i)
-        embree[i] = median_of([i](const Measurement& m) { return m.embree[i]; });
-    const std::array<std::pair<const char*, double>, 5> shares = {
-        {{"making_rays", median_of([](const Measurement& m) { return m.making_rays; })},
-         {"tracing", median_of([](const Measurement& m) { return m.tracing; })},
-         {"receiving", median_of([](const Measurement& m) { return m.receiving; })},
-         {"refinement", median_of([](const Measurement& m) { return m.refinement; })},
-         {"sweeps", median_of([](const Measurement& m) { return m.sweeps(); })}}};
+    const BenchResult result(rounds);
 
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     if (options.json) {
-        Json by_interface;
-        for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = embree[i];
-        Json shares_of_time;
-        for (const auto& [name, share] : shares) shares_of_time[name] = share;
-        const Json result{{"scene", scene.name},
-                          {"patches", scene.patches.size()},
-                          {"method", solve_options.method.name},
-                          {"elements", work.solution.forest->size()},
-                          {"threads", threads},
-                          {"rays", options.rays},
-                          {"rounds", options.rounds},
-                          {"ceiling_rays_per_second", ceiling},
-                          {"embree", by_interface},
-                          {"solver_rays_per_second", solver},
-                          {"ratio", ratio},
-                          {"shares_of_time", shares_of_time},
-                          {"ray_tracer_bytes", ray_caster.memory()}};
-        std::cout << json_text(result, 2) << '\n';
+        Json json{{"scene", scene.name},
+                  {"patches", scene.patches.size()},
+                  {"method", solve_options.method.name},
+                  {"elements", work.solution.forest->size()},
+                  {"threads", threads},
+                  {"rays", options.rays},
+                  {"rounds", options.rounds}};
+        json.update(figures_of(result));
+        json["ray_tracer_bytes"] = ray_caster.memory();
+        std::cout << json_text(json, 2) << '\n';
         return;
     }
     print_line("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds", scene.name,
                solve_options.method.name, scene.patches.size(), work.solution.forest->size(), threads, options.rounds);
-    for (std::size_t i = 0; i < interfaces.size(); ++i)
-        fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, embree[i] / 1e6);
-    fmt::print("  whole solver          {:8.2f} M rays/s\n", solver / 1e6);
-    fmt::print("  solver over Embree    {:8.3f}\n", ratio);
-    fmt::print(
-        "  of the solver's time  {:.0f}% making rays, {:.0f}% tracing, {:.0f}% receiving, {:.0f}% refinement, "
-        "{:.0f}% sweeps over the elements\n",
-        100 * shares[0].second, 100 * shares[1].second, 100 * shares[2].second, 100 * shares[3].second,
-        100 * shares[4].second);
+    print_figures(result);
 }
 
 }  // namespace

@@ -13,9 +13,9 @@
 #include "apps/interflect/parse.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/image/flip.h"
 #include "interflect/image/image_files.h"
-#include "interflect/image/metrics.h"
+#include "interflect/metrics/flip.h"
+#include "interflect/metrics/metrics.h"
 
 namespace interflect::command {
 

@@ -17,7 +17,7 @@
 #include "apps/interflect/up_axis.h"
 #include "interflect/exports/solution_file.h"
 #include "interflect/exports/solve_report.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
 

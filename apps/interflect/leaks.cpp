@@ -8,8 +8,8 @@
 
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
-#include "interflect/scene/patch_geometry.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/ray_source.h"
 

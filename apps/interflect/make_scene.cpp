@@ -11,10 +11,10 @@
 #include "interflect/base/pending_file.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/formats/write_mgf.h"
-#include "interflect/scene/boxes.h"
-#include "interflect/scene/maze.h"
-#include "interflect/scene/office.h"
-#include "interflect/scene/two_rooms.h"
+#include "interflect/generators/boxes.h"
+#include "interflect/generators/maze.h"
+#include "interflect/generators/office.h"
+#include "interflect/generators/two_rooms.h"
 
 namespace interflect::command {
 

@@ -22,10 +22,10 @@
 #include "interflect/exports/solution_file.h"
 #include "interflect/image/image_files.h"
 #include "interflect/image/legend.h"
-#include "interflect/image/outlines.h"
-#include "interflect/image/render.h"
 #include "interflect/image/tone_map.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/render/outlines.h"
+#include "interflect/render/render.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "interflect/image/path_tracer.h"
+#include "interflect/render/path_tracer.h"
 
 namespace interflect::command {
 

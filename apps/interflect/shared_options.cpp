@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "interflect/formats/view_files.h"
+#include "interflect/geometry/contacts.h"
+#include "interflect/geometry/split.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/scene/contacts.h"
-#include "interflect/scene/split.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "interflect/exports/solution_file.h"
-#include "interflect/image/quantity_picture.h"
+#include "interflect/render/quantity_picture.h"
 
 namespace interflect::command {
 

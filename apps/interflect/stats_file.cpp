@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "interflect/exports/solve_report.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect::command {
 

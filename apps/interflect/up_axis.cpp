@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect::command {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "interflect/base/error.h"
-#include "interflect/scene/maze.h"
+#include "interflect/generators/maze.h"
 
 namespace interflect {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "interflect/base/error.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "interflect/formats/load_scene.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -13,8 +13,8 @@
 #include "interflect/formats/load_scene.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/mgf_colour.h"
-#include "interflect/scene/maze.h"
-#include "interflect/scene/office.h"
+#include "interflect/generators/maze.h"
+#include "interflect/generators/office.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

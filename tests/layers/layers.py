@@ -4,7 +4,10 @@ import re
 from pathlib import Path
 
 # A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
-LAYERS = ["base", "scene", "formats", "raycast", "elements", "solver", "image", "exports", "cluster"]
+LAYERS = [
+    "base", "scene", "geometry", "generators", "formats", "raycast", "elements", "solver", "image", "render", "metrics",
+    "exports", "cluster",
+]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
 USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)

@@ -11,8 +11,8 @@
 #include <cmath>
 #include <random>
 
+#include "interflect/geometry/split.h"
 #include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/split.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -10,13 +10,13 @@
 
 #include "interflect/base/random.h"
 #include "interflect/formats/load_scene.h"
+#include "interflect/generators/boxes.h"
+#include "interflect/generators/maze.h"
+#include "interflect/generators/office.h"
+#include "interflect/generators/two_rooms.h"
+#include "interflect/geometry/contacts.h"
+#include "interflect/geometry/split.h"
 #include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/boxes.h"
-#include "interflect/scene/contacts.h"
-#include "interflect/scene/maze.h"
-#include "interflect/scene/office.h"
-#include "interflect/scene/split.h"
-#include "interflect/scene/two_rooms.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

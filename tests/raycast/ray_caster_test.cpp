@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "interflect/base/error.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "interflect/base/error.h"
-#include "interflect/scene/contacts.h"
+#include "interflect/geometry/contacts.h"
+#include "interflect/geometry/split.h"
 #include "interflect/scene/scene.h"
-#include "interflect/scene/split.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/brute_force.h"

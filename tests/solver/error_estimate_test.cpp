@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "interflect/image/render.h"
+#include "interflect/render/render.h"
 #include "interflect/solver/solve.h"
 #include "tests/support/scenes.h"
 

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
 #include "tests/solver/variants.h"

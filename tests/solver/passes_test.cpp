@@ -14,7 +14,7 @@
 #include <numeric>
 #include <ostream>
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"

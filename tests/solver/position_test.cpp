@@ -15,7 +15,7 @@
 
 #include "interflect/base/error.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/image/render.h"
+#include "interflect/render/render.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
 #include "tests/support/statistics.h"

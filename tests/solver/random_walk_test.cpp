@@ -18,8 +18,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "interflect/scene/maze.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/generators/maze.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
 #include "tests/solver/reference_rooms.h"

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <ostream>
 
-#include "interflect/scene/contacts.h"
-#include "interflect/scene/split.h"
-#include "interflect/scene/two_rooms.h"
+#include "interflect/generators/two_rooms.h"
+#include "interflect/geometry/contacts.h"
+#include "interflect/geometry/split.h"
 #include "interflect/solver/solve.h"
 
 namespace interflect {

@@ -8,7 +8,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/stable_array.h"
 #include "interflect/elements/cell.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {

@@ -9,7 +9,7 @@
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
-#include "interflect/scene/maze.h"
+#include "interflect/generators/maze.h"
 
 namespace interflect {
 

@@ -25,11 +25,11 @@ class MgfFaults {
     void refuse_first() const { refuse(faults_.empty() ? none : 0); }
 
   private:
-    struct Fault {
+    struct LocatedFault {
         Location where;
         std::string message;
     };
-    std::vector<Fault> faults_;
+    std::vector<LocatedFault> faults_;
     std::map<std::pair<const std::filesystem::path*, std::int64_t>, std::uint32_t> index_;
 };
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "interflect/base/error.h"
+#include "interflect/geometry/polygon.h"
 #include "interflect/scene/limits.h"
-#include "interflect/scene/polygon.h"
 
 namespace interflect {
 
@@ -33,7 +33,7 @@ std::string identity(const Material& m) {
 
 MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options,
                                  const Imath::V3d& origin)
-    : options_(options), weld_(scene_) {
+    : options_(options), weld_(scene_.vertices) {
     scene_.origin = origin;
     scene_.name = file.string();
     scene_.objects.emplace_back();
@@ -55,7 +55,7 @@ std::uint32_t MgfSceneBuilder::vertex(const Imath::V3d& position) {
         throw std::invalid_argument(
             fmt::format("the transformed point ({}, {}, {}) is farther than {:g} m from the origin, which is too far",
                         position.x, position.y, position.z, farthest_coordinate));
-    return weld_.vertex(V3f(position - scene_.origin));
+    return weld_.vertex(V3f(position - scene_.origin) + V3f(0));  // -0 + 0 = 0
 }
 
 Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double largest, const Location& where) {

@@ -9,7 +9,7 @@
 
 #include "interflect/formats/mgf_contexts.h"
 #include "interflect/formats/read_options.h"
-#include "interflect/formats/vertex_weld.h"
+#include "interflect/geometry/vertex_weld.h"
 #include "interflect/scene/core.h"
 #include "interflect/scene/scene.h"
 

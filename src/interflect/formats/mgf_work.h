@@ -4,8 +4,8 @@
 
 namespace interflect {
 
-/// Counts what arrays and includes make the reader go over again, in words, and bounds it: a file of a few lines can
-/// ask for 10^14 of them. A two-sided quadrilateral that defines its own vertices takes 33 words.
+/// Counts the words that arrays and includes make the reader read again, and limits them: a file of a few lines can ask
+/// for 10^14. A two-sided quadrilateral that defines its own vertices takes 33 words.
 class RepeatedWork {
   public:
     /// What opening an included file takes, and going on to the next copy of an array, in the time that words take.

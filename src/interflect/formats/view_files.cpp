@@ -99,7 +99,7 @@ class RadianceView {
     }
 
   private:
-    using Fault = std::invalid_argument;
+    using OptionFault = std::invalid_argument;
     Imath::V3d eye_{0, 0, 0}, direction_{0, 1, 0}, up_{0, 0, 1};
     double vertical_ = 45;
 };
@@ -108,12 +108,13 @@ std::span<const std::string_view> RadianceView::take(std::span<const std::string
     const std::string_view option = words[0];
     const auto number = [&](std::size_t i) {
         const auto value = i < words.size() ? parse_number(words[i]) : std::nullopt;
-        if (!value) throw Fault(fmt::format("{} lacks a finite number", option));
+        if (!value) throw OptionFault(fmt::format("{} lacks a finite number", option));
         return *value;
     };
     const auto vector = [&] { return Imath::V3d(number(1), number(2), number(3)); };
     if (option.starts_with("-vt")) {
-        if (option != "-vtv") throw Fault(fmt::format("'{}': only perspective views (-vtv) are understood", option));
+        if (option != "-vtv")
+            throw OptionFault(fmt::format("'{}': only perspective views (-vtv) are understood", option));
         return words.subspan(1);
     }
     if (option == "-vp" || option == "-vd" || option == "-vu") {
@@ -127,10 +128,10 @@ std::span<const std::string_view> RadianceView::take(std::span<const std::string
     }
     if (option == "-vs" || option == "-vl" || option == "-vo" || option == "-va") {
         if (number(1) != 0)
-            throw Fault(fmt::format("{} must be 0: views have no shift, lift or clipping plane", option));
+            throw OptionFault(fmt::format("{} must be 0: views have no shift, lift or clipping plane", option));
         return words.subspan(2);
     }
-    throw Fault(fmt::format("'{}' is no option of a view", option));
+    throw OptionFault(fmt::format("'{}' is no option of a view", option));
 }
 
 bool starts_a_view(std::string_view word) { return !word.starts_with('-') && !parse_number(word); }

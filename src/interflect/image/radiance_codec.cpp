@@ -79,9 +79,9 @@ void append_encoded(const std::vector<Rgbe>& line, int component, std::string& f
     }
 }
 
-class Reader {
+class RadianceReader {
   public:
-    explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+    explicit RadianceReader(std::string_view bytes) : bytes_(bytes) {}
 
     std::string_view line() {
         const std::size_t end = bytes_.find('\n', position_);
@@ -133,14 +133,14 @@ Size parse_resolution(std::string_view line) {
 }
 
 /// The header up to the empty line; what it says about exposure has been applied to the pixels and is not undone.
-void read_header(Reader& reader) {
+void read_header(RadianceReader& reader) {
     if (!reader.line().starts_with("#?")) throw std::runtime_error("it does not begin with '#?RADIANCE'");
     for (std::string_view line = reader.line(); !line.empty(); line = reader.line())
         if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
             throw std::runtime_error(fmt::format("its format is '{}', expected '32-bit_rle_rgbe'", line.substr(7)));
 }
 
-void read_encoded_line(Reader& reader, std::vector<Rgbe>& line) {
+void read_encoded_line(RadianceReader& reader, std::vector<Rgbe>& line) {
     reader.pixel();  // the marker
     for (int component = 0; component < 4; ++component)
         for (std::size_t x = 0; x < line.size();) {
@@ -173,7 +173,7 @@ std::string encode_radiance(const Image& image) {
 }
 
 Image decode_radiance(std::string_view bytes) {
-    Reader reader(bytes);
+    RadianceReader reader(bytes);
     read_header(reader);
     const Size size = parse_resolution(reader.line());
     // The densest encoding takes four times two bytes for 127 pixels: make no room for pixels that cannot be there.

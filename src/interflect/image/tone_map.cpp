@@ -12,8 +12,8 @@ namespace interflect {
 
 namespace {
 
-constexpr double key = 0.28;            // what the logarithmic mean becomes, 1 being white
-constexpr double ignored_share = 0.05;  // of the lit pixels, at either end
+constexpr double key = 0.28;                  // what the logarithmic mean becomes, 1 being white
+constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at either end
 
 /// Luminance that becomes white under Tonemap::reinhard.
 constexpr float reinhard_white = 4.0f;
@@ -60,7 +60,7 @@ float automatic_exposure(const Image& image) {
     if (lit.empty()) return 0;
     std::sort(lit.begin(), lit.end());
 
-    const auto ignored = static_cast<std::size_t>(ignored_share * static_cast<double>(lit.size()));
+    const auto ignored = static_cast<std::size_t>(ignored_pixel_share * static_cast<double>(lit.size()));
     const std::size_t counted = lit.size() - 2 * ignored;
     double stops = 0;
     for (std::size_t i = ignored; i < ignored + counted; ++i) stops += std::log2(lit[i]);

@@ -5,8 +5,8 @@
 
 namespace interflect {
 
-/// The rays from the eye of a View through the pixels of an image: a pinhole, square pixels, `fov` from the top edge of
-/// the image to its bottom edge.
+/// Makes camera rays: from the eye of a View through the pixels of an image. A pinhole camera with square pixels; `fov`
+/// is the angle from the top edge of the image to its bottom edge.
 class Camera {
   public:
     /// Made before a solve, it finds all that render() could object to in a view and a size.

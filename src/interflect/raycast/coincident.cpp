@@ -6,10 +6,11 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
-#include "interflect/raycast/covered_area.h"
-#include "interflect/raycast/face_overlap.h"
-#include "interflect/scene/flat_surfaces.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/bounds.h"
+#include "interflect/geometry/covered_area.h"
+#include "interflect/geometry/face_overlap.h"
+#include "interflect/geometry/flat_surfaces.h"
+#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {
 
@@ -155,11 +156,8 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
             if (!overlapped.empty()) first_.push_back(overlaps_.size());
             overlapped.push_back(overlapped_face);
         }
-        Imath::Box3f box;
-        for (const V3f& corner : corners(scene, scene.patches[priority_face])) box.extendBy(corner);
         const float margin = 2 * std::max(tolerance[priority_face], tolerance[overlapped_face]);
-        box.min -= V3f(margin);
-        box.max += V3f(margin);
+        const Imath::Box3f box = widened(bounds_of(scene, scene.patches[priority_face]), margin);
         const auto index = std::lower_bound(winners.begin(), winners.end(), priority_face, by_rank) - winners.begin();
         overlaps_.push_back({box, static_cast<std::uint32_t>(index)});
     }

@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/box_tree.h"
-#include "interflect/raycast/ranked_bits.h"
+#include "interflect/base/ranked_bits.h"
+#include "interflect/geometry/box_tree.h"
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
 /// Faces that lie in one place, as a sheet of paper in the plane of its desk or two boxes with a common side, and which
-/// of them answers a ray there. A ray tracer takes the one that it happens to test first: light would land on one while
-/// the eye sees the other. Here the same one always answers, seen from wherever: that of the smaller surface (paper on
-/// a desk; see flat_surfaces.h for what is one surface), of (nearly) equal surfaces the one that emits, since a lamp in
-/// the place of a ceiling tile is meant to be seen, then the one that comes first in the scene. A one-sided face
+/// of them answers a ray there. A ray tracer takes the one that it happens to test first: light could arrive at one
+/// and camera rays at the other. Here the same one always answers, whatever the ray: that of the smaller surface (paper
+/// on a desk; see flat_surfaces.h for what is one surface), of (nearly) equal surfaces the one that emits, since a lamp
+/// in the place of a ceiling tile is meant to be seen, then the one that comes first in the scene. A one-sided face
 /// answers, and takes part at all, only where it is seen from its front.
 ///
 /// Two faces coincide where they overlap in (nearly) one plane: where one's polygon reaches more than pair_tolerance()
@@ -34,7 +34,7 @@ class CoincidentFaces {
     /// @param scene      Valid (scene_faults); convex quadrilaterals.
     /// @param tolerance  Of each face [m], > 0: what its coordinates may be off by. Size scene.patches.size().
     CoincidentFaces(const Scene& scene, std::span<const float> tolerance);
-    /// The same for all.
+    /// With the same tolerance for all faces.
     CoincidentFaces(const Scene& scene, float tolerance)
         : CoincidentFaces(scene, std::vector<float>(scene.patches.size(), tolerance)) {}
 

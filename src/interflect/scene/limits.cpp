@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/scene/patch_area.h"
 
 namespace interflect {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/scene/split.h"
+#include "interflect/geometry/split.h"
 
 namespace interflect {
 

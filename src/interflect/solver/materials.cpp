@@ -1,6 +1,6 @@
 #include "interflect/solver/materials.h"
 
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {
 

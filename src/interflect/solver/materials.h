@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "interflect/base/colour.h"
+#include "interflect/base/ranked_bits.h"
 #include "interflect/elements/forest.h"
-#include "interflect/raycast/ranked_bits.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/scene.h"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "interflect/base/error.h"
-#include "interflect/scene/patch_geometry.h"
+#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {
 

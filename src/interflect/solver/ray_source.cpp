@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interflect/geometry/tangent_frame.h"
+
 namespace interflect {
 
 namespace {
-
-/// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
-struct Frame {
-    V3f s, t;
-    explicit Frame(const V3f& n) {
-        const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-        s = V3f(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-        t = V3f(b, sign + n.y * n.y * a, -n.y);
-    }
-};
 
 struct CosSin {
     float cosine, sine;
@@ -38,7 +30,7 @@ inline CosSin cos_sin_of_turn(float turn) {
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins) {
     const V3f normal = patch.normal();
-    const Frame frame(normal);
+    const TangentFrame frame(normal);
     for (std::size_t begin = 0; begin < rays.size(); begin += PointBlock::capacity) {
         const std::size_t count = std::min(PointBlock::capacity, rays.size() - begin);
         fill_points(set, key, first_sample + begin, count, points);

@@ -5,8 +5,8 @@
 
 #include "interflect/base/points.h"
 #include "interflect/elements/cell.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/patch_geometry.h"
 
 namespace interflect {
 

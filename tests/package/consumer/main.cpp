@@ -2,8 +2,8 @@
 
 #include <interflect/exports/solution_file.h>
 #include <interflect/image/image_files.h>
-#include <interflect/image/render.h>
 #include <interflect/raycast/ray_caster.h>
+#include <interflect/render/render.h>
 #include <interflect/scene/scene.h>
 #include <interflect/solver/solve.h>
 

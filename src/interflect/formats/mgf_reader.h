@@ -1,0 +1,143 @@
+#pragma once
+
+#include <ImathMatrix.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "interflect/formats/line_reader.h"
+#include "interflect/formats/mgf_arguments.h"
+#include "interflect/formats/mgf_contexts.h"
+#include "interflect/formats/mgf_curves.h"
+#include "interflect/formats/mgf_faults.h"
+#include "interflect/formats/mgf_objects.h"
+#include "interflect/formats/mgf_scene_builder.h"
+#include "interflect/formats/mgf_sources.h"
+#include "interflect/formats/mgf_transform.h"
+#include "interflect/formats/mgf_work.h"
+#include "interflect/formats/read_options.h"
+
+namespace interflect {
+
+/// A file in the middle of being read, with how much was open when it began: it can close no more than it opened.
+struct OpenMgfFile {
+    const SourceFile& source;
+    LineReader lines;
+    std::size_t outer_transforms, outer_objects;
+    const OpenMgfFile* includer;
+};
+
+/// A transform that is open, `xf` or that of an include, and which copy of its array is being read.
+struct OpenMgfTransform {
+    TransformSequence sequence;
+    Imath::M44d total;  // from the coordinates inside to the world
+    Location opened;
+    std::vector<int> copy;  // indices of the copy being read; empty where the transform is no array
+    LineReader::Position body;
+    double copies_together = 1;  // product of the sizes of all arrays around, this one included
+    std::uint64_t first_patch = 0;
+    bool repeating = false;
+};
+
+/// Reads an MGF file, with the files that it includes, into a scene. Handlers of entities are in
+/// mgf_material_entities.cpp, mgf_surface_entities.cpp and mgf_transform_entities.cpp, the rest in mgf_reader.cpp.
+class MgfReader {
+  public:
+    /// @param origin  What the scene is made relative to.
+    MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
+    void read(const std::filesystem::path& path, std::string text);
+    Imath::V3d suitable_origin() const { return scene_.suitable_origin(); }
+    Scene finish();
+
+  private:
+    using Handler = void (MgfReader::*)(MgfWords);
+    /// What an entity defines, and so what bears its faults: where that is a colour or a material, only its use is
+    /// refused.
+    enum class Defines { colour, material, other };
+    struct Entity {
+        Handler handle;
+        std::size_t fewest, most;  // arguments
+        const char* usage;
+        Defines defines = Defines::other;
+    };
+    static const std::unordered_map<std::string_view, Entity>& entities();
+
+    // Files and lines.
+    void read_file(const SourceFile& source, MgfWords transform);
+    void read_lines();
+    void read_line(MgfWords words);
+    void apply(const Entity& entity, MgfWords arguments);
+    void defer(Defines defines, const std::string& message);
+    void close_all();
+    void refuse_recursion(const SourceFile& source) const;
+    Location here() const { return {&file_->source.path, file_->lines.line()}; }
+    void count_repeated(std::uint64_t words);
+
+    // Entities, as in the table.
+    void include(MgfWords words);
+    void skip_ies(MgfWords words);
+    void colour(MgfWords words) { colours_.enter(words); }
+    void colour_xy(MgfWords words);
+    void colour_spectrum(MgfWords words);
+    void colour_temperature(MgfWords words);
+    void colour_mix(MgfWords words);
+    void material(MgfWords words);
+    void sides(MgfWords words);
+    void diffuse_reflectance(MgfWords words);
+    void diffuse_transmittance(MgfWords words) { changed_material().td = fraction(words[0]); }
+    void specular_reflectance(MgfWords words);
+    void specular_transmittance(MgfWords words);
+    void exitance(MgfWords words);
+    void refraction(MgfWords words);
+    void vertex(MgfWords words) { vertices_.enter(words); }
+    void point(MgfWords words) { vertices_.current().point = vector_argument(words); }
+    void normal(MgfWords words) { vertices_.current().normal = vector_argument(words).normalized(); }
+    void face(MgfWords words);
+    void face_with_holes(MgfWords words);
+    void sphere(MgfWords words);
+    void torus(MgfWords words);
+    void cylinder(MgfWords words);
+    void cone(MgfWords words);
+    void ring(MgfWords words);
+    void prism(MgfWords words);
+    void transform(MgfWords words);
+    void object(MgfWords words);
+
+    // What they share.
+    MgfMaterial& changed_material();
+    double fraction(std::string_view word);
+    Imath::V3d normal_of(std::string_view vertex);
+    void add_loop(MgfWords names);
+    std::uint32_t usable_material();
+    void add_face();
+    void add_mesh(const Mesh& mesh);
+    void open_transform(MgfWords words, const LineReader::Position& body);
+    bool close_transform();
+    Imath::M44d total_transform() const { return transforms_.empty() ? Imath::M44d() : transforms_.back().total; }
+    void place_copy(OpenMgfTransform& transform);
+    bool next_copy(OpenMgfTransform& transform);
+
+    ReadOptions options_;
+    MgfSources sources_;
+    OpenMgfFile* file_ = nullptr;
+    int include_depth_ = 0, repeating_arrays_ = 0;
+    RepeatedWork repeated_;
+    MgfFaults faults_;
+    ContextTable<MgfColour> colours_;
+    ContextTable<MgfMaterial> materials_;
+    ContextTable<MgfVertex> vertices_;
+    std::vector<OpenMgfTransform> transforms_;
+    std::vector<std::vector<std::uint32_t>> loops_;  // of the face being read
+    std::vector<Imath::V3d> outline_;                // its first loop, in the world
+    // Messages for all of a kind, with the first one's particulars.
+    std::string unknown_entity_, unused_fault_;
+    MgfSceneBuilder scene_;
+    MgfObjects objects_;
+};
+
+}  // namespace interflect

@@ -1,0 +1,135 @@
+#include "interflect/formats/mgf_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace interflect {
+
+using Imath::M44d;
+using Imath::V3d;
+
+V3d MgfReader::normal_of(std::string_view vertex) {
+    const V3d n = vertices_.find(vertex).normal;
+    if (n == V3d(0)) throw MgfFault(fmt::format("vertex '{}' needs a normal (n) here", vertex));
+    return n;
+}
+
+/// Appends a loop of the face being read.
+void MgfReader::add_loop(MgfWords names) {
+    if (names.size() > options_.max_face_vertices)
+        throw MgfFault(
+            fmt::format("a face of {} vertices; at most {} are read", names.size(), options_.max_face_vertices));
+    if (!has_three_distinct(names)) throw MgfFault("a face, and each of its holes, needs three different vertices");
+    const M44d to_world = total_transform();
+    std::vector<std::uint32_t>& loop = loops_.emplace_back();
+    outline_.clear();
+    for (const std::string_view name : names) {
+        outline_.push_back(vertices_.find(name).point * to_world);
+        loop.push_back(scene_.vertex(outline_.back()));
+    }
+    if (loops_.size() == 1) scene_.place_face(outline_);
+    // A mirror image turns the other way round.
+    if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
+}
+
+/// Index of the current material, for a face. @throws MgfFault where a definition of the material has one.
+std::uint32_t MgfReader::usable_material() {
+    MgfMaterial& material = materials_.current();
+    faults_.refuse_faults_of(material);
+    return scene_.material(material, materials_.current_name());
+}
+
+void MgfReader::add_face() {
+    const std::uint32_t material = usable_material();
+    scene_.add_face(loops_, material, objects_.current(), materials_.current().two_sided, here());
+}
+
+void MgfReader::face(MgfWords words) {
+    if (!has_three_distinct(words)) {
+        for (const std::string_view name : words) vertices_.find(name);
+        scene_.leave_out("face with fewer than three different vertices is left out", here());
+        return;
+    }
+    loops_.clear();
+    add_loop(words);
+    add_face();
+}
+
+void MgfReader::face_with_holes(MgfWords words) {
+    loops_.clear();
+    std::size_t vertices = 0;
+    for (auto begin = words.begin(); begin != words.end();) {
+        const auto end = std::find(begin, words.end(), "-");
+        add_loop({begin, end});
+        vertices += loops_.back().size();
+        begin = end == words.end() ? end : end + 1;
+    }
+    if (vertices > options_.max_face_vertices)
+        throw MgfFault(fmt::format("a face of {} vertices; at most {} are read", vertices, options_.max_face_vertices));
+    add_face();
+}
+
+void MgfReader::add_mesh(const Mesh& mesh) {
+    const std::uint32_t material = usable_material();
+    const M44d to_world = total_transform();
+    const bool mirrored = to_world.determinant() < 0;
+    count_repeated(mesh.faces.size());
+    std::vector<V3d> points;
+    std::vector<std::uint32_t> vertex;
+    for (const V3d& p : mesh.points) {
+        points.push_back(p * to_world);
+        vertex.push_back(scene_.vertex(points.back()));
+    }
+    loops_.resize(1);
+    for (const auto& face : mesh.faces) {
+        loops_[0].clear();
+        outline_.clear();
+        for (const std::uint32_t i : face) {
+            loops_[0].push_back(vertex[i]);
+            outline_.push_back(points[i]);
+        }
+        scene_.place_face(outline_);
+        if (mirrored) std::reverse(loops_[0].begin(), loops_[0].end());
+        scene_.add_face(loops_, material, objects_.current(), materials_.current().two_sided, here());
+    }
+}
+
+void MgfReader::sphere(MgfWords words) {
+    scene_.require_room(8.0 * options_.curve_divisions * options_.curve_divisions);
+    add_mesh(make_sphere(vertices_.find(words[0]).point, number_argument(words[1]), options_.curve_divisions));
+}
+
+void MgfReader::torus(MgfWords words) {
+    scene_.require_room(16.0 * options_.curve_divisions * options_.curve_divisions);
+    add_mesh(make_torus(vertices_.find(words[0]).point, normal_of(words[0]), number_argument(words[1]),
+                        number_argument(words[2]), options_.curve_divisions));
+}
+
+void MgfReader::cylinder(MgfWords words) {
+    const double radius = number_argument(words[1]);
+    add_mesh(make_cone(vertices_.find(words[0]).point, radius, vertices_.find(words[2]).point, radius,
+                       options_.curve_divisions));
+}
+
+void MgfReader::cone(MgfWords words) {
+    add_mesh(make_cone(vertices_.find(words[0]).point, number_argument(words[1]), vertices_.find(words[2]).point,
+                       number_argument(words[3]), options_.curve_divisions));
+}
+
+void MgfReader::ring(MgfWords words) {
+    add_mesh(make_ring(vertices_.find(words[0]).point, normal_of(words[0]), number_argument(words[1]),
+                       number_argument(words[2]), options_.curve_divisions));
+}
+
+void MgfReader::prism(MgfWords words) {
+    const MgfWords names = words.first(words.size() - 1);
+    if (names.size() > options_.max_face_vertices)
+        throw MgfFault(
+            fmt::format("a prism of {} vertices; at most {} are read", names.size(), options_.max_face_vertices));
+    std::vector<V3d> outline;
+    for (const std::string_view name : names) outline.push_back(vertices_.find(name).point);
+    add_mesh(make_prism(outline, number_argument(words.back())));
+}
+
+}  // namespace interflect

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <ImathBox.h>
+
+#include <optional>
+#include <vector>
+
+#include "interflect/generators/building/floor_plan.h"
+#include "interflect/generators/building/furniture.h"
+#include "interflect/generators/building/random_sequence.h"
+#include "interflect/generators/building/solids.h"
+
+namespace interflect::building {
+
+/// What of a room's floor is still free for furniture.
+class FloorSpace {
+  public:
+    /// Free but for the ways through the doorways.
+    FloorSpace(const FloorPlan& plan, const Room& room);
+
+    /// Takes a part of the floor that furniture must leave free.
+    void reserve(const Imath::Box2f& part) { taken_.push_back(part); }
+
+    /// A place with the back to a wall, which is then taken; nothing where there is none.
+    std::optional<Placement> against_wall(const Furniture& piece, RandomSequence& random);
+    /// A place away from the walls.
+    std::optional<Placement> in_the_open(const Furniture& piece, RandomSequence& random);
+
+  private:
+    std::optional<Placement> take_if_free(const Furniture& piece, Side back, const Imath::V2f& origin);
+
+    Room room_;
+    std::vector<Imath::Box2f> taken_;
+};
+
+}  // namespace interflect::building

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "interflect/generators/building/floor_plan.h"
+#include "interflect/generators/building/furniture.h"
+#include "interflect/generators/building/palette.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect::building {
+
+/// Adds furniture to one room as objects of their own, "room-0.desk-1" and so on.
+class Furnisher {
+  public:
+    Furnisher(Scene& scene, const Palette& palette, std::uint32_t room, RandomSequence& random)
+        : scene_(scene), palette_(palette), room_(room), random_(random) {}
+
+    void add(const Furniture& piece, const Placement& place);
+    /// Luminaires below the ceiling of a room, evenly in rows of at most `pitch` [m] along x and y; at least one.
+    void add_luminaires(const Room& room, float ceiling_height, float pitch, bool turned);
+
+  private:
+    std::uint32_t add_object(std::string_view name);
+
+    Scene& scene_;
+    const Palette& palette_;
+    std::uint32_t room_;
+    RandomSequence& random_;
+    std::uint32_t count_ = 0;
+};
+
+}  // namespace interflect::building

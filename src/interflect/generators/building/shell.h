@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+
+#include "interflect/generators/building/floor_plan.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect::building {
+
+/// Materials of a room's surfaces.
+struct Finish {
+    std::uint32_t wall = 0, floor = 0, ceiling = 0;
+};
+
+/// Adds floors, walls, ceilings and the insides of doorways, all one-sided and lit from where people are. Together they
+/// are one closed surface without T-vertices: every edge belongs to exactly two patches, which run along it in opposite
+/// directions. Walls, floors and ceilings are divided only where the edges of doorways ask for it. Object names are
+/// "room-0.shell" and so on; a doorway belongs to its first room and has that one's materials.
+/// @param finishes  One for each room.
+void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
+
+}  // namespace interflect::building

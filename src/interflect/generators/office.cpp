@@ -1,0 +1,95 @@
+#include "interflect/generators/office.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "interflect/base/error.h"
+#include "interflect/generators/building/floor_space.h"
+#include "interflect/generators/building/furnish.h"
+#include "interflect/generators/building/room_views.h"
+#include "interflect/generators/building/shell.h"
+
+namespace interflect {
+
+namespace {
+
+using namespace building;
+
+constexpr float aisle = 1.5f;                         // between the desks and the walls all round [m]
+constexpr float desk_pitch = 1.7f, row_pitch = 2.2f;  // [m]
+constexpr float office_luminaire_pitch = 2.6f;        // [m]
+constexpr float share_of_extra_doors = 0.3f;
+
+void require_valid(const OfficeOptions& options) {
+    const auto require = [](std::uint32_t value, std::uint32_t most, const char* what) {
+        if (value < 1 || value > most)
+            throw InputError(fmt::format("an office has 1 to {} {}, not {}", most, what, value));
+    };
+    require(options.rooms, OfficeOptions::most_rooms, "rooms");
+    require(options.desk_rows, OfficeOptions::most_rows, "rows of desks in a room");
+    require(options.desks_per_row, OfficeOptions::most_desks_per_row, "desks in a row");
+}
+
+FloorPlan plan_office(const OfficeOptions& options) {
+    const float width = 2 * aisle + desk_pitch * static_cast<float>(options.desks_per_row);
+    const float depth = 2 * aisle + row_pitch * static_cast<float>(options.desk_rows);
+    return make_floor_plan({.rooms = options.rooms,
+                            .width = {width, width},
+                            .depth = {depth, depth},
+                            .extra_doors = share_of_extra_doors,
+                            .seed = options.seed});
+}
+
+/// Desks in rows within the aisles; who sits there looks south.
+void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnisher) {
+    for (std::uint32_t row = 0; row < options.desk_rows; ++row)
+        for (std::uint32_t desk = 0; desk < options.desks_per_row; ++desk)
+            furnisher.add(workstation,
+                          Placement::quarter_turned({room.x.low + aisle + desk_pitch * (static_cast<float>(desk) + .5f),
+                                                     room.y.low + aisle + row_pitch * static_cast<float>(row), 0},
+                                                    0));
+}
+
+/// What stands along the walls of a room with that many rows of desks.
+std::vector<const Furniture*> furniture_along_walls(std::uint32_t desk_rows) {
+    std::vector<const Furniture*> pieces;
+    for (std::uint32_t row = 0; row < desk_rows; ++row) {
+        pieces.push_back(row % 2 == 0 ? &bookcase : &cabinet);
+        pieces.push_back(row % 2 == 0 ? &radiator : &low_bookcase);
+    }
+    pieces.insert(pieces.end(), {&picture, &picture, &cartons, &waste_bin});
+    return pieces;
+}
+
+}  // namespace
+
+Scene make_office(const OfficeOptions& options) {
+    require_valid(options);
+    const FloorPlan plan = plan_office(options);
+    Scene scene;
+    scene.name = fmt::format("office of {} rooms", options.rooms);
+    scene.objects.emplace_back();
+    const Palette palette = add_palette(scene);
+    RandomSequence random(mix(options.seed, 1));
+    std::vector<Finish> finishes;
+    for (std::uint32_t i = 0; i < options.rooms; ++i) finishes.push_back(draw_finish(palette, random));
+    add_shell(scene, plan, finishes);
+
+    for (std::uint32_t i = 0; i < options.rooms; ++i) {
+        const Room& room = plan.rooms[i];
+        const LookOut look_out = building::look_out(plan, i);
+        Furnisher furnisher(scene, palette, i, random);
+        furnisher.add_luminaires(room, plan.room_height, office_luminaire_pitch, false);
+        add_desks(room, options, furnisher);
+        FloorSpace floor(plan, room);
+        floor.reserve(look_out.standing_room);
+        for (const Furniture* piece : furniture_along_walls(options.desk_rows))
+            if (const auto place = floor.against_wall(*piece, random)) furnisher.add(*piece, *place);
+        if (i < most_room_views) scene.views.push_back(look_out.view);
+    }
+    scene.views.push_back(bird_view(plan));
+    return scene;
+}
+
+}  // namespace interflect

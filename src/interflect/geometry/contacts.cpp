@@ -1,0 +1,191 @@
+#include "interflect/geometry/contacts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/parallel.h"
+#include "interflect/geometry/box_tree.h"
+#include "interflect/geometry/contact_finder.h"
+#include "interflect/geometry/face_cutter.h"
+#include "interflect/geometry/facet.h"
+#include "interflect/geometry/flat_surfaces.h"
+#include "interflect/geometry/vertex_weld.h"
+
+namespace interflect {
+
+namespace {
+
+/// Strips narrower than this share of a face's diameter are not divided across.
+constexpr double narrow = 2e-3;
+
+constexpr std::size_t facets_at_once = 256;
+
+/// The pieces of a facet; none where it stays whole.
+struct CutFacet {
+    std::vector<PlanarPolygon> patches;  ///< Of three or four corners.
+    std::vector<PlanarSegment> contacts;
+    bool reached_limit = false;
+};
+
+CutFacet cut_facet(ContactFinder& finder, const Facet& facet, const ContactOptions& options) {
+    CutFacet result;
+    std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.least_extent));
+    if (segments.empty()) return result;
+    CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.most_pieces_per_face);
+    result.reached_limit = cut.reached_limit;
+    result.contacts = std::move(cut.contacts);
+    const PieceShape shape{static_cast<double>(options.largest_aspect),
+                           std::max(2 * static_cast<double>(options.least_extent), narrow * facet.diameter)};
+    if (cut.pieces.size() > 1)
+        for (const PlanarPolygon& piece : cut.pieces) divide_into_patches(piece, shape, result.patches);
+    return result;
+}
+
+std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& facets, const ContactOptions& options) {
+    const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene);
+    std::vector<Boxed> tree;
+    tree.reserve(facets.size());
+    for (std::uint32_t i = 0; i < facets.size(); ++i) tree.push_back({facets[i].box(0), i});
+    arrange_box_tree(tree);
+    std::vector<CutFacet> cut(facets.size());
+    parallel_for_ranges(facets.size(), facets_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (facets[i].area() <
+                static_cast<double>(options.least_extent) * static_cast<double>(options.least_extent))
+                continue;
+            ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance));
+            const Imath::Box3f box = facets[i].box(finder.reach());
+            visit_box_tree(
+                std::span<const Boxed>(tree),
+                [&](const Imath::Box3f& b) { return b.intersects(box) && finder.plane_meets(b); },
+                [&](std::uint32_t j) { finder.add_contacts_with(facets[j]); });
+            cut[i] = cut_facet(finder, facets[i], options);
+        }
+    });
+    return cut;
+}
+
+/// Adds patches in place of a face.
+class PieceWriter {
+  public:
+    /// @param surfaces  The number of each patch's flat surface, or none.
+    PieceWriter(const Scene& scene, std::span<const std::uint32_t> surfaces, Scene& result)
+        : scene_(scene), surfaces_(surfaces), result_(result), weld_(result.vertices) {}
+
+    void add_whole(std::uint32_t face) { add_patch(face, scene_.patches[face].vertices); }
+
+    void add_pieces(const Facet& facet, const CutFacet& cut) {
+        const PlaneFrame frame(facet);
+        for (const PlanarPolygon& piece : cut.patches) {
+            std::array<std::uint32_t, 4> vertices{none, none, none, none};
+            for (std::size_t i = 0; i < piece.size(); ++i)
+                vertices[i] =
+                    piece[i].vertex != none ? piece[i].vertex : weld_.vertex(frame.in_space(piece[i].position));
+            add_patch(facet.face, vertices);
+        }
+        if (cut.patches.empty()) add_patch(facet.face, facet.vertices);
+        for (const PlanarSegment& s : cut.contacts)
+            result_.contacts.push_back({frame.in_space(s.a), frame.in_space(s.b)});
+    }
+
+  private:
+    void add_patch(std::uint32_t face, const std::array<std::uint32_t, 4>& vertices) {
+        const auto index = static_cast<std::uint32_t>(result_.patches.size());
+        Patch front = scene_.patches[face];
+        const bool is_two_sided = front.other_side != none;
+        front.vertices = vertices;
+        front.surface = surfaces_[face];
+        front.other_side = is_two_sided ? index + 1 : none;
+        result_.patches.push_back(front);
+        if (!is_two_sided) return;
+        Patch back = front;
+        back.other_side = index;
+        std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
+        result_.patches.push_back(back);
+    }
+
+    const Scene& scene_;
+    std::span<const std::uint32_t> surfaces_;
+    Scene& result_;
+    VertexWeld weld_;
+};
+
+/// The facets of one face, and the number of patches that it is cut into.
+struct FacetRange {
+    std::size_t first, last;
+    std::uint64_t patches = 0;  ///< 0: it stays whole.
+};
+
+/// Decides which faces are cut, within the limit of all patches, and reports the limits that were reached.
+std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
+                               const ContactOptions& options, Warnings& warnings) {
+    std::vector<FacetRange> faces;
+    std::uint64_t count = scene.patches.size();
+    for (std::size_t first = 0, last; first < facets.size(); first = last) {
+        last = first + 1;
+        while (last < facets.size() && facets[last].face == facets[first].face) ++last;
+        const std::uint64_t sides = scene.patches[facets[first].face].other_side == none ? 1 : 2;
+        FacetRange& face = faces.emplace_back(FacetRange{first, last});
+        bool is_cut = false;
+        std::uint64_t patches = 0;
+        for (std::size_t i = first; i < last; ++i) {
+            is_cut |= !cut[i].patches.empty();
+            patches += sides * std::max<std::size_t>(1, cut[i].patches.size());
+            if (cut[i].reached_limit)
+                warnings.add("contact-cuts", fmt::format("a face was cut into no more than {} pieces: elements may "
+                                                         "still lie on both sides of what stands on it",
+                                                         options.most_pieces_per_face));
+        }
+        if (!is_cut) continue;
+        if (count + patches - sides <= options.most_patches) {
+            face.patches = patches;
+            count += patches - sides;
+        } else {
+            warnings.add("contact-cuts", fmt::format("a face was not cut where others meet it, for there would be "
+                                                     "more than {} patches",
+                                                     options.most_patches));
+        }
+    }
+    return faces;
+}
+
+/// A number for each patch in a flat surface of which a face is cut, or which had one; none for the others.
+std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
+                                                   const std::vector<FacetRange>& faces) {
+    std::vector<std::uint32_t> surface = flat_surfaces(scene);
+    std::vector<bool> is_numbered(scene.patches.size(), false);
+    for (const FacetRange& face : faces)
+        if (face.patches > 0) is_numbered[surface[facets[face.first].face]] = true;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (scene.patches[i].surface != none) is_numbered[surface[i]] = true;
+    for (std::uint32_t& s : surface)
+        if (!is_numbered[s]) s = none;
+    return surface;
+}
+
+}  // namespace
+
+Scene cut_at_contacts(const Scene& scene, const ContactOptions& options) {
+    require_no_faults(scene_faults(scene), "cannot cut the faces of", scene);
+    const std::vector<Facet> facets = facets_of(scene);
+    const std::vector<CutFacet> cut = cut_facets(scene, facets, options);
+    Scene result = scene;
+    const std::vector<FacetRange> faces = decide(scene, facets, cut, options, result.warnings);
+    const std::vector<std::uint32_t> surfaces = numbers_of_cut_surfaces(scene, facets, faces);
+    result.patches.clear();
+    PieceWriter writer(scene, surfaces, result);
+    for (const FacetRange& face : faces) {
+        if (face.patches == 0)
+            writer.add_whole(facets[face.first].face);
+        else
+            for (std::size_t i = face.first; i < face.last; ++i) writer.add_pieces(facets[i], cut[i]);
+    }
+    return result;
+}
+
+}  // namespace interflect

@@ -1,0 +1,133 @@
+#include "interflect/geometry/covered_area.h"
+
+#include <ImathVec.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/planar_polygon.h"
+
+namespace interflect {
+
+namespace {
+
+using Imath::V2d;
+using Imath::V3d;
+
+/// Parts of the difference that are smaller than this share of the patch are rounding.
+constexpr double negligible_share = 1e-12;
+/// Up to this many others are subtracted one after the other; for more, the patch is halved first.
+constexpr std::size_t cut_at_once = 4;
+/// Halvings after which all others are subtracted one after the other: they overlap in nearly one place.
+constexpr int most_halvings = 24;
+
+double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }
+
+/// The part of a polygon to the left of the line from a to b, or to its right.
+PlanarPolygon half_of(const PlanarPolygon& polygon, const V2d& a, const V2d& b, bool left) {
+    const V2d along = left ? b - a : a - b;
+    PlanarPolygon result;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const V2d &p = polygon[i].position, &q = polygon[(i + 1) % polygon.size()].position;
+        const double height_p = along.cross(p - a), height_q = along.cross(q - a);
+        if (height_p >= 0) result.push_back(polygon[i]);
+        if ((height_p > 0 && height_q < 0) || (height_p < 0 && height_q > 0))
+            result.push_back({p + (q - p) * (height_p / (height_p - height_q)), none});
+    }
+    return result;
+}
+
+PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
+    for (std::size_t i = 0; i < other.size() && polygon.size() > 2; ++i)
+        polygon = half_of(polygon, other[i].position, other[(i + 1) % other.size()].position, true);
+    return polygon;
+}
+
+/// The area of a polygon outside all others. @param negligible  [m^2]
+double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
+                    int halvings) {
+    const double area = area_of(polygon);
+    if (area <= negligible) return 0;
+    bool is_inside_one = false;
+    std::erase_if(others, [&](const PlanarPolygon* other) {
+        const double shared = area_of(intersection(polygon, *other));
+        is_inside_one |= area - shared <= negligible;
+        return shared <= negligible;
+    });
+    if (is_inside_one) return 0;
+    if (others.empty()) return area;
+    double outside = 0;
+    if (others.size() > cut_at_once && halvings < most_halvings) {
+        V2d low = polygon[0].position, high = low;
+        for (const auto& [p, vertex] : polygon) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        const V2d middle = 0.5 * (low + high), size = high - low;
+        const V2d beyond = middle + (size.x > size.y ? V2d(0, size.x) : V2d(size.y, 0));
+        for (const bool left : {true, false})
+            outside += area_outside(half_of(polygon, middle, beyond, left), others, negligible, halvings + 1);
+        return outside;
+    }
+    const PlanarPolygon& first = *others.back();
+    others.pop_back();
+    PlanarPolygon rest = polygon;  // what is beyond each of its edges, and within those before
+    for (std::size_t i = 0; i < first.size() && rest.size() > 2; ++i) {
+        const V2d &a = first[i].position, &b = first[(i + 1) % first.size()].position;
+        outside += area_outside(half_of(rest, a, b, false), others, negligible, halvings);
+        rest = half_of(rest, a, b, true);
+    }
+    return outside;
+}
+
+/// Coordinates in the plane of a patch: s along its first edge, t perpendicular to it.
+class PatchPlane {
+  public:
+    PatchPlane(const Scene& scene, const Patch& patch) : scene_(scene), origin_(vertex(patch, 0)) {
+        const V3d normal(PatchGeometry(scene, patch).normal());
+        s_ = (vertex(patch, 1) - origin_).normalized();
+        t_ = normal.cross(s_).normalized();
+        s_ = t_.cross(normal).normalized();
+    }
+
+    PlanarPolygon polygon_of(const Patch& patch) const {
+        PlanarPolygon polygon;
+        for (int k = 0; k < patch.vertex_count(); ++k) {
+            const V3d d = vertex(patch, k) - origin_;
+            polygon.push_back({{s_.dot(d), t_.dot(d)}, none});
+        }
+        if (area_of(polygon) < 0) std::reverse(polygon.begin(), polygon.end());
+        return polygon;
+    }
+
+  private:
+    V3d vertex(const Patch& patch, int k) const {
+        return V3d(scene_.vertices[patch.vertices[static_cast<std::size_t>(k)]]);
+    }
+
+    const Scene& scene_;
+    V3d origin_, s_, t_;
+};
+
+}  // namespace
+
+float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<const std::uint32_t> others,
+                           float tolerance) {
+    const PatchPlane plane(scene, scene.patches[patch]);
+    const PlanarPolygon polygon = plane.polygon_of(scene.patches[patch]);
+    std::vector<PlanarPolygon> polygons;
+    polygons.reserve(others.size());
+    for (const std::uint32_t other : others) polygons.push_back(plane.polygon_of(scene.patches[other]));
+    std::vector<const PlanarPolygon*> pointers;
+    pointers.reserve(polygons.size());
+    for (const PlanarPolygon& other : polygons) pointers.push_back(&other);
+    const double area = area_of(polygon), slivers = static_cast<double>(tolerance) * perimeter(polygon);
+    const double outside = area_outside(polygon, pointers, negligible_share * area, 0);
+    if (outside <= slivers) return 0;
+    if (area - outside <= slivers) return 1;
+    return static_cast<float>(outside / area);
+}
+
+}  // namespace interflect

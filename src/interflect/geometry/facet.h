@@ -1,0 +1,56 @@
+#pragma once
+
+#include <ImathBox.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// A planar convex polygon of three or four corners: a face, or one of the two triangles of a warped quadrilateral.
+struct Facet {
+    std::uint32_t face = none;  ///< Its patch; of a two-sided face the front.
+    std::array<std::uint32_t, 4> vertices{none, none, none, none};
+    std::size_t count = 0;
+    std::array<Imath::V3d, 4> corners;  ///< [m]
+    Imath::V3d normal;                  ///< Unit length.
+    double diameter = 0;                ///< [m]
+    double rounding = 0;                ///< Of the corners [m].
+
+    /// @param corner_vertices  Three or four.
+    Facet(const Scene& scene, std::uint32_t face_index, std::span<const std::uint32_t> corner_vertices);
+
+    double area() const { return area_; }  ///< [m^2]
+
+    /// Signed distance from the facet's plane [m].
+    double height(const Imath::V3d& x) const { return normal.dot(x - corners[0]); }
+    /// What is shorter than this is ignored [m].
+    double detail() const;
+
+    Imath::Box3f box(float margin) const;  ///< Larger by `margin` [m].
+
+  private:
+    double area_ = 0;
+};
+
+/// The facets of all faces, in their order.
+std::vector<Facet> facets_of(const Scene& scene);
+
+/// A right-handed frame in a facet's plane, along its longest edge.
+class PlaneFrame {
+  public:
+    explicit PlaneFrame(const Facet& facet);
+
+    Imath::V2d in_plane(const Imath::V3d& p) const { return {x_.dot(p - origin_), y_.dot(p - origin_)}; }
+    V3f in_space(const Imath::V2d& p) const { return V3f(origin_ + x_ * p.x + y_ * p.y); }
+
+  private:
+    Imath::V3d origin_, normal_, x_, y_;
+};
+
+}  // namespace interflect

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "interflect/scene/patch_area.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// A point of a patch by its parameters. Triangle v0 v1 v2: x = v0 + u (v1 - v0) + v (v2 - v0), u, v >= 0, u + v <= 1.
+/// Quadrilateral v0 v1 v2 v3: bilinear, (0,0) (1,0) (1,1) (0,1) are its vertices in order.
+struct Parameters {
+    float u = 0, v = 0;
+};
+
+/// The geometry of one patch, gathered for repeated use: sampling, areas of cells, parameters of a point.
+class PatchGeometry {
+  public:
+    /// x = origin + u edge_u + v edge_v + u v twist.
+    struct Shape {
+        V3f origin, edge_u, edge_v, twist{0, 0, 0};
+
+        V3f point(Parameters p) const { return origin + p.u * edge_u + p.v * edge_v + (p.u * p.v) * twist; }
+    };
+
+    PatchGeometry() = default;
+    PatchGeometry(const Scene& scene, const Patch& patch);
+
+    float area() const { return area_; }    ///< [m^2]
+    V3f normal() const { return normal_; }  ///< Unit length, towards the lit side.
+    bool is_triangle() const { return triangle_; }
+    V3f centre() const;  ///< Mean of the vertices [m].
+
+    const Shape& shape() const { return shape_; }
+    V3f point(Parameters p) const { return shape_.point(p); }
+
+    /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the area of the
+    /// patch, or of the part of it that corner + size (s, t) covers, where (s, t) runs over the patch's parameter
+    /// domain.
+    Parameters uniform_parameters(float a, float b, Parameters corner = {}, float size = 1) const;
+
+    /// The parameters of a point on (or close to) the patch; the inverse of point(), clamped to the patch.
+    Parameters parameters_of(const V3f& x) const;
+
+    /// |dx/du x dx/dv| at p [m^2]: 2 area() everywhere on a triangle, linear in u and v on a planar quadrilateral, so
+    /// that the area of a cell of the parameter square is this at its centre times the cell's size.
+    float jacobian(Parameters p) const;
+
+  private:
+    Shape shape_;
+    V3f normal_;
+    V3f inverse_u_, inverse_v_;        // rows of the inverse of (edge_u edge_v), for parallelograms
+    std::array<float, 3> jacobian_{};  // constant, u and v coefficients [m^2]
+    float area_ = 0;
+    bool triangle_ = false, parallelogram_ = false;
+};
+
+}  // namespace interflect

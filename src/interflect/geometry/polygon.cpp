@@ -1,0 +1,235 @@
+#include "interflect/geometry/polygon.h"
+
+#include <GL/glu.h>
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <deque>
+#include <limits>
+#include <memory>
+
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/scene/limits.h"
+
+namespace interflect {
+
+namespace {
+
+using Imath::V3d;
+using Loop = std::vector<std::uint32_t>;
+
+/// Largest distance of a vertex from a quadrilateral's plane that still makes one patch, relative to its diagonal.
+constexpr double planarity = 0.01;
+
+/// A height below this many units in the last place of the largest coordinate is noise: one for each vertex of a
+/// triangle and one for the differences.
+constexpr double noise_in_roundings = 4;
+
+V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
+
+/// Successive vertices at one position, also across the end of the loop, become one.
+Loop without_repeats(const Scene& scene, const Loop& loop) {
+    Loop kept;
+    for (const std::uint32_t v : loop)
+        if (kept.empty() || scene.vertices[v] != scene.vertices[kept.back()]) kept.push_back(v);
+    while (kept.size() > 1 && scene.vertices[kept.front()] == scene.vertices[kept.back()]) kept.pop_back();
+    return kept;
+}
+
+/// Twice the vector area of a loop (Newell's formula), about its first vertex so that far from the origin nothing
+/// cancels.
+V3d doubled_area(const Scene& scene, const Loop& loop) {
+    const V3d origin = position(scene, loop[0]);
+    V3d sum(0);
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+        sum += (position(scene, loop[i]) - origin).cross(position(scene, loop[i + 1]) - origin);
+    return sum;
+}
+
+/// Size, normal and rounding of an outline, by which polygons are classified.
+struct OutlinePlane {
+    V3d normal{0};        ///< Unit length; zero where the outline has no area.
+    double size = 0;      ///< Diagonal of the bounding box [m].
+    double rounding = 0;  ///< Heights below this are noise [m].
+    bool degenerate = true;
+    bool self_crossing = false;  ///< Degenerate only since the outline goes round both ways.
+
+    OutlinePlane(const Scene& scene, const Loop& outline) {
+        if (outline.size() < 3) return;
+        Imath::Box3d box;
+        double largest = 0;
+        for (const std::uint32_t v : outline) {
+            const V3d x = position(scene, v);
+            box.extendBy(x);
+            largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+        }
+        size = box.size().length();
+        rounding = noise_in_roundings * std::numeric_limits<float>::epsilon() * largest;
+        const V3d area = doubled_area(scene, outline);
+        degenerate = area.length() <= rounding * size;
+        normal = area.normalized();
+        self_crossing = degenerate && width(scene, outline) > rounding;
+    }
+
+  private:
+    /// How far the outline reaches from the line through two of its vertices that are far apart.
+    static double width(const Scene& scene, const Loop& outline) {
+        const V3d start = position(scene, outline[0]);
+        V3d chord(0);
+        for (const std::uint32_t v : outline)
+            if ((position(scene, v) - start).length() > chord.length()) chord = position(scene, v) - start;
+        double width = 0;
+        for (const std::uint32_t v : outline)
+            width = std::max(width, (position(scene, v) - start).cross(chord.normalized()).length());
+        return width;
+    }
+};
+
+bool is_convex_near_planar_quadrilateral(const Scene& scene, const Loop& loop, const OutlinePlane& frame) {
+    if (loop.size() != 4) return false;
+    const V3d centre = 0.25 * (position(scene, loop[0]) + position(scene, loop[1]) + position(scene, loop[2]) +
+                               position(scene, loop[3]));
+    for (std::size_t i = 0; i < 4; ++i) {
+        const V3d x = position(scene, loop[i]);
+        const V3d in = x - position(scene, loop[(i + 3) % 4]), out = position(scene, loop[(i + 1) % 4]) - x;
+        const bool turns_left = in.cross(out).dot(frame.normal) > frame.rounding * std::max(in.length(), out.length());
+        if (!turns_left || std::abs((x - centre).dot(frame.normal)) > planarity * frame.size) return false;
+    }
+    return true;
+}
+
+/// Adds one side, and the other where asked for. Fewer than four vertices: a triangle.
+class PatchAdder {
+  public:
+    PatchAdder(Scene& scene, std::uint32_t material, std::uint32_t object, bool two_sided)
+        : scene_(scene), two_sided_(two_sided) {
+        front_.material = material;
+        front_.object = object;
+    }
+
+    void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = none) {
+        const auto index = static_cast<std::uint32_t>(scene_.patches.size());
+        Patch front = front_;
+        front.vertices = {a, b, c, d};
+        // In single precision, as all later computations.
+        if (!(patch_area(scene_, front) >= smallest_face_area)) return;
+        if (two_sided_) front.other_side = index + 1;
+        scene_.patches.push_back(front);
+        added_ = true;
+        if (!two_sided_) return;
+        Patch back = front;
+        back.vertices = d == none ? std::array{a, c, b, none} : std::array{a, d, c, b};
+        back.other_side = index;
+        scene_.patches.push_back(back);
+    }
+
+    PolygonResult result() const { return added_ ? PolygonResult::added : PolygonResult::degenerate; }
+
+  private:
+    Scene& scene_;
+    Patch front_;
+    bool two_sided_, added_ = false;
+};
+
+/// GLU's tessellator with the odd winding rule: handles concave outlines, holes, seams and self-intersection.
+class Triangulation {
+  public:
+    Triangulation(Scene& scene, const OutlinePlane& frame, std::uint32_t origin)
+        : scene_(scene), frame_(frame), origin_(position(scene, origin)) {}
+
+    /// The corners of the triangles, three each; empty where the tessellator gave up.
+    std::vector<std::uint32_t> operator()(std::span<const Loop> loops);
+
+  private:
+    // Coordinates as the tessellator sees them: about the first vertex, and of size 1.
+    V3d local(const V3d& x) const { return (x - origin_) / frame_.size; }
+    V3d global(const V3d& x) const { return origin_ + x * frame_.size; }
+
+    std::uint32_t combined(const V3d& x, void* const* neighbours);
+
+    static void emit(void* vertex, void* self) {
+        static_cast<Triangulation*>(self)->corners_.push_back(*static_cast<std::uint32_t*>(vertex));
+    }
+    static void combine(const GLdouble* x, void* const* neighbours, const GLfloat*, void** out, void* self_pointer) {
+        auto* self = static_cast<Triangulation*>(self_pointer);
+        self->handles_.push_back(self->combined(self->global(V3d(x[0], x[1], x[2])), neighbours));
+        *out = &self->handles_.back();
+    }
+    static void fail(GLenum, void* self) { static_cast<Triangulation*>(self)->failed_ = true; }
+    static void ignore_edge_flag(GLboolean, void*) {}
+
+    Scene& scene_;
+    const OutlinePlane& frame_;
+    V3d origin_;
+    std::deque<std::uint32_t> handles_;  // what the tessellator's vertex pointers point to; a deque does not move them
+    std::vector<std::uint32_t> corners_;
+    bool failed_ = false;
+};
+
+/// The vertex for a point where loops meet: one of those that meet there if it is at that place, else a new one.
+std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours) {
+    for (int i = 0; i < 4; ++i) {
+        if (!neighbours[i]) continue;
+        const std::uint32_t v = *static_cast<std::uint32_t*>(neighbours[i]);
+        if ((position(scene_, v) - x).length() <= frame_.rounding) return v;
+    }
+    scene_.vertices.emplace_back(x);
+    return static_cast<std::uint32_t>(scene_.vertices.size() - 1);
+}
+
+std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops) {
+    const auto callback = [](auto* function) { return reinterpret_cast<_GLUfuncptr>(function); };
+    const std::unique_ptr<GLUtesselator, decltype(&gluDeleteTess)> tessellator(gluNewTess(), gluDeleteTess);
+    if (!tessellator) throw std::bad_alloc();
+    GLUtesselator* const t = tessellator.get();
+    gluTessProperty(t, GLU_TESS_WINDING_RULE, GLU_TESS_WINDING_ODD);
+    gluTessNormal(t, frame_.normal.x, frame_.normal.y, frame_.normal.z);
+    gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
+    gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
+    gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
+    // Whoever wants edge flags gets plain triangles, no strips and fans.
+    gluTessCallback(t, GLU_TESS_EDGE_FLAG_DATA, callback(&ignore_edge_flag));
+
+    gluTessBeginPolygon(t, this);
+    for (const Loop& loop : loops) {
+        gluTessBeginContour(t);
+        for (const std::uint32_t v : loop) {
+            V3d x = local(position(scene_, v));
+            handles_.push_back(v);
+            gluTessVertex(t, &x.x, &handles_.back());
+        }
+        gluTessEndContour(t);
+    }
+    gluTessEndPolygon(t);
+    if (failed_) corners_.clear();
+    return std::move(corners_);
+}
+
+}  // namespace
+
+PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
+                          std::uint32_t object, bool two_sided) {
+    std::vector<Loop> clean;
+    for (const Loop& loop : loops) clean.push_back(without_repeats(scene, loop));
+    if (clean.empty()) return PolygonResult::degenerate;
+    const Loop& outline = clean[0];
+    const OutlinePlane frame(scene, outline);
+    if (frame.degenerate) return frame.self_crossing ? PolygonResult::self_crossing : PolygonResult::degenerate;
+
+    PatchAdder patches(scene, material, object, two_sided);
+    if (clean.size() == 1 && outline.size() == 3) {
+        patches.add(outline[0], outline[1], outline[2]);
+    } else if (clean.size() == 1 && is_convex_near_planar_quadrilateral(scene, outline, frame)) {
+        patches.add(outline[0], outline[1], outline[2], outline[3]);
+    } else {
+        const std::vector<std::uint32_t> corners = Triangulation(scene, frame, outline[0])(clean);
+        for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+            const Loop triangle(corners.begin() + static_cast<std::ptrdiff_t>(i),
+                                corners.begin() + static_cast<std::ptrdiff_t>(i + 3));
+            if (!OutlinePlane(scene, triangle).degenerate) patches.add(triangle[0], triangle[1], triangle[2]);
+        }
+    }
+    return patches.result();
+}
+
+}  // namespace interflect

@@ -1,0 +1,136 @@
+#include "interflect/geometry/split.h"
+
+#include <ImathBox.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "interflect/base/error.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/vertex_weld.h"
+#include "interflect/scene/core.h"
+
+namespace interflect {
+
+namespace {
+
+/// Pieces of each direction of a patch: along its first edge and along its last; a triangle has one number for both.
+struct Pieces {
+    std::uint64_t u = 1, v = 1;
+};
+
+std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
+    constexpr float most = 1e9f;  // far beyond any limit, and the division may give infinity
+    return static_cast<std::uint64_t>(std::clamp(std::ceil((b - a).length() / largest_edge), 1.0f, most));
+}
+
+Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
+    const auto edge = [&](std::size_t i, std::size_t j) {
+        return pieces_of_edge(scene.vertices[patch.vertices[i]], scene.vertices[patch.vertices[j]], largest_edge);
+    };
+    if (patch.is_triangle()) {
+        const std::uint64_t n = std::max({edge(0, 1), edge(1, 2), edge(2, 0)});
+        return {n, n};
+    }
+    return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
+}
+
+/// Adds one piece of `patch`, and that of its other side where it has one.
+void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> vertices) {
+    const auto index = static_cast<std::uint32_t>(split.patches.size());
+    Patch front = patch;
+    front.vertices = vertices;
+    front.other_side = patch.other_side == none ? none : index + 1;
+    split.patches.push_back(front);
+    if (patch.other_side == none) return;
+    Patch back = front;
+    back.other_side = index;
+    std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
+    split.patches.push_back(back);
+}
+
+void split_quadrilateral(Scene& split, VertexWeld& weld, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
+    const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
+        return weld.vertex(geometry.point(
+            {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.v)}));
+    };
+    for (std::uint64_t j = 0; j < n.v; ++j)
+        for (std::uint64_t i = 0; i < n.u; ++i)
+            add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+}
+
+void split_triangle(Scene& split, VertexWeld& weld, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
+    const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
+        return weld.vertex(geometry.point(
+            {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.u)}));
+    };
+    for (std::uint64_t j = 0; j < n.u; ++j)
+        for (std::uint64_t i = 0; i + j < n.u; ++i) {
+            add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), none});
+            if (i + j + 1 < n.u)
+                add_piece(split, patch, {vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1), none});
+        }
+}
+
+}  // namespace
+
+Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches) {
+    require_no_faults(scene_faults(scene), "cannot divide", scene);
+    if (!(largest_edge > 0)) throw InputError(fmt::format("edges of {} m: expected more than 0", largest_edge));
+    double count = 0;
+    for (const Patch& patch : scene.patches) {
+        const Pieces n = pieces_of(scene, patch, largest_edge);
+        count += static_cast<double>(n.u) * static_cast<double>(n.v);
+    }
+    if (count > static_cast<double>(most_patches))
+        throw InputError(
+            fmt::format("{}: a mesh size of {} m asks for {:.3g} patches, more than the limit of {}; use "
+                        "a larger --mesh-size or raise --max-patches",
+                        scene.name, largest_edge, count, most_patches));
+    Scene split = scene;
+    split.vertices.clear();
+    split.patches.clear();
+    split.patches.reserve(static_cast<std::size_t>(count));
+    VertexWeld weld(split.vertices);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const Patch& patch = scene.patches[i];
+        if (patch.other_side != none && patch.other_side < i) continue;  // went in with its front
+        const PatchGeometry geometry(scene, patch);
+        const Pieces n = pieces_of(scene, patch, largest_edge);
+        if (patch.is_triangle())
+            split_triangle(split, weld, patch, geometry, n);
+        else
+            split_quadrilateral(split, weld, patch, geometry, n);
+    }
+    return split;
+}
+
+double default_element_size(const Scene& scene) {
+    constexpr double largest = 0.005;  // [m]
+    constexpr double typical_side_over_size = 1000;
+    std::vector<float> areas;
+    areas.reserve(scene.patches.size());
+    double all = 0;
+    for (const Patch& patch : scene.patches) {
+        areas.push_back(patch_area(scene, patch));
+        all += areas.back();
+    }
+    std::sort(areas.begin(), areas.end());
+    double below = 0;
+    for (const float area : areas)
+        if ((below += area) >= all / 2)
+            return std::min(largest, std::sqrt(static_cast<double>(area)) / typical_side_over_size);
+    return largest;
+}
+
+float default_mesh_size(const Scene& scene) {
+    constexpr float pieces_of_diagonal = 48;
+    constexpr double moderate_patches = 200'000;
+    const Imath::Box3f box = core_bounds(scene);
+    double area = 0;
+    for (const Patch& patch : scene.patches) area += patch_area(scene, patch);
+    return std::max(box.size().length() / pieces_of_diagonal, static_cast<float>(std::sqrt(area / moderate_patches)));
+}
+
+}  // namespace interflect

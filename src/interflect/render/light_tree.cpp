@@ -1,0 +1,246 @@
+#include "interflect/render/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace interflect {
+
+namespace {
+
+constexpr std::size_t bin_count = 16;  // places where a node may be split; more gain nothing measurable
+
+V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+/// How far a box with this half diagonal reaches from its centre in a direction.
+float support(const V3f& half, const V3f& direction) { return half.dot(absolute(direction)); }
+
+/// An angle in [0, pi] by cosine and sine.
+struct Angle {
+    float cosine, sine;
+    static Angle of_cosine(float c) { return {c, std::sqrt(std::max(0.0f, 1 - c * c))}; }
+};
+
+/// max(0, a - b).
+Angle less(const Angle& a, const Angle& b) {
+    if (a.cosine >= b.cosine) return {1, 0};
+    return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
+}
+
+}  // namespace
+
+struct LightTree::Emitter {
+    std::uint32_t patch;
+    float power;
+    Box box;
+    V3f normal;
+    V3f centre() const { return 0.5f * (box.low + box.high); }
+};
+
+void LightTree::Box::extend(const Box& other) {
+    low = smaller(low, other.low);
+    high = larger(high, other.high);
+}
+
+LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
+    constexpr float pi = std::numbers::pi_v<float>;
+    constexpr float parallel = 1e-4f;  // [rad]; the axes of a smaller angle have no plane between them
+    const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); };
+    const float of_a = angle(a.cosine), of_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
+    if (std::min(between + of_b, pi) <= of_a + parallel) return {a.axis, std::cos(std::min(pi, of_a + parallel))};
+    if (std::min(between + of_a, pi) <= of_b + parallel) return {b.axis, std::cos(std::min(pi, of_b + parallel))};
+    const float joint = 0.5f * (of_a + between + of_b);
+    if (joint >= pi || between > pi - parallel) return {a.axis, -1};
+    const float turn = joint - of_a;  // of the axis from a towards b
+    const V3f axis = (std::sin(between - turn) * a.axis + std::sin(turn) * b.axis).normalized();
+    return {axis, std::cos(joint)};
+}
+
+LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry) : leaf_(scene.patches.size(), none) {
+    std::vector<Emitter> emitters;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const Patch& patch = scene.patches[i];
+        const float power = channel_sum(scene.materials[patch.material].exitance) * geometry[i].area();
+        if (!(power > 0)) continue;
+        Emitter emitter{
+            i, power, {scene.vertices[patch.vertices[0]], scene.vertices[patch.vertices[0]]}, geometry[i].normal()};
+        for (std::size_t v = 1; v < static_cast<std::size_t>(patch.vertex_count()); ++v) {
+            const V3f& vertex = scene.vertices[patch.vertices[v]];
+            emitter.box.extend({vertex, vertex});
+        }
+        emitters.push_back(emitter);
+    }
+    if (emitters.empty()) return;
+    nodes_.reserve(2 * emitters.size() - 1);
+    nodes_.emplace_back();
+    build(0, emitters);
+}
+
+/// Bins along one axis, and which of them are in the upper half.
+struct LightTree::Split {
+    int axis = 0;
+    float low = 0, scale = 0;
+    std::size_t first_above = 0;  // 0: none, since the centres coincide
+    float cost = std::numeric_limits<float>::infinity();
+
+    std::size_t bin_of(const V3f& centre) const {
+        return std::min(bin_count - 1, static_cast<std::size_t>((centre[axis] - low) * scale));
+    }
+};
+
+/// Emitters of a half, or of a bin.
+struct LightTree::Bin {
+    float power = 0;
+    Box box;
+    V3f normals{0, 0, 0};  // weighted by power
+
+    void add(const Bin& other) {
+        if (other.power <= 0) return;
+        if (power > 0)
+            box.extend(other.box);
+        else
+            box = other.box;
+        power += other.power;
+        normals += other.normals;
+    }
+    /// The surface area orientation heuristic, about: power x area x solid angle, which is large where importance() is
+    /// a loose bound. A single normal counts as a hemisphere, normals of all directions as the whole sphere.
+    float cost() const {
+        if (power <= 0) return 0;
+        return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
+    }
+};
+
+LightTree::Split LightTree::best_split(std::span<const Emitter> emitters, const Box& centres) {
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float extent = centres.high[axis] - centres.low[axis];
+        if (!(extent > 0)) continue;
+        Split split{axis, centres.low[axis], static_cast<float>(bin_count) / extent};
+        std::array<Bin, bin_count> bins;
+        for (const Emitter& e : emitters) bins[split.bin_of(e.centre())].add({e.power, e.box, e.normal * e.power});
+        std::array<float, bin_count> cost{};  // of a split before this bin
+        Bin below, above;
+        for (std::size_t b = 1; b < bin_count; ++b) {
+            below.add(bins[b - 1]);
+            cost[b] += below.cost();
+        }
+        for (std::size_t b = bin_count - 1; b > 0; --b) {
+            above.add(bins[b]);
+            cost[b] += above.cost();
+        }
+        split.first_above = static_cast<std::size_t>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
+        split.cost = cost[split.first_above];
+        if (split.cost < best.cost) best = split;
+    }
+    return best;
+}
+
+/// Splits where the costs of both halves are least in sum.
+void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
+    Box box = emitters.front().box;
+    Box centres{emitters.front().centre(), emitters.front().centre()};
+    for (const Emitter& e : emitters) {
+        box.extend(e.box);
+        centres.extend({e.centre(), e.centre()});
+    }
+    const auto finish = [&](const Cone& cone, float power) {
+        LightNode& node = nodes_[index];
+        node.centre = 0.5f * (box.low + box.high);
+        node.half = 0.5f * (box.high - box.low);
+        node.radius2 = node.half.length2();
+        node.cone = cone;
+        node.cone_sine = Angle::of_cosine(cone.cosine).sine;
+        node.power = power;
+    };
+    if (emitters.size() == 1) {
+        finish({emitters.front().normal, 1}, emitters.front().power);
+        nodes_[index].patch = emitters.front().patch;
+        leaf_[emitters.front().patch] = index;
+        return;
+    }
+
+    const Split split = best_split(emitters, centres);
+    const auto middle = std::stable_partition(emitters.begin(), emitters.end(), [&](const Emitter& e) {
+        return split.bin_of(e.centre()) < split.first_above;
+    });
+    // The outermost bins both have a member, so neither half is empty; but all are in one where the centres coincide.
+    std::size_t first_half = static_cast<std::size_t>(middle - emitters.begin());
+    if (first_half == 0 || first_half == emitters.size()) first_half = emitters.size() / 2;
+
+    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.resize(nodes_.size() + 2);
+    nodes_[index].first_child = child;
+    nodes_[child].parent = nodes_[child + 1].parent = index;
+    build(child, emitters.first(first_half));
+    build(child + 1, emitters.subspan(first_half));
+    finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
+}
+
+// The cosines at the box's nearest point are what lets a wide node that holds x, such as half the lamps of a storey,
+// outweigh one beside it: with d the distance to its nearest part and h their height over x, lamps that face down
+// light a floor by h^2 / d^4, of which the node's own distance only knows the mean.
+float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
+    const V3f to_centre = node.centre - x;
+    const V3f& axis = node.cone.axis;
+    const float height = n.dot(to_centre) + support(node.half, n);       // of the box's highest point over the surface
+    const float ahead = support(node.half, axis) - axis.dot(to_centre);  // of x before the box's rearmost point
+    if (height <= 0) return 0;
+    const V3f gap = larger(absolute(to_centre) - node.half, V3f(0, 0, 0));
+    const float nearest2 = gap.length2(), centre2 = to_centre.length2();
+    const float inverse = 1 / std::sqrt(std::max(nearest2, std::numeric_limits<float>::min()));
+    const float receiving = std::min(1.0f, height * inverse);
+    float emitting = std::min(1.0f, ahead * inverse);
+    if (node.cone.cosine < 1) {
+        // Behind every patch of the box, the farthest has the smallest angle.
+        if (ahead < 0) emitting = ahead / (std::sqrt(centre2) + std::sqrt(node.radius2));
+        emitting = less(Angle::of_cosine(emitting), {node.cone.cosine, node.cone_sine}).cosine;
+    }
+    return node.power * receiving * std::max(0.0f, emitting) / std::max(centre2, node.radius2);
+}
+
+LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {
+    if (nodes_.empty()) return {};
+    constexpr double below_one = 0x1.fffffffffffffp-1;  // what rounding must not reach
+    std::uint32_t node = 0;
+    float probability = 1;
+    if (nodes_[0].is_leaf() && importance(nodes_[0], x, n) <= 0) return {};
+    while (!nodes_[node].is_leaf()) {
+        const std::uint32_t child = nodes_[node].first_child;
+        const float first = importance(nodes_[child], x, n), second = importance(nodes_[child + 1], x, n);
+        if (!(first + second > 0)) return {};
+        const float of_first = first / (first + second);
+        if (uniform < static_cast<double>(of_first)) {
+            uniform = std::min(uniform / static_cast<double>(of_first), below_one);
+            probability *= of_first;
+            node = child;
+        } else {
+            uniform =
+                std::min((uniform - static_cast<double>(of_first)) / (1 - static_cast<double>(of_first)), below_one);
+            probability *= 1 - of_first;
+            node = child + 1;
+        }
+    }
+    return {nodes_[node].patch, probability};
+}
+
+float LightTree::probability(std::uint32_t patch, const V3f& x, const V3f& n) const {
+    std::uint32_t node = leaf_[patch];
+    if (node == none) return 0;
+    if (nodes_[node].parent == none) return importance(nodes_[node], x, n) > 0 ? 1.0f : 0.0f;
+    float probability = 1;
+    for (; nodes_[node].parent != none; node = nodes_[node].parent) {
+        const std::uint32_t child = nodes_[nodes_[node].parent].first_child;
+        const float first = importance(nodes_[child], x, n), second = importance(nodes_[child + 1], x, n);
+        if (!(first + second > 0)) return 0;
+        const float of_first = first / (first + second);
+        probability *= node == child ? of_first : 1 - of_first;
+    }
+    return probability;
+}
+
+}  // namespace interflect

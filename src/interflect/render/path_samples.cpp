@@ -1,0 +1,45 @@
+#include "interflect/render/path_samples.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "interflect/base/points.h"
+#include "interflect/base/random.h"
+#include "interflect/geometry/tangent_frame.h"
+
+namespace interflect {
+
+namespace {
+
+/// Vertices of a path with Sobol' points; later ones gain nothing by them and get pseudo-random numbers.
+constexpr std::uint32_t stratified_vertices = 4;
+
+}  // namespace
+
+V3f cosine_direction(const V3f& n, float a, float b) {
+    const TangentFrame frame(n);
+    const float radius = std::sqrt(a), height = std::sqrt(1 - a), turn = 2 * std::numbers::pi_v<float> * b;
+    return frame.s * (radius * std::cos(turn)) + frame.t * (radius * std::sin(turn)) + n * height;
+}
+
+VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
+    const std::uint64_t key = mix(batch_key, vertex);
+    const auto words = random_words(key, index);
+    if (vertex > stratified_vertices) {
+        const auto more = random_words(~key, index);
+        return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]),
+                unit_float(words[3]),       unit_float(more[0]),  unit_float(more[1])};
+    }
+    const auto of_light = shuffled_point(mix(key, 1), index), of_direction = shuffled_point(mix(key, 2), index);
+    // A point is the middle of one of 2^23 cells, too coarse for one of millions of lamps: move it within its cell.
+    const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
+    return {
+        of_light[0] + within_cell * 0x1p-23, of_light[1], of_light[2], of_direction[0], of_direction[1], of_light[3]};
+}
+
+float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2) {
+    const float cosine = -lamp.normal().dot(direction);
+    return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;
+}
+
+}  // namespace interflect

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interflect/base/colour.h"
+#include "interflect/geometry/patch_geometry.h"
+
+namespace interflect {
+
+/// A direction with density cosine / pi over the hemisphere of n, for a and b uniform in (0, 1): Malley's method.
+V3f cosine_direction(const V3f& n, float a, float b);
+
+/// The random numbers of one vertex of a path.
+struct VertexSample {
+    double light;            // chooses the emitting patch
+    float light_u, light_v;  // and the point on it
+    float direction_u, direction_v;
+    float roulette;
+};
+
+/// Sobol' points at the first vertices of a path, pseudo-random numbers at later ones.
+/// @param batch_key  Names the batch that the path is part of.
+/// @param vertex     1 is the first that the camera sees.
+/// @param index      Of the path in its batch.
+VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
+
+/// Density per solid angle, seen from a point that `direction` leaves, of sampling a point of an emitting patch there.
+/// @param probability  With which the patch is chosen.
+/// @param distance2    From the point to that of the patch, squared [m^2].
+float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2);
+
+/// The balance heuristic: the weight of a sample of density p where another technique has density q.
+inline float balance(float p, float q) { return p / (p + q); }
+
+}  // namespace interflect

@@ -1,0 +1,82 @@
+#include "interflect/render/render.h"
+
+#include <atomic>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "interflect/render/element_vertices.h"
+#include "interflect/render/smooth_field.h"
+
+namespace interflect {
+
+namespace {
+
+/// Luminance at points of the scene's surfaces.
+class Shader {
+  public:
+    Shader(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance,
+           const RenderOptions& options)
+        : scene_(scene), forest_(forest), irradiance_(irradiance) {
+        if (options.shading == Shading::flat) return;
+        vertices_.emplace(scene, forest, options.smoothing);
+        smooth_.emplace(forest, *vertices_, irradiance);
+    }
+    Shader(const Shader&) = delete;  // smooth_ refers to vertices_
+    Shader& operator=(const Shader&) = delete;
+
+    /// L = B / pi with B = M + rho H, where `ray` hit.
+    Rgb luminance_at(const Ray& ray, const Hit& hit) const {
+        const Material& material = scene_.materials[scene_.patches[hit.patch].material];
+        const Rgb radiosity = material.exitance + material.reflectance * irradiance_at(ray, hit);
+        return radiosity / std::numbers::pi_v<float>;
+    }
+
+  private:
+    Rgb irradiance_at(const Ray& ray, const Hit& hit) const {
+        return smooth_ ? smooth_->at(hit.patch, parameters_of_hit(forest_, ray, hit))
+                       : irradiance_[leaf_of_hit(forest_, ray, hit)];
+    }
+
+    const Scene& scene_;
+    const ElementForest& forest_;
+    std::span<const Rgb> irradiance_;
+    std::optional<ElementVertices> vertices_;
+    std::optional<SmoothField> smooth_;
+};
+
+}  // namespace
+
+Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                 std::span<const Rgb> irradiance, const RenderOptions& options, const PictureMonitor& monitor) {
+    ray_caster.require_made_for(scene);
+    forest.require_made_for(scene);
+    require_values_of_elements(forest, irradiance.size(), "irradiance");
+    const Camera camera(view, options.width, options.height, scene.origin);
+    const Shader shader(scene, forest, irradiance, options);
+
+    Rendering result;
+    result.image = Image(options.width, options.height);
+    std::atomic<std::int64_t> escaped_rays{0};
+    const CameraSampling sampling{options.width, options.height, options.samples, options.seed};
+    trace_pixels(camera, ray_caster, sampling, monitor, [&](const PixelSamples& samples) {
+        RgbD sum(0, 0, 0);
+        std::int64_t escaped = 0;
+        for (std::size_t i = 0; i < samples.rays.size(); ++i) {
+            if (samples.hits[i].patch == none)
+                ++escaped;
+            else
+                sum += RgbD(shader.luminance_at(samples.rays[i], samples.hits[i]));
+        }
+        result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
+        if (escaped > 0) escaped_rays += escaped;
+    });
+
+    result.rays = static_cast<std::int64_t>(result.image.pixels.size()) * options.samples;
+    result.escaped_rays = escaped_rays;
+    result.non_finite_pixels = count_non_finite(result.image);
+    result.interrupted = monitor.stop && *monitor.stop;
+    return result;
+}
+
+}  // namespace interflect

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "interflect/elements/forest.h"
+#include "interflect/image/image.h"
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/render/camera_samples.h"
+#include "interflect/render/smooth_surfaces.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// How irradiance is reconstructed at points from that of elements.
+enum class Shading {
+    flat,    ///< Every leaf has one irradiance.
+    smooth,  ///< Interpolated between the leaves of a smooth surface: see SmoothField.
+};
+
+struct RenderOptions {
+    int width = 1280;                   ///< [pixels], >= 1.
+    int height = 720;                   ///< [pixels], >= 1.
+    int samples = 16;                   ///< Camera rays a pixel, >= 1; powers of two are stratified best.
+    Shading shading = Shading::smooth;  ///< See Shading.
+    SmoothingOptions smoothing{};       ///< For Shading::smooth.
+    std::uint64_t seed = 1;             ///< Of the rays' places within their pixels.
+};
+
+/// A picture with counts of its rays.
+struct Rendering {
+    /// Luminance L = (M + rho H) / pi of what each pixel sees, the mean over its square; black where rays escape.
+    /// [cd/m^2] where exitance M and irradiance H are photometric [lm/m^2], else [W/(m^2 sr)].
+    Image image;
+    std::int64_t rays = 0;
+    std::int64_t escaped_rays = 0;
+    std::int64_t non_finite_pixels = 0;  ///< They keep their value (infinite or not a number) in `image`.
+    bool interrupted = false;            ///< Stopped by the caller: pixels that were not reached are black.
+};
+
+/// Renders what `view` sees of a solved scene.
+/// @param forest      Of the same scene, as is `ray_caster`.
+/// @param irradiance  H of every element, in the unit of the materials' exitance; only those of leaves count.
+/// @return            The same bits for the same seed and any number of threads.
+/// @throws InputError for a view that defines no picture, an option out of range, sizes that disagree, and a forest or
+///         a ray caster of another scene.
+Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                 std::span<const Rgb> irradiance, const RenderOptions& options = {},
+                 const PictureMonitor& monitor = {});
+
+}  // namespace interflect

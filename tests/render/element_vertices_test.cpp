@@ -1,0 +1,314 @@
+#include "interflect/render/element_vertices.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "interflect/base/error.h"
+#include "interflect/base/random.h"
+#include "interflect/render/smooth_field.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using testing_support::add_material;
+using testing_support::add_rectangle;
+
+const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
+constexpr std::size_t plenty = 1 << 16;  // elements that a forest has room for
+
+void expect_near(const Rgb& found, const Rgb& expected, float tolerance = 1e-5f) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance);
+}
+
+/// Patches of every kind in the plane z = 0: 3 x 3 irregular quadrilaterals, every other one cut into two triangles.
+/// Each starts its vertex order elsewhere, so that edges of all numbers meet.
+Scene mixed_mesh() {
+    constexpr std::uint32_t n = 3;
+    Scene scene;
+    add_material(scene, grey, black);
+    const auto shift = [&] { return 0.4f * static_cast<float>(random_double(1, scene.vertices.size()) - 0.5); };
+    for (std::uint32_t y = 0; y <= n; ++y)
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            const float moved = shift();
+            scene.vertices.emplace_back(static_cast<float>(x) + moved, static_cast<float>(y) - 0.7f * moved, 0.0f);
+        }
+    for (std::uint32_t i = 0; i < n * n; ++i) {
+        const std::uint32_t low = i / n * (n + 1) + i % n, high = low + n + 1;
+        std::array<std::uint32_t, 4> v{low, low + 1, high + 1, high};
+        std::rotate(v.begin(), v.begin() + i / 2 % 4, v.end());
+        if (i % 2) {
+            scene.patches.push_back({.vertices = v});
+        } else {
+            scene.patches.push_back({.vertices = {v[0], v[1], v[2], none}});
+            scene.patches.push_back({.vertices = {v[3], v[0], v[2], none}});
+        }
+    }
+    return scene;
+}
+
+/// Neighbours may end up at any two levels.
+void refine_at_random(ElementForest& forest, int deepest, std::uint64_t seed) {
+    for (std::uint32_t e = 0; e < forest.size(); ++e)
+        if (forest.level(e) < deepest && random_double(seed, e) < 0.5) forest.subdivide(e);
+}
+
+void refine_evenly(ElementForest& forest, int deepest) {
+    for (std::uint32_t e = 0; e < forest.size(); ++e)
+        if (forest.level(e) < deepest) forest.subdivide(e);
+}
+
+std::vector<Rgb> random_values(const ElementForest& forest, std::uint64_t seed) {
+    std::vector<Rgb> values;
+    for (std::uint32_t e = 0; e < forest.size(); ++e)
+        values.push_back(Rgb(1, 1, 1) * static_cast<float>(random_double(seed, e)));
+    return values;
+}
+
+/// A field of values that depend on the element.
+template <class ValueOf>
+std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of) {
+    std::vector<Rgb> values;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) values.push_back(value_of(e));
+    return values;
+}
+
+/// Where an element has its corners, as ElementVertices numbers them [m].
+std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
+    const PatchGeometry& patch = forest.geometry(forest.patch(e));
+    const Cell cell = forest.cell(e);
+    if (patch.is_triangle())
+        return {patch.point(cell.at(0, 0)), patch.point(cell.at(1, 0)), patch.point(cell.at(0, 1))};
+    return {patch.point(cell.at(0, 0)), patch.point(cell.at(1, 0)), patch.point(cell.at(1, 1)),
+            patch.point(cell.at(0, 1))};
+}
+
+/// Of a flat scene: the value at a point, whichever patch holds it; nothing beside the patches.
+std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& field, const V3f& x) {
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+        const Parameters parameters = forest.geometry(p).parameters_of(x);
+        if ((forest.geometry(p).point(parameters) - x).length() < 1e-6f) return field.at(p, parameters);
+    }
+    return std::nullopt;
+}
+
+/// The largest difference between two points on opposite sides of a leaf's edge, both at `distance` [m] from it.
+float largest_jump(const ElementForest& forest, const SmoothField& field, float distance) {
+    float largest = 0;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        const std::vector<V3f> corners = corner_points(forest, leaf);
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+            const V3f along = corners[(c + 1) % corners.size()] - corners[c];
+            const V3f across = V3f(0, 0, distance).cross(along.normalized());
+            for (const float t : {0.07f, 0.24f, 0.26f, 0.47f, 0.55f, 0.7f, 0.98f}) {
+                const V3f x = corners[c] + t * along;
+                const auto here = value_at(forest, field, x + across), there = value_at(forest, field, x - across);
+                if (here && there) largest = std::max(largest, std::abs(here->x - there->x));
+            }
+        }
+    }
+    return largest;
+}
+
+/// Values are in [0, 1] and the lowest leaf is about 0.4 / 2^5 m high, so that no slope exceeds some 2 / 0.0125 a
+/// metre. Left without the constraint of hanging vertices (the last loop of vertex_values()), the field jumps by
+/// UNKNOWN.
+TEST(SmoothField, IsContinuousWhateverTheLevels) {
+    const Scene scene = mixed_mesh();
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        ElementForest forest(scene, plenty);
+        refine_at_random(forest, 5, seed);
+        const ElementVertices vertices(scene, forest);
+        const SmoothField field(forest, vertices, random_values(forest, seed));
+        EXPECT_GT(vertices.hanging().size(), 100u);
+        for (const float distance : {1e-4f, 1e-5f})
+            EXPECT_LT(largest_jump(forest, field, distance), 2 * distance * 160 + 1e-4f) << distance;
+    }
+}
+
+/// Two squares; only the right one is cut, and its quarters are bright. Both ends of the edge between them are the mean
+/// of dark and bright, so its middle is too, though all leaves that have it as a corner are bright.
+TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
+    Scene scene;
+    add_rectangle(scene, V3f(0, 0, 0), V3f(2, 0, 0), V3f(0, 1, 0), add_material(scene, grey, black), 2, 1);
+    ElementForest forest(scene, plenty);
+    forest.subdivide(1);
+    const ElementVertices vertices(scene, forest);
+    ASSERT_EQ(vertices.hanging().size(), 1u);
+    const SmoothField field(forest, vertices, {std::vector{dark, bright, bright, bright, bright, bright}});
+    for (const float t : {0.0f, 0.3f, 0.5f, 0.9f, 1.0f}) {
+        expect_near(field.at(0, {1, t}), (dark + bright) / 2);
+        expect_near(field.at(1, {0, t}), (dark + bright) / 2);
+    }
+}
+
+/// Where the four quarters of an irregular quadrilateral meet, each counts with its angle there.
+TEST(VertexValues, AreWeightedByAngles) {
+    Scene scene;
+    add_material(scene, grey, black);
+    scene.vertices = {V3f(0, 0, 0), V3f(4, 0.5f, 0), V3f(3, 2, 0), V3f(-1, 3, 0)};
+    scene.patches = {{.vertices = {0, 1, 2, 3}}};
+    ElementForest forest(scene, plenty);
+    forest.subdivide(0);
+    const ElementVertices vertices(scene, forest);
+    const std::uint32_t centre = vertices.corners(1)[2];
+    for (const auto& [leaf, corner] : {std::pair{1u, 2u}, {2u, 3u}, {3u, 1u}, {4u, 0u}}) {
+        ASSERT_EQ(vertices.corners(leaf)[corner], centre);
+        const std::vector<V3f> x = corner_points(forest, leaf);
+        const V3f to_next = (x[(corner + 1) % 4] - x[corner]).normalized();
+        const V3f to_last = (x[(corner + 3) % 4] - x[corner]).normalized();
+        const float share = std::acos(to_next.dot(to_last)) / (2 * std::numbers::pi_v<float>);
+        std::vector<Rgb> values(5, black);
+        values[leaf] = bright;
+        expect_near(vertex_values(forest, vertices, values)[centre], bright * share);
+    }
+}
+
+using Point = std::tuple<long, long, long>;
+Point rounded(const V3f& x) {  // to 0.1 mm
+    return {std::lround(1e4f * x.x), std::lround(1e4f * x.y), std::lround(1e4f * x.z)};
+}
+
+/// In a flat scene of one material every point has one vertex and every vertex is at one point.
+TEST(ElementVertices, AreThePointsWhereElementsMeet) {
+    const Scene scene = mixed_mesh();
+    ElementForest forest(scene, plenty);
+    refine_at_random(forest, 5, 4);
+    const ElementVertices vertices(scene, forest);
+    std::map<Point, std::uint32_t> vertex_at;
+    std::vector<V3f> position(vertices.count());
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        const std::vector<V3f> corners = corner_points(forest, e);
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+            const std::uint32_t vertex = vertices.corners(e)[c];
+            ASSERT_EQ(vertex_at.try_emplace(rounded(corners[c]), vertex).first->second, vertex);
+            position[vertex] = corners[c];
+        }
+        EXPECT_EQ(vertices.corners(e)[3] == none, corners.size() == 3);
+    }
+    EXPECT_EQ(vertex_at.size(), vertices.count());
+    for (const auto& [vertex, ends, fraction] : vertices.hanging()) {
+        EXPECT_LT((position[vertex] - (position[ends[0]] + position[ends[1]]) / 2).length(), 1e-5f);
+        EXPECT_LT(std::max(ends[0], ends[1]), vertex);
+    }
+}
+
+/// Linear in space.
+Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(0, 5, 2) * x.y; }
+
+/// The leaves of a square and of its two halves, all cut equally, are like a fine grid of patches.
+TEST(SmoothField, ReproducesALinearFieldInsideAnEvenMesh) {
+    Scene square;
+    add_rectangle(square, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), add_material(square, grey, black));
+    Scene halves = square;
+    const auto v = square.patches[0].vertices;
+    halves.patches = {{.vertices = {v[0], v[1], v[2], none}}, {.vertices = {v[2], v[3], v[0], none}}};
+    for (const Scene& scene : {square, halves}) {
+        ElementForest forest(scene, plenty);
+        refine_evenly(forest, 3);
+        const ElementVertices vertices(scene, forest);
+        EXPECT_EQ(vertices.count(), 9 * 9u);
+        EXPECT_TRUE(vertices.hanging().empty());
+        const SmoothField field(forest, vertices, values_of(forest, [&](std::uint32_t e) {
+                                    const PatchGeometry& patch = forest.geometry(forest.patch(e));
+                                    return linear_field(patch.point(forest.cell(e).centre(patch.is_triangle())));
+                                }));
+        for (float x = 0.125f; x < 0.876f; x += 0.05f)  // where no leaf touches the border
+            for (float y = 0.125f; y < 0.876f; y += 0.07f) {
+                const auto value = value_at(forest, field, V3f(x, y, 0));
+                ASSERT_TRUE(value);
+                expect_near(*value, linear_field(V3f(x, y, 0)));
+            }
+    }
+}
+
+/// A dark and a bright square, cut to different depths, side by side at x = 0; the second is turned up by `degrees`.
+struct Neighbours {
+    Scene scene;
+    std::optional<ElementForest> forest;
+    std::vector<Rgb> values;
+
+    Neighbours(float degrees, bool same_material) {
+        const float angle = degrees * std::numbers::pi_v<float> / 180;
+        const std::uint32_t first = add_material(scene, grey, black);
+        const std::uint32_t second = same_material ? first : add_material(scene, grey, black);
+        add_rectangle(scene, V3f(-1, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), first);
+        add_rectangle(scene, V3f(0, 0, 0), V3f(std::cos(angle), 0, std::sin(angle)), V3f(0, 1, 0), second);
+        forest.emplace(scene, plenty);
+        refine_at_random(*forest, 4, 9);
+        values = values_of(*forest, [&](std::uint32_t e) { return forest->patch(e) == 0 ? dark : bright; });
+    }
+};
+
+TEST(SmoothField, GoesOverARoundedEdge) {
+    const Neighbours flat(0, true), rounded_edge(20, true);
+    for (const Neighbours* scene : {&flat, &rounded_edge}) {
+        const ElementVertices vertices(scene->scene, *scene->forest);
+        const SmoothField field(*scene->forest, vertices, scene->values);
+        for (float t = 0; t <= 1; t += 0.01f) expect_near(field.at(0, {1, t}), field.at(1, {0, t}));
+        EXPECT_GT(field.at(0, {1, 0}).x, dark.x + 1);
+    }
+}
+
+TEST(SmoothField, EndsAtCreasesAndBordersOfMaterials) {
+    const Neighbours crease(90, true), border(0, false);
+    for (const Neighbours* scene : {&crease, &border}) {
+        const ElementVertices vertices(scene->scene, *scene->forest);
+        const SmoothField field(*scene->forest, vertices, scene->values);
+        for (float t = 0; t <= 1; t += 0.01f) {
+            expect_near(field.at(0, {1, t}), dark);
+            expect_near(field.at(1, {0, t}), bright);
+        }
+    }
+}
+
+/// A hipped roof of 20 degrees: its slopes meet in a crease at the ridge, yet go over into each other around both of
+/// the ridge's ends. They share the ends then, but no vertex between them.
+TEST(SmoothField, ACreaseWhoseEndsAreSmoothIsStillACrease) {
+    const float slope = std::tan(20 * std::numbers::pi_v<float> / 180), x = 0.5f * std::numbers::sqrt3_v<float>;
+    const float z = -slope * x;
+    Scene roof;
+    add_material(roof, grey, black);
+    roof.vertices = {V3f(0, 0, 0),     V3f(0, 1, 0),    V3f(-x, 1.5f, z), V3f(-x, -0.5f, z),
+                     V3f(x, -0.5f, z), V3f(x, 1.5f, z), V3f(0, -1, z),    V3f(0, 2, z)};
+    roof.patches = {{.vertices = {0, 1, 2, 3}},    {.vertices = {1, 0, 4, 5}},    {.vertices = {0, 3, 6, none}},
+                    {.vertices = {0, 6, 4, none}}, {.vertices = {1, 5, 7, none}}, {.vertices = {1, 7, 2, none}}};
+    ElementForest forest(roof, plenty);
+    forest.subdivide(0);
+    forest.subdivide(1);
+    const ElementVertices vertices(roof, forest);
+    const SmoothField field(forest, vertices,
+                            values_of(forest, [&](std::uint32_t e) { return forest.patch(e) == 0 ? dark : bright; }));
+    expect_near(field.at(0, {0, 0}), field.at(1, {1, 0}));
+    expect_near(field.at(0, {0.5f, 0}), dark);
+    expect_near(field.at(1, {0.5f, 0}), bright);
+}
+
+TEST(SmoothField, TakesNothingFromElementsThatAreCut) {
+    const Scene scene = mixed_mesh();
+    ElementForest forest(scene, plenty);
+    refine_at_random(forest, 3, 5);
+    const ElementVertices vertices(scene, forest);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const SmoothField field(forest, vertices, values_of(forest, [&](std::uint32_t e) {
+                                return forest.is_leaf(e) ? dark : Rgb(nan, nan, nan);
+                            }));
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) expect_near(field.at(p, {0.3f, 0.4f}), dark);
+}
+
+TEST(SmoothField, RefusesAWrongNumberOfValues) {
+    const Scene scene = mixed_mesh();
+    const ElementForest forest(scene, plenty);
+    const ElementVertices vertices(scene, forest);
+    EXPECT_THROW(SmoothField(forest, vertices, std::vector{bright}), InputError);
+}
+
+}  // namespace
+}  // namespace interflect

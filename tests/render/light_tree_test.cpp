@@ -1,0 +1,138 @@
+#include "interflect/render/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using testing_support::add_material;
+using testing_support::add_rectangle;
+
+std::vector<PatchGeometry> geometry_of(const Scene& scene) {
+    std::vector<PatchGeometry> geometry;
+    for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
+    return geometry;
+}
+
+/// Lamps of different sizes and powers that face down and up, a tilted one and two-sided ones, and what does not emit.
+Scene lamps() {
+    Scene scene;
+    const std::uint32_t dark = add_material(scene, Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0));
+    const std::uint32_t dim = add_material(scene, Rgb(0, 0, 0), Rgb(1, 2, 3));
+    const std::uint32_t bright = add_material(scene, Rgb(0, 0, 0), Rgb(9e4f, 0, 0));
+    add_rectangle(scene, V3f(-9, -9, 0), V3f(18, 0, 0), V3f(0, 18, 0), dark);
+    add_rectangle(scene, V3f(-2, -2, 3), V3f(0, 1, 0), V3f(1, 0, 0), dim, 3, 2);
+    add_rectangle(scene, V3f(4, 1, 2.5f), V3f(0, 0.01f, 0), V3f(0.01f, 0, 0), bright);
+    add_rectangle(scene, V3f(1, 4, 2), V3f(1, 0, 0), V3f(0, 1, 1), dim, 2, 2, true);
+    add_rectangle(scene, V3f(-4, 3, 1), V3f(1, 0, 0), V3f(0, 1, 0), dim);
+    return scene;
+}
+
+struct Point {
+    V3f x, n;
+};
+const std::vector<Point> points_of_surfaces = {
+    {V3f(0, 0, 0), V3f(0, 0, 1)},          {V3f(-1.5f, -1.6f, 2.9f), V3f(0, 0, 1)}, {V3f(4, 1, 2.499f), V3f(0, 0, 1)},
+    {V3f(1.5f, 4.2f, 2.3f), V3f(0, 1, 0)}, {V3f(8, 8, 0.1f), V3f(-0.6f, 0, 0.8f)},  {V3f(-5, 0, 8), V3f(0, 0, -1)}};
+
+/// What choose() does for evenly spaced numbers is what probability() says, but for the numbers at the borders.
+TEST(LightTree, ChoosesWithTheProbabilityThatItTells) {
+    const Scene scene = lamps();
+    const LightTree tree(scene, geometry_of(scene));
+    constexpr int count = 100'000;
+    for (const auto& [x, n] : points_of_surfaces) {
+        std::vector<int> chosen(scene.patches.size(), 0);
+        for (int i = 0; i < count; ++i) {
+            const LightTree::Choice choice = tree.choose(x, n, (i + 0.5) / count);
+            if (choice.patch == none) continue;
+            ++chosen[choice.patch];
+            ASSERT_FLOAT_EQ(choice.probability, tree.probability(choice.patch, x, n));
+        }
+        for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+            EXPECT_NEAR(static_cast<float>(chosen[p]) / count, tree.probability(p, x, n), 1e-4) << "patch " << p;
+    }
+}
+
+/// A patch that can light a point is chosen: each corner of it is tried, with nothing in between.
+TEST(LightTree, MissesNoPatchThatLightsAPoint) {
+    const Scene scene = lamps();
+    const std::vector<PatchGeometry> geometry = geometry_of(scene);
+    const LightTree tree(scene, geometry);
+    for (const auto& [x, n] : points_of_surfaces)
+        for (std::uint32_t p = 1; p < scene.patches.size(); ++p) {
+            bool lights = false;
+            for (const std::uint32_t v : scene.patches[p].vertices) {
+                const V3f to_corner = scene.vertices[v] - x;
+                lights = lights || (n.dot(to_corner) > 1e-3f && geometry[p].normal().dot(to_corner) < -1e-3f);
+            }
+            if (lights) {
+                EXPECT_GT(tree.probability(p, x, n), 0) << "patch " << p;
+            }
+        }
+}
+
+TEST(LightTree, NeverTakesWhatIsBehindOrFacesAway) {
+    Scene scene;
+    const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
+    add_rectangle(scene, V3f(-1, -1, 1), V3f(0, 2, 0), V3f(2, 0, 0), light);  // faces down
+    const LightTree one(scene, geometry_of(scene));
+    EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, 0u);
+    EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, -1), 0.5).patch, none) << "behind";
+    EXPECT_EQ(one.choose(V3f(0, 0, 9), V3f(0, 0, -1), 0.5).patch, none) << "facing away";
+    add_rectangle(scene, V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0), light);  // faces up
+    const LightTree two(scene, geometry_of(scene));
+    EXPECT_FLOAT_EQ(two.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 1);
+    EXPECT_FLOAT_EQ(two.probability(1, V3f(0, 0, 0), V3f(0, 0, -1)), 1);
+}
+
+TEST(LightTree, PrefersTheNearAndTheBright) {
+    Scene scene;
+    const std::uint32_t dim = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
+    const std::uint32_t bright = add_material(scene, Rgb(0, 0, 0), Rgb(4, 4, 4));
+    const auto add_lamp = [&](float x, std::uint32_t material) {
+        add_rectangle(scene, V3f(x, 0, 2), V3f(0, 0.1f, 0), V3f(0.1f, 0, 0), material);
+    };
+    for (const float x : {0.0f, 20.0f, 40.0f}) add_lamp(x, dim);
+    add_lamp(-5, dim);
+    add_lamp(5, bright);
+    const LightTree tree(scene, geometry_of(scene));
+    const V3f x(0, 0, 0), up(0, 0, 1);
+    EXPECT_GT(tree.probability(0, x, up), 0.5f);
+    EXPECT_GT(tree.probability(4, x, up), 2 * tree.probability(3, x, up));
+    EXPECT_LT(tree.probability(2, x, up), 0.01f);
+}
+
+/// 400 lamps that face down, one a room of 5 x 5 m: the one above is most of the light on a floor and on a wall.
+TEST(LightTree, PrefersTheLampOfTheRoomAmongHundreds) {
+    Scene scene;
+    const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
+    for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 20; ++column)
+            add_rectangle(scene, V3f(5.0f * static_cast<float>(column), 5.0f * static_cast<float>(row), 2.7f),
+                          V3f(0, 1, 0), V3f(1, 0, 0), light);
+    const LightTree tree(scene, geometry_of(scene));
+    float on_floors = 0, on_walls = 0;
+    for (std::uint32_t room = 0; room < 400; ++room) {
+        const V3f below = scene.vertices[scene.patches[room].vertices[0]] - V3f(0, 0, 2.7f);
+        on_floors += tree.probability(room, below, V3f(0, 0, 1)) / 400;
+        on_walls += tree.probability(room, below + V3f(-1.5f, 0, 1), V3f(1, 0, 0)) / 400;
+    }
+    EXPECT_GT(on_floors, 0.5f) << "with the cosines towards the nodes' centres it is 0.1";
+    EXPECT_GT(on_walls, 0.4f);
+}
+
+TEST(LightTree, WithoutLightChoosesNothing) {
+    Scene scene;
+    add_rectangle(scene, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0),
+                  add_material(scene, Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0)));
+    const LightTree tree(scene, geometry_of(scene));
+    EXPECT_EQ(tree.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, none);
+    EXPECT_EQ(tree.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 0);
+}
+
+}  // namespace
+}  // namespace interflect
