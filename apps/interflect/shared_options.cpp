@@ -153,9 +153,7 @@ void SolverOptions::add_to(CLI::App& app) {
     add_threads(app, threads);
 }
 
-void SolverOptions::add_limits(CLI::App& app) {
-    command::add_limits(app, rays_, seconds_, until_);
-}
+void SolverOptions::add_limits(CLI::App& app) { command::add_limits(app, rays_, seconds_, until_); }
 
 void SolverOptions::add_sampling(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(solver_group); };

@@ -56,11 +56,10 @@ void add_solve(CLI::App& app, int& exit_code) {
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
         require_solution_name(options->output);
-        require_distinct_files(
-            input_files(options->scene, options->view),
-            std::array<NamedFile, 3>{{{"--output", options->output},
-                                      {"--stats", options->solver.stats},
-                                      {"--checkpoint", options->checkpoints.file}}});
+        require_distinct_files(input_files(options->scene, options->view),
+                               std::array<NamedFile, 3>{{{"--output", options->output},
+                                                         {"--stats", options->solver.stats},
+                                                         {"--checkpoint", options->checkpoints.file}}});
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Scene scene = options->scene.load();

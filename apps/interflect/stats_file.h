@@ -11,7 +11,8 @@ namespace interflect::command {
 /// The file that --stats names, where it names one: JSON lines, a header and one line for each iteration.
 class StatsFile {
   public:
-    /// To be made before long work begins. @param file  Empty: none is written. @throws InputError where the file cannot be written, or is read.
+    /// To be made before long work begins. @param file  Empty: none is written. @throws InputError where the file
+    /// cannot be written, or is read.
     StatsFile(int threads, const std::filesystem::path& file, const Scene& scene);
     /// To be called when the result itself is safe.
     void write(const Scene& scene, const Solution& solution);

@@ -1,5 +1,6 @@
 // A run in many calls, saved and opened between them, or stopped anywhere, has the bits of one that is left alone.
-// Seen to fail when arrivals of a step that is cut short stay, and when the file is written after the state has changed.
+// Seen to fail when arrivals of a step that is cut short stay, and when the file is written after the state has
+// changed.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +38,8 @@ const View into_the_room = {"room", {0.2f, 0.2f, 2}, {3.5f, 2.5f, 0.5f}, {0, 0, 
 Scene open_room() {
     Scene scene = closed_box({4.1f, 2.9f, 2.5f}, 2, {{"wall", {0.7f, 0.6f, 0.5f}, Rgb(0)}});
     scene.patches.pop_back();
-    const std::uint32_t lamp = add_material(scene, Rgb(0.2f), {90, 100, 70}), grey = add_material(scene, Rgb(0.3f), Rgb(0));
+    const std::uint32_t lamp = add_material(scene, Rgb(0.2f), {90, 100, 70}),
+                        grey = add_material(scene, Rgb(0.3f), Rgb(0));
     add_rectangle(scene, {1.3f, 1.1f, 2.3f}, {0, 0.4f, 0}, {0.3f, 0, 0}, lamp, 1, 1, true);
     add_box(scene, {2.1f, 0.9f, 0}, {3.2f, 1.8f, 0.7f}, grey);
     return scene;

@@ -196,11 +196,16 @@ Sums sum_errors(const SolverState& state, const ElementErrors& errors) {
 
 }  // namespace
 
-float Detail::shrinkage() const { return spread > noise ? std::min(1 - noise / spread, most_kept) : 0.0f; }
+float Detail::shrinkage() const {
+    const float kept = spread > noise ? 1 - noise / spread : 0.0f;
+    return is_young() && kept > 0 ? std::min(kept, assumed / (assumed + noise)) : kept;
+}
 
 float Detail::risk() const {
-    if (spread > noise && shrinkage() == most_kept)
-        return most_kept * most_kept * noise + (1 - most_kept) * (1 - most_kept) * signal();
+    if (is_young()) {
+        const float kept = shrinkage();
+        return kept * kept * noise + (1 - kept) * (1 - kept) * assumed;
+    }
     // Of y = signal + noise in d = 3 dimensions, reduced by the factor 1 - d sigma^2 / |y|^2 or to zero.
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
@@ -221,12 +226,11 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
     // Siblings that are much younger than their parent have met few rays. What is left of their noise when it is
     // reduced by itself would be more than what they can differ by: that is then taken from the parent's siblings.
     const std::uint32_t parent = forest.parent(first);
-    if (state.history[first] < young * state.history[parent]) {
-        const float expected = parent < forest.patch_count()
-                                   ? assumed_variation * mean * (assumed_variation * mean)
-                                   : highest_expected_decay * std::max(0.0f, detail_of(state, first_sibling(forest, parent)).signal());
-        detail.most_kept = expected / (expected + detail.noise);
-    }
+    if (uses_shrinkage(state) && state.history[first] < young * state.history[parent])
+        detail.assumed =
+            parent < forest.patch_count()
+                ? std::pow(assumed_variation * mean, 2.0f)
+                : highest_expected_decay * std::max(0.0f, detail_of(state, first_sibling(forest, parent)).signal());
     return detail;
 }
 
@@ -235,7 +239,8 @@ void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t
     if (uses_shrinkage(state) && state.noise.is_known()) {
         constexpr double long_enough = 0.25;  // share of what was averaged before
         const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
-        state.risk_check.add(check_risk(state, fresh), std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
+        state.risk_check.add(check_risk(state, fresh),
+                             std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
     }
     state.noise.add(*state.forest, fresh, state.solution.irradiance, state.history, static_cast<float>(rays), weight);
 }

@@ -13,10 +13,13 @@ namespace interflect {
 struct Detail {
     float spread = 0;  ///< Area-weighted mean square of their differences from the parent: signal and noise.
     float noise = 0;   ///< The expected part of it that is noise; infinite where nothing was measured yet.
-    float most_kept = 1;  ///< Of the differences: less where few of the rays that their parent has met have met them.
+    /// What is assumed of the signal where the siblings have met few of the rays that their parent has met; negative
+    /// where it is known from them.
+    float assumed = -1;
 
-    /// Unbiased; may be negative.
-    float signal() const { return spread - noise; }
+    bool is_young() const { return assumed >= 0; }
+    /// Unbiased, and may be negative, where it is not assumed.
+    float signal() const { return is_young() ? assumed : spread - noise; }
     /// The factor by which differences are reduced: Wiener's filter, with the signal taken from the siblings
     /// themselves. 1 where they differ by much more than their noise, 0 where by no more.
     float shrinkage() const;

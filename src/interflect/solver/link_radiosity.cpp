@@ -104,8 +104,8 @@ LinkedElements::LinkedElements(SolverState& state, std::size_t link_limit)
 
 void LinkedElements::require_room_for(std::size_t more) const {
     if (links_.size() + more <= link_limit_) return;
-    throw InputError("'" + state_.scene.name + "' needs more than " + std::to_string(link_limit_) + " links between its " +
-                     std::to_string(forest_.patch_count()) + " patches and their elements, " +
+    throw InputError("'" + state_.scene.name + "' needs more than " + std::to_string(link_limit_) +
+                     " links between its " + std::to_string(forest_.patch_count()) + " patches and their elements, " +
                      std::to_string(sizeof(Link)) +
                      " bytes each: raise epsilon or min_area, lower rays, or use a method without links, such as "
                      "hsrr");

@@ -86,7 +86,7 @@ class LinkedElements : public IterationMethod {
     ExchangeEstimator estimator_;
     std::size_t link_limit_;
     std::vector<Link> links_;
-    std::vector<LinkCandidate> candidates_;  // that are not links yet
+    std::vector<LinkCandidate> candidates_;            // that are not links yet
     double light_change_ = 0, importance_change_ = 0;  // of the last sweep
     std::int64_t rays_ = 0;
     int sweeps_ = 0;

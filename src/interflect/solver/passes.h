@@ -11,9 +11,9 @@ namespace interflect {
 /// A pass under way: what one bounce leaves to the next.
 struct Pass {
     bool is_under_way = false;
-    bool emits = true;         ///< The next bounce is the first.
-    FreshEstimate fresh;       ///< What all bounces so far brought.
-    std::vector<Rgb> unshot;   ///< Of that, what is to be shot next.
+    bool emits = true;        ///< The next bounce is the first.
+    FreshEstimate fresh;      ///< What all bounces so far brought.
+    std::vector<Rgb> unshot;  ///< Of that, what is to be shot next.
     ImportanceWeights weights;
     BounceBudget budget;
     double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce, see PowerStep.
@@ -64,13 +64,13 @@ class Passes : public IterationMethod {
     double unshot_rays_ = 0;
     /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
     double bounces_ = 0;
-    bool finds_importance_ = false;                // before the next iteration: the views have changed
-    std::vector<float> old_q_, old_importance_;    // how rays were shared before, and by what, of patches
+    bool finds_importance_ = false;              // before the next iteration: the views have changed
+    std::vector<float> old_q_, old_importance_;  // how rays were shared before, and by what, of patches
     std::int64_t rays_before_adaptation_ = 0;
-    bool is_final_ = false;               // no other pass will shoot what this one leaves
-    RgbD escaped_power_{0, 0, 0};         // of this iteration
+    bool is_final_ = false;        // no other pass will shoot what this one leaves
+    RgbD escaped_power_{0, 0, 0};  // of this iteration
     bool importance_step_is_done_ = false;
-    std::int64_t rays_before_ = 0;        // this iteration
+    std::int64_t rays_before_ = 0;  // this iteration
     std::uint32_t elements_before_ = 0;
 };
 

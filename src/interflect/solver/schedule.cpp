@@ -59,8 +59,9 @@ IterationPlan Schedule::next(double seconds) {
     const std::int64_t left = options_.rays - rays_;
     std::int64_t rays = smallest_;
     if (options_.rays_per_iteration == 0 && !warming_up)
-        rays = std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)), smallest_,
-                          largest_iteration);
+        rays =
+            std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)),
+                       smallest_, largest_iteration);
     // A long one is lost if it is cut short: there is a short one before it, so that then something is known.
     const bool counts_iterations = options_.iterations > 0 || options_.warm_up > 0;
     if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;

@@ -29,7 +29,7 @@ struct Solver::Run {
     bool is_prepared = false, is_finished = false;
     double error = std::numeric_limits<double>::infinity();  // estimated, for the present views
     int iteration = 0;
-    IterationPlan plan;                       // of the iteration under way; 0 rays: there is none
+    IterationPlan plan;                // of the iteration under way; 0 rays: there is none
     std::optional<Solution> finished;  // solution() as of now
 
     void iterate_until(const Limits& limits);

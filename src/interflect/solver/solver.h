@@ -15,7 +15,8 @@ namespace interflect {
 
 /// How far Solver::advance() goes: to the first of these.
 struct Limits {
-    std::int64_t rays = std::numeric_limits<std::int64_t>::max();  ///< More than there are; the last iteration is whole.
+    std::int64_t rays =
+        std::numeric_limits<std::int64_t>::max();  ///< More than there are; the last iteration is whole.
     /// Time from now on [s]. No step of rays begins later, but one is always traced.
     double seconds = std::numeric_limits<double>::infinity();
     double error = 0;  ///< Estimated relative error (IterationReport::error_estimate).
@@ -26,8 +27,8 @@ struct AdvanceReport {
     double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite as long as it is not known.
     std::int64_t rays = 0;                                   ///< Since the run began.
     double seconds = 0;                                      ///< Spent in advance(), likewise.
-    bool is_finished = false;  ///< There is nothing left to do within SolveOptions.
-    bool is_stopped = false;   ///< Monitor::stop ended it.
+    bool is_finished = false;                                ///< There is nothing left to do within SolveOptions.
+    bool is_stopped = false;                                 ///< Monitor::stop ended it.
 };
 
 /// Solves Eq. 1 of Prikryl et al. 2000 step by step: each iteration shoots N rays, chosen by power (Eq. 3) or by power

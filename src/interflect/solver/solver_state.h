@@ -49,7 +49,8 @@ struct SolverState {
     std::function<void(const IterationReport&)> on_report;
     StopRequest stop;  // by the caller; once there is a first estimate, by the limit of time too
     StopRequest::Clock::time_point start;
-    StopRequest::Clock::time_point last_step = StopRequest::Clock::time_point::max();  // none begins later, but the first
+    StopRequest::Clock::time_point last_step =
+        StopRequest::Clock::time_point::max();  // none begins later, but the first
     bool has_traced_step = false;
     double earlier_seconds = 0;  // that earlier work took
 

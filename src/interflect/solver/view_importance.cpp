@@ -59,9 +59,8 @@ void ViewImportance::archive(StateArchive& archive) {
 }
 
 bool ViewImportance::fits(const ElementForest& forest) const {
-    return std::all_of(points_.begin(), points_.end(), [&](const Point& p) {
-        return p.leaf < forest.size() && p.patch == forest.patch(p.leaf);
-    });
+    return std::all_of(points_.begin(), points_.end(),
+                       [&](const Point& p) { return p.leaf < forest.size() && p.patch == forest.patch(p.leaf); });
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
