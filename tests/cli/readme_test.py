@@ -42,7 +42,7 @@ class Readme(CommandTest):
             for line in output:
                 if line.strip() != "...":
                     self.assertIn(line, printed, example)
-        self.assertEqual(subcommands, {"info", "solve", "render", "compare", "bench", "make-scene"})
+        self.assertEqual(subcommands, {"info", "solve", "resume", "render", "compare", "bench", "make-scene"})
 
 
 if __name__ == "__main__":

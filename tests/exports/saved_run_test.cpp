@@ -229,11 +229,11 @@ TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
 }
 
 // In a closed box of grey walls that all shine, H = M / (1 - rho) everywhere, whatever was looked at before. The mean
-// over the walls of 24 runs has a standard error below 0.2%, so 1.2% would be noticed; false alarms once in 10^9.
+// over the walls of 24 runs has a standard error below 0.3%, so 1.8% would be noticed; false alarms once in 10^9.
 TEST(ChangeOfViews, StaysUnbiased) {
     SolveOptions options;
     options.method = find_method("ihsrr");
-    options.rays = 50'000;
+    options.rays = 20'000;
     const View views[] = {{"a", {0.3f, 0.4f, 0.5f}, {0.9f, 1.9f, 2.9f}}, {"b", {0.3f, 1.4f, 2.5f}, {0.9f, 0.1f, 0.1f}}};
     const Scene scene = closed_box({1, 2, 3}, 3, {{"wall", Rgb(0.6f), Rgb(2)}});
     double sum = 0, squares = 0;
@@ -245,7 +245,7 @@ TEST(ChangeOfViews, StaysUnbiased) {
         solver.advance({});
         for (const int v : {1, 0, 1}) {
             solver.set_views({{views[v]}});
-            solver.advance({.rays = 20'000});
+            solver.advance({.rays = 10'000});
         }
         const double power = solver.solution().iterations.back().total_power.x;
         sum += power, squares += power * power;
@@ -253,7 +253,7 @@ TEST(ChangeOfViews, StaysUnbiased) {
     const double mean = sum / runs, exact = 22 * 2 / (1 - 0.6);
     const double standard_error = std::sqrt((squares / runs - mean * mean) / (runs - 1));
     EXPECT_NEAR(mean, exact, 6 * standard_error);
-    EXPECT_LT(standard_error, 0.002 * exact) << "else the test would notice nothing";
+    EXPECT_LT(standard_error, 0.003 * exact) << "else the test would notice nothing";
 }
 
 TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {

@@ -6,6 +6,7 @@
 #include <interflect/render/render.h>
 #include <interflect/scene/scene.h>
 #include <interflect/solver/solve.h>
+#include <interflect/solver/solver.h>
 
 #include <array>
 #include <cmath>
@@ -53,6 +54,13 @@ int main() {
 
     interflect::write_solution("cube.h5", scene, solution);
     expect(interflect::read_solution("cube.h5").solution.irradiance == solution.irradiance, "to read what was written");
+
+    interflect::Solver solver(scene, {.rays = 100'000});
+    while (!solver.advance({.rays = 10'000}).is_finished) solver.save("run.h5");
+    solver = interflect::Solver::open("run.h5");
+    solver.advance({});
+    expect(solver.solution().irradiance == solution.irradiance,
+           "a run in steps, saved and opened, to have the same bits");
 
     const interflect::View view{.name = "inside", .eye = {0.5f, 0.5f, 0.5f}};
     const auto picture =
