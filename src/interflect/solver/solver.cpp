@@ -100,7 +100,7 @@ std::shared_ptr<const RayCaster> caster_of(const Scene& scene, const SolveOption
 Solver::Solver(Scene scene, const SolveOptions& options)
     : Solver(std::make_shared<const Scene>(std::move(scene)), options) {}
 
-Solver::Solver(std::shared_ptr<const Scene> scene, const SolveOptions& options)
+Solver::Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& options)
     : Solver(scene, caster_of(*scene, options), options) {}
 
 Solver::Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,

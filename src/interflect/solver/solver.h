@@ -44,7 +44,7 @@ class Solver {
     /// @throws InputError listing every option out of range and every fault of the scene; for a view that defines no
     /// picture. A scene without light is legal.
     Solver(Scene scene, const SolveOptions& options);
-    Solver(std::shared_ptr<const Scene> scene, const SolveOptions& options);
+    Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& options);
     /// @param ray_caster  Of the same scene, otherwise InputError.
     Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
            const SolveOptions& options);
