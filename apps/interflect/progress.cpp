@@ -15,6 +15,7 @@ namespace {
 
 constexpr int bar_width = 24;
 constexpr double seconds_between_lines = 2;  // where stderr is no terminal
+constexpr double least_fraction = 1e-5;      // of the work; below, the time left is not known
 
 bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
 
@@ -51,24 +52,30 @@ double fraction_done(const SolveOptions& options, const IterationReport& report)
 ProgressBar::ProgressBar() : terminal_(stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() {
-    if (terminal_) print("\n");
+    if (terminal_)
+        print("\n");
+    else
+        print(not_shown_);
 }
 
 void ProgressBar::show(const WorkDone& work) {
     const double fraction = work.fraction;
-    if (!terminal_ && fraction < 1 && work.seconds < last_shown_ + seconds_between_lines) return;
-    last_shown_ = work.seconds;
     const std::string error = work.error ? "error " + percent(*work.error) + ", " : std::string();
-    const std::string left = fraction > 0 ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
+    const std::string left =
+        fraction > least_fraction ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
     const std::string text =
         fmt::format("{:3.0f}%  {} rays, {}/s, {}{} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
                     magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
-    if (!terminal_) {
+    if (terminal_) {
+        const auto filled = static_cast<std::size_t>(std::lround(bar_width * fraction));
+        print(fmt::format("\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text));
+    } else if (work.seconds < last_shown_ + seconds_between_lines) {
+        not_shown_ = text + "\n";
+    } else {
         print(text + "\n");
-        return;
+        not_shown_.clear();
+        last_shown_ = work.seconds;
     }
-    const auto filled = static_cast<std::size_t>(std::lround(bar_width * fraction));
-    print(fmt::format("\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text));
 }
 
 }  // namespace interflect::command

@@ -16,7 +16,7 @@ struct WorkDone {
     std::optional<double> error;  ///< Estimated relative error, if it has one; infinite where not known yet.
 };
 
-/// Shows it on stderr: one line that is written over on a terminal, else a line now and then.
+/// Shows it on stderr: one line that is written over on a terminal, else a line now and then, and the last one.
 class ProgressBar {
   public:
     ProgressBar();
@@ -28,6 +28,7 @@ class ProgressBar {
   private:
     bool terminal_;
     double last_shown_ = -1e9;  // [s]
+    std::string not_shown_;     // a later line
 };
 
 /// Share of the work that is done, by whichever limit comes first, in [0, 1].

@@ -65,6 +65,24 @@ class Progress(CommandTest):
         self.assertRegex(said, r"/s, error \d{3,4}%,")
         self.assertRegex(said, r"relative error \d{3,4}% ")
 
+    # Seen to fail when the time left is extrapolated from the share of the default limit of rays.
+    def test_time_left_is_not_known_before_the_error_is(self):
+        until = ("--until", "30%", "--mesh-size", "0.5")
+        first = self.interflect("solve", "room.mgf", "-o", "out.h5", *until).stderr.splitlines()[0]
+        self.assertRegex(first, r"^  0%  .* rays, .*/s, error -, - left$")
+
+    # Seen to fail when each report of the whole work has a line, and when the first batch is said to have no error.
+    def test_path_tracing_to_an_error(self):
+        path = ("--shading", "path", "--size", "128x72", "--until", "2%", "--max-samples", "4096")
+        start = time.monotonic()
+        *shown, summary, _ = self.interflect("render", "room.mgf", "-o", "out.exr", *VIEW, *path).stderr.splitlines()
+        seconds = time.monotonic() - start
+        self.assertLess(len(shown), seconds / 2 + 3, shown)
+        self.assertIn("100%", shown[-1])
+        self.assertRegex(summary, "^info: path tracing: ")
+        for line in shown:
+            self.assertNotIn("error 0%", line)
+
     def test_bar_on_a_terminal(self):
         text = self.on_terminal()
         shown = text.split("\r\x1b[K")[1:]

@@ -114,7 +114,7 @@ TEST_F(DamagedFile, IsRefusedWithBytesAtItsEnd) {
         EXPECT_THAT(error_with(bytes + more), HasSubstr("the file is damaged: it has")) << more.size();
 }
 
-TEST_F(DamagedFile, SaysWhichPartIsDamaged) {
+TEST_F(DamagedFile, NamesTheDamagedPart) {
     const std::string bytes = contents(path_);
     const auto flipped = [&](std::size_t at) { return error_with_flipped(at, bytes[at], 1); };
     EXPECT_THAT(flipped(bytes.find("interflect solution")), HasSubstr("the checksum of /description differs"));

@@ -292,7 +292,7 @@ TEST_F(SolutionFile, HasTheSameBytesForTheSameInput) {
     EXPECT_GT(bytes.size(), 0u);
 }
 
-TEST_F(SolutionFile, SaysWhatIsWrongWithAPath) {
+TEST_F(SolutionFile, ExplainsWhatIsWrongWithAPath) {
     EXPECT_THAT(error_of(folder_.path() / "missing.h5"), HasSubstr("no such file"));
     EXPECT_THAT(error_of(folder_.path()), HasSubstr("is a folder"));
 }

@@ -332,7 +332,7 @@ TEST(Mgf, FaceOfFewerThanThreeVerticesIsLeftOutWithAWarning) {
     EXPECT_EQ(warnings(scene, "degenerate-face"), 2);
 }
 
-TEST(Mgf, FaceThatCrossesItselfSaysSo) {
+TEST(Mgf, FaceThatCrossesItselfIsReportedAsSuch) {
     const Scene scene = read_faces("f a b e d\nf a b d\n");
     EXPECT_EQ(scene.patches.size(), 1u);
     EXPECT_EQ(scene.warnings.entries()[0].message.find("face whose outline crosses itself"), 0u);

@@ -80,7 +80,7 @@ TEST(Legend, HasAStripOfTheColours) {
     EXPECT_GT(rows, 5);
 }
 
-TEST(Legend, SaysWhatItShowsAndHowMuch) {
+TEST(Legend, ShowsTheTitleAndTheRange) {
     const auto legend = [](const ColourScale& of, const std::string& title) {
         return with_legend(Image(640, 1), of, title).pixels;
     };

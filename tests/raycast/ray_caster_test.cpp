@@ -390,7 +390,7 @@ TEST(RayCaster, KnowsItsScene) {
         EXPECT_THROW(ray_caster.require_made_for(other), InputError);
 }
 
-TEST(RayCaster, SaysHowMuchMemoryItHolds) { EXPECT_GT(RayCaster(grey_box()).memory(), 54u * sizeof(V3f)); }
+TEST(RayCaster, ReportsItsMemory) { EXPECT_GT(RayCaster(grey_box()).memory(), 54u * sizeof(V3f)); }
 
 class PreparedRayInterfaces : public testing::TestWithParam<RayInterface> {};
 INSTANTIATE_TEST_SUITE_P(All, PreparedRayInterfaces,

@@ -40,7 +40,7 @@ const std::vector<Point> points_of_surfaces = {
     {V3f(1.5f, 4.2f, 2.3f), V3f(0, 1, 0)}, {V3f(8, 8, 0.1f), V3f(-0.6f, 0, 0.8f)},  {V3f(-5, 0, 8), V3f(0, 0, -1)}};
 
 /// What choose() does for evenly spaced numbers is what probability() says, but for the numbers at the borders.
-TEST(LightTree, ChoosesWithTheProbabilityThatItTells) {
+TEST(LightTree, ChoosesWithTheStatedProbability) {
     const Scene scene = lamps();
     const LightTree tree(scene, geometry_of(scene));
     constexpr int count = 100'000;

@@ -385,7 +385,23 @@ TEST(PathTracer, CountsRaysAndStopsAtMaxSamples) {
     EXPECT_FALSE(seen.interrupted);
 }
 
-TEST(PathTracer, EndsWhenToldTo) {
+/// Seen to fail when it is 0 as long as pixels have one batch, which has no spread.
+TEST(PathTracer, ErrorIsUnknownUntilEveryPixelHasASpread) {
+    Scene scene;
+    add_rectangle(scene, V3f(-9, -9, 0), V3f(18, 0, 0), V3f(0, 18, 0), add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1)));
+    const View view{"lamp", V3f(0, 0, 1), V3f(0, 0, 0), V3f(0, 1, 0), 60};
+    std::vector<double> errors;
+    const PathMonitor monitor{[&](const PathProgress& progress) { errors.push_back(progress.relative_error); }};
+    // Two batches of one path: 320,000, more than there are between two reports.
+    const PathTracing seen =
+        trace_paths(scene, RayCaster(scene), view, {.width = 400, .height = 400, .samples = 2}, monitor);
+    ASSERT_EQ(errors.size(), 2u);
+    EXPECT_TRUE(std::isinf(errors[0]));
+    EXPECT_EQ(errors[1], 0);
+    EXPECT_EQ(seen.relative_error, 0);
+}
+
+TEST(PathTracer, StopsOnRequest) {
     const Room room;
     std::atomic<bool> stop{false};
     int reports = 0;

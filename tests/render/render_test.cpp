@@ -218,7 +218,9 @@ TEST(Render, RefusesAForestOrARayCasterOfAnotherScene) {
     EXPECT_THROW(ElementVertices(made.scene, other_forest), InputError);
 }
 
-TEST(Render, TellsItsProgress) {
+/// Seen to fail when only the end is reported, when a report is of the rays before its batch, and when it counts pixels
+/// instead of rays.
+TEST(Render, ReportsItsProgress) {
     const OtherScene made;
     std::vector<PictureProgress> reports;
     const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
@@ -233,7 +235,7 @@ TEST(Render, TellsItsProgress) {
     EXPECT_FALSE(whole.interrupted);
 }
 
-TEST(Render, EndsWhenTold) {
+TEST(Render, StopsOnRequest) {
     const OtherScene made;
     std::atomic<bool> stop{false};
     int reports = 0;

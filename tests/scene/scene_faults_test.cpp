@@ -41,6 +41,7 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << 
 
 class SceneFaults : public testing::TestWithParam<Fault> {};
 
+/// Those of the origin seen to fail when it is not checked.
 TEST_P(SceneFaults, AreFoundAndNamed) {
     Scene scene = valid_scene();
     GetParam().make(scene);

@@ -30,7 +30,7 @@ TEST(FindView, FindsAViewByItsName) {
     EXPECT_EQ(&find_view(scene, "desk"), &scene.views[1]);
 }
 
-TEST(FindView, SaysWhichViewsThereAre) {
+TEST(FindView, ListsTheViewsThereAre) {
     Scene scene;
     scene.name = "room.mgf";
     EXPECT_THAT(error_of(scene, "desk"), AllOf(HasSubstr("room.mgf: "), HasSubstr("'desk'"), HasSubstr("--eye")));

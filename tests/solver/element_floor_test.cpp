@@ -1,7 +1,8 @@
 // How small elements may become: what a pixel of the nearest view shows of them; where no view looks, a length that
 // depends on the surfaces of the scene, not on the size of the world.
-// Meant to fail (not yet seen) with the cosine left out, with the first view in place of the nearest, with the scene's
-// origin ignored.
+// Seen to fail when the cosine is left out or a smaller one allowed, the first view takes the place of the nearest, the
+// scene's origin is ignored, the length for unseen elements grows with the world, what a pixel shows holds for unseen
+// elements too, or a given area holds for them alone.
 
 #include "interflect/solver/element_floor.h"
 

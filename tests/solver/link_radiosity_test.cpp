@@ -328,7 +328,7 @@ void solve_with_links(const Scene& scene, const SolveOptions& options, std::size
         elements.iterate(state, plan);
 }
 
-TEST(LinkRadiosity, SaysWhatToDoWhereThereAreTooManyLinks) {
+TEST(LinkRadiosity, NamesARemedyWhereThereAreTooManyLinks) {
     const Scene scene = colourful_box();
     try {
         solve_with_links(scene, unrefined(), 1000);

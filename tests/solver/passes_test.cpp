@@ -3,8 +3,8 @@
 // empty box; in a furnace, where irradiance is M / (1 - rho) everywhere. Correct code fails a test with a chance of
 // 0.001 (statistics.h) unless it says otherwise; seeds are fixed.
 //
-// Meant to fail (not yet seen): the irradiance that a pass did not shoot is dropped (TotalPower at high reflectance);
-// it is handed on without the ratio of the passes' rays; passes are averaged with equal weights.
+// Seen to fail when the irradiance that a pass did not shoot is dropped, when it is handed on without the ratio of the
+// passes' rays (TotalPower, FurnaceOfPasses), when every bounce emits, and when passes are averaged with equal weights.
 
 #include <gtest/gtest.h>
 

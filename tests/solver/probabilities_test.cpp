@@ -1,5 +1,6 @@
 // The weights that rays are handed out by, Eq. 3 and 8-11 of Prikryl et al. 2000, on figures that can be checked by
-// hand. Seen to fail when an area is missing, or rho in Eq. 8.
+// hand. Seen to fail when an area is missing, or rho in Eq. 8, when infinite weights are kept, and when they are not
+// counted.
 
 #include "interflect/solver/probabilities.h"
 
@@ -56,7 +57,7 @@ TEST_F(Weights, OfPowerAreTheSumOfTheChannelsTimesTheArea) {
     EXPECT_THAT(of_leaves(&SamplingWeights::power), ElementsAre(6, 6, 0, 3, 6));
 }
 
-TEST_F(Weights, OfWhatIsNotFiniteAreZeroAndItIsTold) {
+TEST_F(Weights, OfWhatIsNotFiniteAreZeroAndItIsReported) {
     irradiance_[2].y = std::numeric_limits<float>::infinity();
     irradiance_[5].x = std::nanf("");
     const Radiosity light(materials_, irradiance_);

@@ -1,6 +1,6 @@
 // How much power rays carry: the largest and the quantiles over the mean, by bins of a quarter of an octave.
-// Meant to fail (not yet seen) when a bin counts rays once, not as many as were added, and when rays of an operand are
-// dropped.
+// Seen to fail when a bin, or all of them, count rays once, not as many as were added, when rays of an operand are
+// dropped or not counted, and when a quantile may exceed the largest.
 
 #include "interflect/solver/quanta.h"
 

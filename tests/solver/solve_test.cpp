@@ -314,7 +314,7 @@ TEST(Solve, RefusesViewsThatCannotBeLookedAtTogether) {
     }
 }
 
-TEST(Solve, SaysHowManyElementsThereMustBe) {
+TEST(Solve, NamesTheLeastNumberOfElements) {
     SolveOptions options = with_rays(1000);
     options.max_elements = 1;
     const Scene scene = colourful_box();

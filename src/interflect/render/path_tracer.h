@@ -52,7 +52,8 @@ struct PathTracing {
     /// Of each pixel and channel, in the same unit: from the spread of batches of paths, which are independent.
     Image standard_error;
     /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (means over
-    /// the channels), root mean square over the pixels; 0 for a picture without light.
+    /// the channels), root mean square over the pixels; 0 for a picture without light. Infinite where a pixel has fewer
+    /// than two batches of paths.
     double relative_error = 0;
     std::int64_t rays = 0;         ///< Camera rays, reflected rays and shadow rays.
     std::int64_t shadow_rays = 0;  ///< Of these.

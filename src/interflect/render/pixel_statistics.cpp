@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace interflect {
 
@@ -40,6 +41,8 @@ std::vector<double> mean_along(const std::vector<double>& values, std::size_t li
 }  // namespace
 
 double relative_error(const std::vector<PixelStatistics>& pixels) {
+    const auto has_spread = [](const PixelStatistics& p) { return p.batches > 1; };
+    if (!std::all_of(pixels.begin(), pixels.end(), has_spread)) return std::numeric_limits<double>::infinity();
     const double picture_mean = mean_reflected(pixels);
     double sum = 0;
     for (const PixelStatistics& p : pixels) {

@@ -32,7 +32,7 @@ struct PixelStatistics {
 };
 
 /// The root mean square over the pixels of standard error over mean, each pixel's mean at least the mean over the
-/// picture of what is reflected.
+/// picture of what is reflected; infinite where a pixel has fewer than two batches.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
 /// How many batches each pixel should have in all for the target, options.until, by the variance around it.
