@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -18,6 +21,18 @@ class BounceBudget {
     bool is_last() const { return is_last_ || left_ == 0; }
     /// Of this pass; what the bounces that it lacks would have to shoot is extrapolated.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
+
+    void archive(StateArchive& archive, const std::string& name) {
+        archive(name + "/rays", rays_);
+        archive(name + "/left", left_);
+        archive(name + "/bounces", bounces_);
+        archive(name + "/fewest", fewest_);
+        archive(name + "/least_left", least_left_);
+        archive(name + "/last_unshot", last_unshot_);
+        archive(name + "/unshot_sum", unshot_sum_);
+        archive(name + "/decay", decay_);
+        archive(name + "/is_last", is_last_);
+    }
 
   private:
     std::int64_t rays_ = 0, left_ = 0;

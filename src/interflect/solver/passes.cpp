@@ -178,30 +178,29 @@ std::vector<float> power_sampling(const SolverState& state) {
     return power_step(state.materials, state.solution, light, weights, false, 0).step.q;
 }
 
-/// What the leaves' light matters to the views, by element: power times importance.
-std::vector<double> contributions(const SolverState& state, const std::vector<float>& importance) {
-    const Radiosity light(state.materials, state.solution.irradiance);
-    std::vector<double> sums(state.forest->size(), 0.0);
-    for (std::uint32_t e = 0; e < sums.size(); ++e)
-        if (state.forest->is_leaf(e))
-            sums[e] = static_cast<double>(channel_sum(light.of(*state.forest, e))) * state.forest->area(e) *
-                      importance[state.forest->patch(e)];
-    return sums;
+/// Importance of every patch, all together.
+std::vector<float> patch_importance(const SolverState& state) {
+    const Importance psi = importance_of(state.solution);
+    std::vector<float> values;
+    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) values.push_back(psi[i]);
+    return values;
 }
 
-/// By how much the variance of what matters to some views changes per ray when rays start otherwise: a source's light
-/// comes in quanta in proportion to its power over its share of the rays.
+/// By how much the variance of what some views see changes per ray when rays start otherwise: a source's light comes in
+/// quanta in proportion to its power over its share of the rays, and counts by what it matters to the views.
+/// @param importance  Of patches.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {
     constexpr double largest = 256;
+    const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
-    const std::vector<double> contribution = contributions(state, importance);
     double before = 0, now = 0;
-    for (std::uint32_t e = 0; e < contribution.size(); ++e) {
-        if (!(contribution[e] > 0 && old_q[e] > 0 && new_q[e] > 0)) continue;
-        const double power = static_cast<double>(channel_sum(light.of(*state.forest, e))) * state.forest->area(e);
-        before += contribution[e] * power / old_q[e];
-        now += contribution[e] * power / new_q[e];
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        if (!forest.is_leaf(e) || !(old_q[e] > 0) || !(new_q[e] > 0)) continue;
+        const double power = static_cast<double>(channel_sum(light.of(forest, e))) * forest.area(e);
+        const double matters = power * importance[forest.patch(e)];
+        before += matters * power / old_q[e];
+        now += matters * power / new_q[e];
     }
     return before > 0 ? static_cast<float>(std::clamp(now / before, 1 / largest, largest)) : 1.0f;
 }
@@ -213,8 +212,7 @@ void Passes::retarget(SolverState& state) {
     const bool keeps_light = state.schedule.averaged_rays() > 0 && before == ImportanceUse::full;
     if (keeps_light && old_q_.empty()) {
         old_q_ = power_sampling(state);
-        const Importance psi = importance_of(state.solution);
-        for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) old_importance_.push_back(psi[i]);
+        old_importance_ = patch_importance(state);
     }
     IterationMethod::retarget(state);
     importance_ = {};
@@ -230,12 +228,12 @@ void Passes::adapt_to_views(SolverState& state) {
     start_importance(state, state.schedule.start_rays());
     finds_importance_ = false;
     state.schedule.count_other_rays(rays_so_far(state) - rays_before_adaptation_);
-    const std::vector<float> old_q = std::exchange(old_q_, {}), old_psi = std::exchange(old_importance_, {});
-    if (old_q.size() != state.forest->size()) return;
-    const std::vector<float> new_q = power_sampling(state);
-    const Importance psi = importance_of(state.solution);
-    std::vector<float> new_psi;
-    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) new_psi.push_back(psi[i]);
+    std::vector<float> old_q = std::exchange(old_q_, {});
+    const std::vector<float> old_psi = std::exchange(old_importance_, {});
+    if (old_q.empty()) return;
+    for (auto e = static_cast<std::uint32_t>(old_q.size()); e < state.forest->size(); ++e)
+        old_q.push_back(old_q[state.forest->parent(e)] / 4);  // elements that were made since
+    const std::vector<float> new_q = power_sampling(state), new_psi = patch_importance(state);
     const float here = noise_ratio(state, new_psi, old_q, new_q), there = noise_ratio(state, old_psi, old_q, new_q);
     std::vector<float> ratio(state.forest->patch_count());
     for (std::uint32_t i = 0; i < ratio.size(); ++i) {
@@ -245,14 +243,13 @@ void Passes::adapt_to_views(SolverState& state) {
     for (std::uint32_t e = 0; e < state.history.size(); ++e) state.history[e] *= ratio[state.forest->patch(e)];
     for (std::uint32_t e = 0; e < unshot_.size(); ++e) unshot_[e] *= ratio[state.forest->patch(e)];
     state.noise.scale_by_patch(*state.forest, ratio);
-    if (getenv("DBG")) fprintf(stderr, "here %g there %g\n", double(here), double(there));
 }
 
 void Passes::archive(StateArchive& archive) {
     archive("passes/stage", stage_);
     archive("passes/importance/is_under_way", importance_.is_under_way);
     archive("passes/importance/unshot", importance_.unshot);
-    archive("passes/importance/budget", importance_.budget);
+    importance_.budget.archive(archive, "passes/importance/budget");
     archive("passes/importance/left", importance_.left);
     archive("passes/pass/is_under_way", pass_.is_under_way);
     archive("passes/pass/emits", pass_.emits);
@@ -261,7 +258,7 @@ void Passes::archive(StateArchive& archive) {
     archive("passes/pass/unshot", pass_.unshot);
     archive("passes/pass/weights", pass_.weights.elements);
     archive("passes/pass/nearby", pass_.weights.nearby);
-    archive("passes/pass/budget", pass_.budget);
+    pass_.budget.archive(archive, "passes/pass/budget");
     archive("passes/pass/first_power", pass_.first_power);
     archive("passes/pass/first_weighted_power", pass_.first_weighted_power);
     archive("passes/unshot", unshot_);
@@ -284,8 +281,8 @@ bool Passes::fits(const ElementForest& forest) const {
     const bool importance_fits = !importance_.is_under_way || importance_.unshot.size() == forest.size();
     return stage_ >= Stage::importance && stage_ <= Stage::done && pass_fits && importance_fits &&
            is_whole(pass_.fresh.irradiance) && is_whole(pass_.fresh.variance) && is_whole(pass_.weights.elements) &&
-           is_whole(unshot_) && is_whole(old_q_) &&
-           (old_q_.empty() || old_importance_.size() == forest.patch_count()) &&
+           is_whole(unshot_) && old_q_.size() <= forest.size() &&
+           (old_q_.empty() || (old_q_.size() >= forest.patch_count() && old_importance_.size() == forest.patch_count())) &&
            (pass_.weights.nearby.empty() || pass_.weights.nearby.size() == forest.patch_count()) &&
            elements_before_ <= forest.size();
 }

@@ -76,12 +76,9 @@ void Solver::Run::iterate_until(const Limits& limits) {
 
 /// With a forest of its own, since that of the run grows.
 Solution Solver::Run::snapshot() {
-    Solution& solution = state.solution;
-    std::vector<Rgb> irradiance = solution.irradiance;
-    method->finish(state);
-    std::swap(irradiance, solution.irradiance);
-    Solution copy = solution;
-    copy.irradiance = std::move(irradiance);
+    Solution copy = state.solution;
+    method->finish(state);  // changes irradiance
+    std::swap(copy, state.solution);
     const auto forest = std::make_shared<ElementForest>(*scene, state.forest->size());
     forest->rebuild(state.forest->subdivided());
     copy.forest = forest;

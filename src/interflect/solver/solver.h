@@ -16,7 +16,7 @@ namespace interflect {
 /// How far Solver::advance() goes: to the first of these.
 struct Limits {
     std::int64_t rays =
-        std::numeric_limits<std::int64_t>::max();  ///< More than there are; the last iteration is whole.
+        std::numeric_limits<std::int64_t>::max();  ///< Beyond those so far; the last iteration is whole.
     /// Time from now on [s]. No step of rays begins later, but one is always traced.
     double seconds = std::numeric_limits<double>::infinity();
     double error = 0;  ///< Estimated relative error (IterationReport::error_estimate).
