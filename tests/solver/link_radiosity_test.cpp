@@ -7,7 +7,7 @@
 // the oracle lacks psi or rho, doubts nothing where a link is partly or wholly hidden, or takes no account of the form
 // factor's spread, rays, links or the smallest area are not limited, sweeps end before the light has converged.
 
-#include "interflect/solver/link_radiosity.h"
+#include "interflect/solver/methods/link_radiosity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@
 #include <ostream>
 
 #include "interflect/base/error.h"
-#include "interflect/solver/exchange.h"
 #include "interflect/solver/materials.h"
+#include "interflect/solver/methods/exchange.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"

@@ -1,11 +1,11 @@
 #include "interflect/solver/iteration_method.h"
 
 #include "interflect/solver/detail.h"
-#include "interflect/solver/link_radiosity.h"
-#include "interflect/solver/one_bounce.h"
-#include "interflect/solver/passes.h"
-#include "interflect/solver/random_walk.h"
-#include "interflect/solver/well_distributed.h"
+#include "interflect/solver/methods/link_radiosity.h"
+#include "interflect/solver/methods/one_bounce.h"
+#include "interflect/solver/methods/passes.h"
+#include "interflect/solver/methods/random_walk.h"
+#include "interflect/solver/methods/well_distributed.h"
 
 namespace interflect {
 

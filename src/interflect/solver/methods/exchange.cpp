@@ -1,4 +1,4 @@
-#include "interflect/solver/exchange.h"
+#include "interflect/solver/methods/exchange.h"
 
 #include <algorithm>
 #include <cmath>

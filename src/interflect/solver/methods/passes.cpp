@@ -1,4 +1,4 @@
-#include "interflect/solver/passes.h"
+#include "interflect/solver/methods/passes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -282,7 +282,8 @@ bool Passes::fits(const ElementForest& forest) const {
     return stage_ >= Stage::importance && stage_ <= Stage::done && pass_fits && importance_fits &&
            is_whole(pass_.fresh.irradiance) && is_whole(pass_.fresh.variance) && is_whole(pass_.weights.elements) &&
            is_whole(unshot_) && old_q_.size() <= forest.size() &&
-           (old_q_.empty() || (old_q_.size() >= forest.patch_count() && old_importance_.size() == forest.patch_count())) &&
+           (old_q_.empty() ||
+            (old_q_.size() >= forest.patch_count() && old_importance_.size() == forest.patch_count())) &&
            (pass_.weights.nearby.empty() || pass_.weights.nearby.size() == forest.patch_count()) &&
            elements_before_ <= forest.size();
 }

@@ -1,4 +1,4 @@
-#include "interflect/solver/random_walk.h"
+#include "interflect/solver/methods/random_walk.h"
 
 #include <algorithm>
 #include <cmath>

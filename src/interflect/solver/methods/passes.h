@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "interflect/solver/bounce_budget.h"
 #include "interflect/solver/iteration_method.h"
+#include "interflect/solver/methods/bounce_budget.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

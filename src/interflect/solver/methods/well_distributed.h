@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interflect/solver/iteration_method.h"
-#include "interflect/solver/passes.h"
+#include "interflect/solver/methods/passes.h"
 
 namespace interflect {
 

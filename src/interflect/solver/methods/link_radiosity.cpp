@@ -1,4 +1,4 @@
-#include "interflect/solver/link_radiosity.h"
+#include "interflect/solver/methods/link_radiosity.h"
 
 #include <algorithm>
 #include <atomic>

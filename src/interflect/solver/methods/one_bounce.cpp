@@ -1,4 +1,4 @@
-#include "interflect/solver/one_bounce.h"
+#include "interflect/solver/methods/one_bounce.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "interflect/solver/bounce_budget.h"
+#include "interflect/solver/methods/bounce_budget.h"
 
 #include <algorithm>
 #include <cmath>

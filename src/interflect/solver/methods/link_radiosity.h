@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/solver/exchange.h"
 #include "interflect/solver/iteration_method.h"
+#include "interflect/solver/methods/exchange.h"
 
 namespace interflect {
 
