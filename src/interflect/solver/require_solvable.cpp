@@ -38,8 +38,9 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     for (const WeightedView& v : o.views)
         require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");
-    require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
-            "importance: a method that keeps every ray needs rays of equal power, which importance does not give");
+    require(!o.method.no_importance || o.method.importance == ImportanceUse::off,
+            fmt::format("importance: {} cannot be steered by it, since {}", o.method.name,
+                        o.method.no_importance ? o.method.no_importance : ""));
     require_no_faults(faults, "cannot solve", scene);
 }
 

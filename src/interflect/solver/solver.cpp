@@ -20,7 +20,7 @@ struct Solver::Run {
         : scene(std::move(s)),
           ray_caster(std::move(caster)),
           state(*scene, *ray_caster, options),
-          method(make_iteration_method(state)) {}
+          method(state.options.method.make(state)) {}
 
     const std::shared_ptr<const Scene> scene;
     const std::shared_ptr<const RayCaster> ray_caster;
@@ -55,7 +55,7 @@ IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
 void Solver::Run::iterate_until(const Limits& limits) {
     const std::int64_t all = std::numeric_limits<std::int64_t>::max(), before = state.schedule.rays();
     const std::int64_t rays_asked_for = limits.rays < all - before ? before + limits.rays : all;
-    if (state.options.method.scheme == Scheme::links) limit_time();  // others find a first estimate at any price
+    if (!state.options.method.is_stochastic) limit_time();  // others find a first estimate at any price
     if (!is_prepared) method->prepare(state);
     is_prepared = true;
     limit_time();

@@ -23,7 +23,7 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
     constexpr std::size_t per_element = ElementForest::reserved_per_element + Arrivals::reserved_per_element;
     if (!options.method.refines) return scene.patches.size();
-    if (options.method.scheme == Scheme::links) return options.max_elements;
+    if (!options.method.is_stochastic) return options.max_elements;  // it knows what it makes
     const std::size_t fitting = free_address_space() / 2 / per_element;
     return std::min(largest,
                     options.max_elements + std::min(excess, fitting - std::min(fitting, options.max_elements)));
@@ -157,8 +157,7 @@ void SolverState::archive(StateArchive& archive) {
     forest->rebuild(parents);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
-    const bool has_noise = options.method.scheme != Scheme::links;
-    require(!has_noise || (history.size() == elements && noise.elements() == elements),
+    require(!options.method.is_stochastic || (history.size() == elements && noise.elements() == elements),
             "expected the noise of every element");
     require(streams.used.size() <= elements, "expected points of elements that there are");
     require(solution.indirect_importance.size() == (view.empty() ? 0 : elements),
