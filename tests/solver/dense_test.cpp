@@ -112,8 +112,6 @@ class DenseSolutionOfMethod : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(All, DenseSolutionOfMethod, testing::ValuesIn(stochastic_variants()),
                          [](const auto& test) { return test.param.name; });
 
-INSTANTIATE_TEST_SUITE_P(Others, DenseSolutionOfMethod, testing::ValuesIn(variants_of_other_methods()),
-                         [](const auto& test) { return test.param.name; });
 INSTANTIATE_TEST_SUITE_P(KeptRays, DenseSolutionOfMethod, testing::ValuesIn(variants_that_keep_every_ray()),
                          [](const auto& test) { return test.param.name; });
 INSTANTIATE_TEST_SUITE_P(Extremes, DenseSolutionOfMethod, testing::ValuesIn(extreme_variants()),

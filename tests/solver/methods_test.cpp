@@ -14,7 +14,6 @@
 
 #include <cmath>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "interflect/geometry/patch_geometry.h"
@@ -31,33 +30,43 @@ namespace {
 using namespace testing_support;
 
 constexpr std::uint64_t runs = 24;
+constexpr std::int64_t rays_of_run = 400'000;
 
-/// A method, and whether it has a view.
-class EveryMethod : public testing::TestWithParam<std::tuple<Variant, bool>> {
+class EveryMethod : public testing::TestWithParam<Variant> {
   protected:
     SolveOptions options(std::int64_t rays, std::uint64_t seed) const {
-        const auto& [variant, has_view] = GetParam();
-        SolveOptions o = variant.options;
-        if (has_view) o.views = {{into_the_corner}};
+        SolveOptions o = GetParam().options;
         o.camera_rays = 4000;
         o.rays = rays;
         o.seed = seed;
         return o;
     }
 
-    std::vector<Solution> solutions(const Scene& scene, std::int64_t rays) const {
+    std::vector<Solution> solutions(const Scene& scene) const {
         const RayCaster ray_caster(scene);
         std::vector<Solution> all;
-        for (std::uint64_t seed = 1; seed <= runs; ++seed) all.push_back(solve(scene, ray_caster, options(rays, seed)));
+        for (std::uint64_t seed = 1; seed <= runs; ++seed)
+            all.push_back(solve(scene, ray_caster, options(rays_of_run, seed)));
         return all;
     }
 };
 
-std::string name_of(const testing::TestParamInfo<std::tuple<Variant, bool>>& test) {
-    return std::get<0>(test.param).name + (std::get<1>(test.param) ? "_with_view" : "");
+/// Each method as it is without a view, and with importance where that can steer it.
+std::vector<Variant> with_and_without_importance() {
+    std::vector<Variant> variants;
+    for (Variant v : variants_of_other_methods()) {
+        v.options.method.importance = ImportanceUse::off;
+        variants.push_back(v);
+        if (v.options.method.no_importance) continue;
+        v.name += "_with_importance";
+        v.options.method.importance = ImportanceUse::full;
+        v.options.views = {{into_the_corner}};
+        variants.push_back(v);
+    }
+    return variants;
 }
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
-                         testing::Combine(testing::ValuesIn(variants_of_other_methods()), testing::Bool()), name_of);
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(with_and_without_importance()),
+                         [](const auto& test) { return test.param.name; });
 
 /// p-value of the hypothesis that the expected values of all patches and channels are these, times a factor.
 double p_value(const std::vector<Solution>& solutions, const std::vector<RgbD>& expected, double factor) {
@@ -92,11 +101,11 @@ TEST_P(EveryMethod, FillsAFurnaceEvenly) {
     for (const double rho : {0.0, 0.5, 0.9}) {
         const Scene scene =
             closed_box({1, 2, 3}, 3, {{"wall", Rgb(static_cast<float>(rho)), Rgb(static_cast<float>(exitance))}});
-        const std::vector<Solution> sample = solutions(scene, 100'000);
+        const std::vector<Solution> sample = solutions(scene);
         const std::vector<RgbD> expected(scene.patches.size(), RgbD(exitance / (1 - rho)));
         EXPECT_GT(p_value(sample, expected, 1), false_alarm) << "rho " << rho;
         EXPECT_LT(p_value(sample, expected, 1.03), false_alarm) << "would notice 3%, rho " << rho;
-        EXPECT_LT(p_value_of_mean(scene, sample, expected, 1.01), false_alarm) << "would notice 1%, rho " << rho;
+        EXPECT_LT(p_value_of_mean(scene, sample, expected, 1.015), false_alarm) << "would notice 1.5%, rho " << rho;
         for (const Solution& s : sample) EXPECT_EQ(s.iterations.back().escaped_rays + s.non_finite, 0);
     }
 }
@@ -105,7 +114,7 @@ TEST_P(EveryMethod, HasTheDenseSolutionAsItsMeanAndCountsWhatEscapes) {
     const Scene scene = open_colourful_box();
     const FormFactors f = exact_form_factors(scene);
     const std::vector<RgbD> exact = dense_irradiance(scene, f);
-    const std::vector<Solution> sample = solutions(scene, 100'000);
+    const std::vector<Solution> sample = solutions(scene);
     EXPECT_GT(p_value(sample, exact, 1), false_alarm);
     EXPECT_LT(p_value(sample, exact, 1.04), false_alarm) << "would notice 4%";
     EXPECT_GT(p_value_of_mean(scene, sample, exact, 1), false_alarm);
@@ -120,7 +129,7 @@ TEST_P(EveryMethod, HasTheDenseSolutionAsItsMeanAndCountsWhatEscapes) {
     std::vector<double> escaped;
     for (const Solution& s : sample) escaped.push_back(channel_sum(s.iterations.back().escaped_power));
     EXPECT_GT(t_test(escaped, escaping), false_alarm);
-    EXPECT_LT(t_test(escaped, 1.03 * escaping), false_alarm) << "would notice 3%";
+    EXPECT_LT(t_test(escaped, 1.05 * escaping), false_alarm) << "would notice 5%";
 }
 
 // The back of a one-sided face lets light through, one way only: a screen that faces the lamp leaves the wall behind it
@@ -134,7 +143,7 @@ TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
     reference.rays = 8'000'000;
     const Solution expected = solve(scene, ray_caster, reference);
     const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
-    const std::vector<Solution> sample = solutions(scene, 100'000);
+    const std::vector<Solution> sample = solutions(scene);
     EXPECT_GT(p_value(sample, exact, 1), false_alarm);
     EXPECT_LT(p_value(sample, exact, 1.05), false_alarm) << "would notice 5%";
 }
@@ -142,27 +151,30 @@ TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
 // Without a view the estimated error is that of all surfaces, which is known here. From eight seeds its root mean
 // square is known to some 10%.
 TEST_P(EveryMethod, ErrorFallsWithTheRaysAndIsReported) {
-    if (std::get<1>(GetParam())) return;
+    if (!GetParam().options.views.empty()) return;
     constexpr std::uint64_t seeds = 8;
     constexpr std::int64_t few = 100'000, many = 16 * few;
     const Scene scene = colourful_box();
     const RayCaster ray_caster(scene);
     const std::vector<RgbD> exact = dense_irradiance(scene, exact_form_factors(scene));
-    const auto error = [&](std::int64_t rays) {
+    const auto error = [&](std::int64_t rays, PointSet points) {
         double square = 0, estimated_square = 0;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-            const Solution s = solve(scene, ray_caster, options(rays, seed));
+            SolveOptions o = options(rays, seed);
+            o.points = points;
+            const Solution s = solve(scene, ray_caster, o);
             square += std::pow(relative_error(scene, s.irradiance, exact), 2) / seeds;
             estimated_square += std::pow(s.iterations.back().error_estimate, 2) / seeds;
         }
-        RecordProperty("estimate over error, " + std::to_string(rays) + " rays",
-                       std::to_string(std::sqrt(estimated_square / square)));
-        EXPECT_NEAR(std::sqrt(estimated_square / square), 1, 0.3) << rays << " rays";
+        const double estimate_over_error = std::sqrt(estimated_square / square);
+        EXPECT_GT(estimate_over_error, 0.75) << rays << " rays";
+        EXPECT_LT(estimate_over_error, points == PointSet::random ? 1.3 : 1.6) << rays << " rays";
         return std::sqrt(square);
     };
-    const double ratio = error(few) / error(many);
+    const double ratio = error(few, PointSet::random) / error(many, PointSet::random);
     EXPECT_GT(ratio, 3.3);
-    EXPECT_LT(ratio, 7);
+    EXPECT_LT(ratio, 5.5);
+    EXPECT_GT(error(few, PointSet::sobol) / error(many, PointSet::sobol), 3.3);
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ namespace {
 /// A step shoots all patches of which at least this share of the largest is unshot.
 constexpr float share_of_largest = 0.5f;
 /// When less than this share of what was unshot at first is left, or a step would get fewer rays, the last step shoots
-/// the rest.
-constexpr double negligible_rest = 0.01;
+/// the rest. No other iteration shoots what the final one leaves.
+constexpr double negligible_rest = 0.01, negligible_rest_of_run = 0.001;
 constexpr std::int64_t fewest_rays_of_step = 16;
 /// Before a series of steps has told: all that is shot, over what is unshot at first.
 constexpr double assumed_shots = 2;
@@ -47,7 +47,7 @@ struct ShotBudget {
     }
     bool is_last(double weight, double unshot) const {
         const std::int64_t next = share(weight, unshot);
-        return unshot < negligible_rest || next < fewest_rays_of_step || left - next < fewest_rays_of_step;
+        return next < fewest_rays_of_step || left - next < fewest_rays_of_step;
     }
     void archive(StateArchive& archive, const std::string& name) {
         archive(name + "/left", left);
@@ -113,6 +113,7 @@ class ProgressiveRefinement final : public IterationMethod {
     std::vector<float> unshot_importance_, fresh_importance_;  // the latter of all steps so far
     double first_importance_ = 0;                              // unshot before the first step
     std::int64_t importance_history_ = 0;                      // rays that the mean stands for
+    bool is_final_ = false;                                    // iteration of the run
     bool emits_ = true;                                        // the next step of power is the first
     std::vector<Rgb> unshot_;                                  // irradiance
     FreshEstimate fresh_;                                      // of all steps so far
@@ -144,7 +145,7 @@ bool ProgressiveRefinement::shoot_some_importance(SolverState& state) {
     std::vector<float> chosen = step.q;
     choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
-    const bool is_last = importance_budget_.is_last(weight, unshot);
+    const bool is_last = unshot < negligible_rest || importance_budget_.is_last(weight, unshot);
     if (is_last) chosen = step.q, weight = unshot;
     step.q = chosen;
     step.rays = is_last ? importance_budget_.left : importance_budget_.share(weight, unshot);
@@ -203,7 +204,9 @@ bool ProgressiveRefinement::shoot_some_power(SolverState& state) {
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
-    const bool is_last = power_budget_.is_last(weight, unshot);
+    // What matters little to the views is power too, and counts where it has got to when it is shot.
+    const double rest = is_final_ ? negligible_rest_of_run : negligible_rest;
+    const bool is_last = power < rest * first_power_ || power_budget_.is_last(weight, unshot);
     if (is_last) chosen = step.q, weight = unshot;
     step.q = chosen;
     step.rays = is_last ? power_budget_.left : power_budget_.share(weight, unshot);
@@ -241,6 +244,7 @@ RgbD ProgressiveRefinement::iterate(SolverState& state, IterationPlan& plan) {
     }
     if (!power_budget_.is_under_way) {
         shoot_importance(state, for_importance_);
+        is_final_ = plan.is_final;
         if (plan.rays > for_importance_) begin_power(state, plan.rays - for_importance_);
     }
     if (power_budget_.is_under_way) shoot_power(state, plan);
@@ -264,6 +268,7 @@ void ProgressiveRefinement::archive(StateArchive& archive) {
     archive("pr/first_importance", first_importance_);
     archive("pr/importance_history", importance_history_);
     power_budget_.archive(archive, "pr/power_budget");
+    archive("pr/is_final", is_final_);
     archive("pr/emits", emits_);
     archive("pr/unshot", unshot_);
     archive("pr/irradiance", fresh_.irradiance);
