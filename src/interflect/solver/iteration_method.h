@@ -28,8 +28,8 @@ class IterationMethod {
     virtual void retarget(SolverState& state);
 
     virtual void archive(StateArchive& archive) = 0;
-    /// Whether what archive() has read can belong to this forest.
-    virtual bool fits(const ElementForest&) const { return true; }
+    /// Whether what archive() has read can belong to this run.
+    virtual bool fits(const SolverState&) const { return true; }
 };
 
 /// The one that the options ask for. The state must outlive it.

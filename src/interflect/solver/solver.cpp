@@ -172,7 +172,7 @@ const SolveOptions& Solver::options() const { return run_->state.options; }
 void Solver::archive(StateArchive& archive) {
     run_->state.archive(archive);
     run_->method->archive(archive);
-    if (archive.reads() && !run_->method->fits(*run_->state.forest))
+    if (archive.reads() && !run_->method->fits(run_->state))
         throw std::runtime_error("the state of the run: arrays and elements differ in number");
     archive("is_prepared", run_->is_prepared);
     archive("is_finished", run_->is_finished);

@@ -39,6 +39,7 @@ V3f centre_of(const ElementForest& forest, std::uint32_t element) {
 SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOptions& o)
     : scene(s),
       materials(scene, caster),
+      emission(scene),
       ray_caster(caster),
       forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
       view(o.views, o.seed),
@@ -51,7 +52,7 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
     solution.options = o;
     solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
     history.assign(forest->size(), 0.0f);
-    solution.emitted_power = radiated_power(*forest, Radiosity(materials, solution.irradiance));
+    solution.emitted_power = radiated_power(*this);
     look(*this);
 }
 
@@ -68,6 +69,7 @@ void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
 }
 
 void look(SolverState& state) {
+    state.part_importance.assign(state.emission.part_count(), {});
     state.view = ViewImportance(state.options.views, state.options.seed);
     state.floor = ElementFloor(state.scene, state.options);
     state.view.trace_view_rays(*state.forest, state.ray_caster, state.options.camera_rays);
@@ -146,6 +148,8 @@ void SolverState::archive(StateArchive& archive) {
     archive("risk", risk_check);
     quanta.archive(archive);
     archive("points/used", streams.used);
+    archive("points/used_by_parts", streams.used_by_parts);
+    archive("part_importance", part_importance);
     archive("points/allocations", streams.allocations);
     archive("power_rays", power_rays);
     archive("importance_rays", importance_rays);
@@ -161,6 +165,8 @@ void SolverState::archive(StateArchive& archive) {
     require(!has_noise || (history.size() == elements && noise.elements() == elements),
             "expected the noise of every element");
     require(streams.used.size() <= elements, "expected points of elements that there are");
+    require(streams.used_by_parts.size() <= emission.part_count() && part_importance.size() == emission.part_count(),
+            "expected the importance of every part of the luminaires");
     require(solution.indirect_importance.size() == (view.empty() ? 0 : elements),
             "expected the importance of every element");
     require(view.fits(*forest), "expected points of views on patches of the scene");
@@ -174,8 +180,17 @@ Received run_step(SolverState& state, TransportStep step) {
                                   state.arrivals, state.stop);
     state.has_traced_step = true;
     state.escaped_rays += received.escaped_rays;
+    for (std::size_t i = 0; i < received.part_importance.size(); ++i) {
+        state.part_importance[i].found += received.part_importance[i].found;
+        state.part_importance[i].rays += received.part_importance[i].rays;
+    }
     if (state.forest->size() > before) grow_with_forest(state, before);
     return received;
+}
+
+RgbD radiated_power(const SolverState& state) {
+    return radiated_power(*state.forest, Radiosity(state.materials, state.solution.irradiance)) +
+           state.emission.total_power();
 }
 
 float min_area(const SolverState& state, std::uint32_t element) {
@@ -219,7 +234,7 @@ void report(SolverState& state, int iteration, const RgbD& escaped_power) {
     r.escaped_rays = state.escaped_rays;
     r.elements = state.forest->size();
     r.leaves = state.forest->patch_count() + (r.elements - state.forest->patch_count()) / 4 * 3;
-    r.total_power = radiated_power(*state.forest, Radiosity(state.materials, state.solution.irradiance));
+    r.total_power = radiated_power(state);
     r.escaped_power = escaped_power;
     const SolutionError error = solution_error(state);
     r.error_estimate = error.total();

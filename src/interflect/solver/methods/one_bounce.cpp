@@ -29,9 +29,9 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         const Radiosity light(state.materials, solution.irradiance);
-        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods);
+        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods, state.part_importance);
         auto [step, power, weighted_power, lost_leaves] =
-            power_step(state.materials, solution, light, weights, combined, rays);
+            power_step(state.materials, state.emission, solution, light, weights, combined, rays);
         const bool deferred = state.options.defer_refinement && plan.warms_up;
         if (state.options.method.refines && !deferred)
             step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());

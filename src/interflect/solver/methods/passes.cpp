@@ -70,7 +70,7 @@ void Passes::begin_pass(SolverState& state, std::int64_t rays) {
     pass_ = {};
     pass_.is_under_way = true;
     pass_.budget = BounceBudget(rays, bounces_, is_final_);
-    pass_.weights = importance_weights(state.solution, state.neighbourhoods);
+    pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
     pass_.unshot = std::exchange(unshot_, {});
     if (pass_.unshot.empty()) pass_.unshot.assign(state.forest->size(), Rgb(0));
     const auto factor = static_cast<float>(unshot_rays_ / static_cast<double>(rays));
@@ -85,7 +85,8 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     const bool carries_importance =
         pass_.emits && importance_use(solution) == ImportanceUse::full && !state.options.separate_iterations;
     const Radiosity light(state.materials, pass_.unshot, pass_.emits);
-    PowerStep bounce = power_step(state.materials, solution, light, pass_.weights, carries_importance, 0);
+    PowerStep bounce =
+        power_step(state.materials, state.emission, solution, light, pass_.weights, carries_importance, 0);
     if (pass_.emits) pass_.first_power = bounce.power, pass_.first_weighted_power = bounce.weighted_power;
     BounceBudget budget = pass_.budget;
     const double weight = unshot_weight(bounce, pass_, state.options.beta);
@@ -171,11 +172,13 @@ void Passes::make_first_estimate(SolverState& state) {
 
 namespace {
 
-/// How rays that carry power are shared among the elements now.
+/// How rays that carry power are shared among the elements now; those of luminaires are left out.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
-    const ImportanceWeights weights = importance_weights(state.solution, state.neighbourhoods);
-    return power_step(state.materials, state.solution, light, weights, false, 0).step.q;
+    const ImportanceWeights weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+    std::vector<float> q = power_step(state.materials, state.emission, state.solution, light, weights, false, 0).step.q;
+    q.resize(state.forest->size());
+    return q;
 }
 
 /// Importance of every patch, all together.
@@ -216,7 +219,8 @@ void Passes::retarget(SolverState& state) {
     }
     IterationMethod::retarget(state);
     importance_ = {};
-    if (pass_.is_under_way) pass_.weights = importance_weights(state.solution, state.neighbourhoods);
+    if (pass_.is_under_way)
+        pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
     finds_importance_ = stage_ != Stage::importance && importance_use(state.solution) == ImportanceUse::full;
     if (!finds_importance_) old_q_.clear(), old_importance_.clear();
 }
@@ -258,6 +262,8 @@ void Passes::archive(StateArchive& archive) {
     archive("passes/pass/unshot", pass_.unshot);
     archive("passes/pass/weights", pass_.weights.elements);
     archive("passes/pass/nearby", pass_.weights.nearby);
+    archive("passes/pass/parts", pass_.weights.parts);
+    archive("passes/pass/parts_nearby", pass_.weights.parts_nearby);
     pass_.budget.archive(archive, "passes/pass/budget");
     archive("passes/pass/first_power", pass_.first_power);
     archive("passes/pass/first_weighted_power", pass_.first_weighted_power);
@@ -275,7 +281,11 @@ void Passes::archive(StateArchive& archive) {
     archive("passes/elements_before", elements_before_);
 }
 
-bool Passes::fits(const ElementForest& forest) const {
+bool Passes::fits(const SolverState& state) const {
+    const ElementForest& forest = *state.forest;
+    const auto has_parts = [&](const auto& numbers) {
+        return numbers.empty() || numbers.size() == state.emission.part_count();
+    };
     const auto is_whole = [&](const auto& numbers) { return numbers.empty() || numbers.size() == forest.size(); };
     const bool pass_fits = !pass_.is_under_way || pass_.unshot.size() == forest.size();
     const bool importance_fits = !importance_.is_under_way || importance_.unshot.size() == forest.size();
@@ -285,7 +295,7 @@ bool Passes::fits(const ElementForest& forest) const {
            (old_q_.empty() ||
             (old_q_.size() >= forest.patch_count() && old_importance_.size() == forest.patch_count())) &&
            (pass_.weights.nearby.empty() || pass_.weights.nearby.size() == forest.patch_count()) &&
-           elements_before_ <= forest.size();
+           has_parts(pass_.weights.parts) && has_parts(pass_.weights.parts_nearby) && elements_before_ <= forest.size();
 }
 
 RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {

@@ -41,7 +41,7 @@ class Passes : public IterationMethod {
     /// What is known of the light is kept, and counts as much as it is worth.
     void retarget(SolverState& state) override;
     void archive(StateArchive& archive) override;
-    bool fits(const ElementForest& forest) const override;
+    bool fits(const SolverState& state) const override;
 
     /// A first estimate for iterations of another kind: prepare(), then a pass if that traced no power.
     void make_first_estimate(SolverState& state);

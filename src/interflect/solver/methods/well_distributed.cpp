@@ -15,12 +15,14 @@ WellDistributedRays::WellDistributedRays(const SolverState& state)
 void WellDistributedRays::prepare(SolverState& state) {
     if (state.options.complete_passes) passes_.make_first_estimate(state);
     shot_.assign(state.forest->size(), 0.0);
+    shot_by_parts_.assign(state.emission.part_count(), 0.0);
     arrived_.assign(state.forest->size(), Rgb(0));
 }
 
 void WellDistributedRays::archive(StateArchive& archive) {
     passes_.archive(archive);
     archive("well_distributed/shot", shot_);
+    archive("well_distributed/shot_by_parts", shot_by_parts_);
     archive("well_distributed/arrived", arrived_);
     archive("well_distributed/escaped", escaped_);
     archive("well_distributed/total", total_);
@@ -30,21 +32,27 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
     auto [step, power, weighted_power, lost_leaves] =
-        power_step(state.materials, state.solution, light, {}, false, plan.rays);
+        power_step(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
     step.equal_quanta = true;
     // These methods know no importance: the weights are the leaves' shares of all power.
-    const double all_power = channel_sum(radiated_power(forest, light));
+    const double all_power = channel_sum(radiated_power(state));
     double lacking = 0;
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         const double lacks = static_cast<double>(total_ + plan.rays) * step.q[e] - shot_[e];
         step.q[e] = forest.is_leaf(e) ? static_cast<float>(std::max(0.0, lacks)) : 0.0f;
         lacking += step.q[e];
     }
+    for (std::size_t i = 0; i < step.part_count(); ++i) {
+        float& q = step.q[forest.size() + i];
+        q = static_cast<float>(std::max(0.0, static_cast<double>(total_ + plan.rays) * q - shot_by_parts_[i]));
+        lacking += q;
+    }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
     const std::int64_t rays = step.rays;
     if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_ + rays, state.floor.unseen());
 
-    std::vector<std::uint64_t> used_before = state.streams.used;
+    std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
+    used_by_parts_before.resize(shot_by_parts_.size(), 0);
     const std::uint32_t elements_before = forest.size();
     used_before.resize(elements_before, 0);
     const Received received = run_step(state, std::move(step));
@@ -52,6 +60,8 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     state.solution.non_finite += lost_leaves;
     for (std::uint32_t e = 0; e < elements_before; ++e)
         shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
+    for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)
+        shot_by_parts_[i] += static_cast<double>(state.streams.used_by_parts[i] - used_by_parts_before[i]);
     shot_.resize(state.forest->size());
     for (std::uint32_t e = elements_before; e < state.forest->size(); ++e)
         shot_[e] = shot_[state.forest->parent(e)] * state.forest->area(e) / state.forest->area(state.forest->parent(e));

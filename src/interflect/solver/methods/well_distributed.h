@@ -22,17 +22,19 @@ class WellDistributedRays : public IterationMethod {
     /// Grows N by plan.rays and takes the irradiance from all rays so far.
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
     void archive(StateArchive& archive) override;
-    bool fits(const ElementForest& forest) const override {
-        const auto is_whole = [&](std::size_t size) { return size == forest.size() || total_ == 0; };
-        return passes_.fits(forest) && is_whole(shot_.size()) && is_whole(arrived_.size());
+    bool fits(const SolverState& state) const override {
+        const std::size_t elements = state.forest->size(), parts = state.emission.part_count();
+        const bool is_whole = shot_.size() == elements && arrived_.size() == elements && shot_by_parts_.size() == parts;
+        return passes_.fits(state) && (is_whole || total_ == 0);
     }
 
   private:
-    Passes passes_;             // before the first iteration
-    std::vector<double> shot_;  // rays of each leaf
-    std::vector<Rgb> arrived_;  // quanta per area at each element, split to colours [1/m^2]
-    RgbD escaped_{0, 0, 0};     // quanta that left the scene
-    std::int64_t total_ = 0;    // N: rays of all leaves
+    Passes passes_;                      // before the first iteration
+    std::vector<double> shot_;           // rays of each leaf
+    std::vector<double> shot_by_parts_;  // rays of each part of the luminaires
+    std::vector<Rgb> arrived_;           // quanta per area at each element, split to colours [1/m^2]
+    RgbD escaped_{0, 0, 0};              // quanta that left the scene
+    std::int64_t total_ = 0;             // N: rays of all leaves
 };
 
 }  // namespace interflect
