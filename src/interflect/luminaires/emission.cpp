@@ -43,8 +43,11 @@ Emission::Emission(const Scene& scene) {
     for (const float x : {box.min.x, box.max.x})
         for (const float y : {box.min.y, box.max.y})
             for (const float z : {box.min.z, box.max.z}) corners_.emplace_back(x, y, z);
-    for (const Luminaire& luminaire : scene.luminaires)
-        std::visit([&](const auto& light) { add(light); }, luminaire.kind);
+    for (std::size_t i = 0; i < scene.luminaires.size(); ++i) {
+        const std::size_t first = emitters_.size();
+        std::visit([&](const auto& light) { add(light); }, scene.luminaires[i].kind);
+        for (std::size_t e = first; e < emitters_.size(); ++e) emitters_[e].luminaire = i;
+    }
 }
 
 RgbD Emission::total_power() const {

@@ -26,6 +26,8 @@ class Emission {
     /// its rays start.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
     RgbD total_power() const;
+    /// Index in Scene::luminaires.
+    std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
     /// Neighbouring parts, those of one luminaire or of one side of the sky, are alike in what their importance is
     /// worth: part / parts_per_emitter tells which belong together.
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
@@ -59,6 +61,7 @@ class Emission {
         std::variant<Cone, Window> shape;
         Rgb rating;
         RgbD part_power;
+        std::size_t luminaire = 0;
     };
 
     void add(const PointLight& light);

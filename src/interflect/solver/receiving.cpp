@@ -8,9 +8,10 @@
 
 namespace interflect {
 
-void Receiver::take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const Ray> rays,
+void Receiver::take(std::uint32_t source, const Arrivals::Contribution& contribution,
+                    std::span<const std::int64_t> of_groups, std::span<const Ray> rays,
                     std::span<const Parameters> origins, std::span<const Hit> hits) {
-    const std::uint32_t carried = buffer_.add_source(contribution);
+    const std::uint32_t carried = buffer_.add_source(contribution, of_groups);
     left_.push_back({source, 0});
     const auto left = static_cast<std::uint32_t>(left_.size() - 1);
     bool ancestors_are_known = !refines_;

@@ -45,10 +45,10 @@ class Receiver {
 
     /// Takes rays of one source.
     /// @param source        A leaf, or elements when the step began + a part of a luminaire.
-    /// @param contribution  What each carries.
+    /// @param contribution  What each carries. @param of_groups  Of that, the power of each light group.
     /// @param origins       Their parameters on the leaf's patch; of a part's rays they mean nothing.
-    void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const Ray> rays,
-              std::span<const Parameters> origins, std::span<const Hit> hits);
+    void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const std::int64_t> of_groups,
+              std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits);
     /// Tells the processor that a ray will be taken soon.
     void prefetch(const Hit& hit) const;
     /// To be called at the end of a task: rays must not wait for those of another.

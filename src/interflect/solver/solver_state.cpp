@@ -21,7 +21,9 @@ namespace {
 /// as many as no step of a second or two makes, or for what fits half of the addresses that the process may have.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
-    constexpr std::size_t per_element = ElementForest::reserved_per_element + Arrivals::reserved_per_element;
+    const std::size_t groups = std::min(scene.light_groups.size() + 1, most_light_groups);
+    const std::size_t per_element =
+        ElementForest::reserved_per_element + Arrivals::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
     if (options.method.scheme == Scheme::links) return options.max_elements;
     const std::size_t fitting = free_address_space() / 2 / per_element;
@@ -41,16 +43,20 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
       materials(scene, caster),
       emission(scene),
       ray_caster(caster),
+      groups(source_groups(scene)),
       forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
       view(o.views, o.seed),
       floor(scene, o),
       streams(o.points, o.seed),
-      arrivals(forest->capacity()),
+      arrivals(forest->capacity(), groups.size()),
       schedule(o, scene.patches.size()),
       noise(scene.patches.size()) {
     solution.forest = forest;
     solution.options = o;
     solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
+    solution.groups.assign(groups.size(), solution.irradiance);
+    solution.group_names = groups.names;
+    solution.dimming.assign(groups.size(), 1);
     history.assign(forest->size(), 0.0f);
     solution.emitted_power = radiated_power(*this);
     look(*this);
@@ -66,6 +72,14 @@ void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
     last_step = step_seconds < for_ever
                     ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_seconds))
                     : Clock::time_point::max();
+}
+
+void set_sources(SolverState& state, const Scene& lit) {
+    state.materials = Materials(lit, state.ray_caster);
+    state.emission = Emission(lit);
+    state.solution.emitted_power =
+        radiated_power(*state.forest, Radiosity(state.materials, std::vector<Rgb>(state.forest->size(), Rgb(0))));
+    state.solution.emitted_power += state.emission.total_power();
 }
 
 void look(SolverState& state) {
@@ -139,6 +153,7 @@ void SolverState::archive(StateArchive& archive) {
     const std::vector<std::uint32_t> parents = archive.by_value("subdivided", forest->subdivided());
     archive("seconds", earlier_seconds);
     archive("irradiance", solution.irradiance);
+    for (std::size_t g = 0; g < groups.size(); ++g) archive("groups/" + std::to_string(g), solution.groups[g]);
     archive("indirect_importance", solution.indirect_importance);
     archive("non_finite", solution.non_finite);
     archive("history", history);
@@ -161,6 +176,8 @@ void SolverState::archive(StateArchive& archive) {
     forest->rebuild(parents);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
+    for (const std::vector<Rgb>& of_group : solution.groups)
+        require(of_group.size() == elements, "expected the irradiance of every element by every light group");
     const bool has_noise = options.method.scheme != Scheme::links;
     require(!has_noise || (history.size() == elements && noise.elements() == elements),
             "expected the noise of every element");
@@ -188,6 +205,11 @@ Received run_step(SolverState& state, TransportStep step) {
     return received;
 }
 
+GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits) {
+    if (state.groups.empty()) return {};
+    return {&state.groups, &irradiance, &state.solution.dimming, emits};
+}
+
 RgbD radiated_power(const SolverState& state) {
     return radiated_power(*state.forest, Radiosity(state.materials, state.solution.irradiance)) +
            state.emission.total_power();
@@ -206,6 +228,7 @@ float pixel_area(const SolverState& state, std::uint32_t element) {
 
 void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(*state.forest, first, state.solution.irradiance);
+    inherit(*state.forest, first, state.solution.groups);
     state.noise.grow(*state.forest, first);
     inherit(*state.forest, first, state.history);
     if (state.view.empty()) return;

@@ -28,9 +28,10 @@ struct SolverState {
     SolverState(const SolverState&) = delete;
 
     const Scene& scene;
-    const Materials materials;
-    const Emission emission;  // of the luminaires
+    Materials materials;
+    Emission emission;  // of the luminaires
     const RayCaster& ray_caster;
+    const SourceGroups groups;
     Solution solution;
     const SolveOptions& options = solution.options;
     const std::shared_ptr<ElementForest> forest;
@@ -70,11 +71,17 @@ struct SolverState {
     void archive(StateArchive& archive);
 };
 
+/// The sources emit what those of another scene do, which must outlive the state: the same but for that.
+void set_sources(SolverState& state, const Scene& lit);
+
 /// Finds what the views of the options show; importance is not known then.
 void look(SolverState& state);
 
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);
+
+/// What each light group shoots of `irradiance`, and where `emits`, of its own; refers to them.
+GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
 /// All power that leaves surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);

@@ -118,17 +118,27 @@ class Carried {
           elements_(forest.size()),
           q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
 
-    RgbD power(std::uint32_t source) const {
-        const bool is_leaf = source < elements_;
-        const RgbD emitted =
-            is_leaf ? RgbD(step_.light.of(forest_, source)) : step_.emission->power(source - elements_);
-        if (!step_.equal_quanta) return emitted * (is_leaf ? area_per_ray(source) : per_ray(source));
-        const double sum = channel_sum(emitted);
-        return sum > 0 ? emitted / sum : RgbD(0);
+    RgbD power(std::uint32_t source) const { return per_ray(source, radiated(source)); }
+    /// Of that, what a light group brings.
+    RgbD power(std::uint32_t source, std::size_t group) const {
+        if (source < elements_) {
+            const Rgb share = step_.groups.of(materials_, forest_, source, group);
+            return is_finite(share) ? per_ray(source, RgbD(share)) : RgbD(0);
+        }
+        return step_.groups.has_part(*step_.emission, source - elements_, group) ? power(source) : RgbD(0);
     }
     double importance(std::uint32_t source) const { return source < elements_ ? importance_of_leaf(source) : 0; }
 
   private:
+    RgbD radiated(std::uint32_t source) const {
+        return source < elements_ ? RgbD(step_.light.of(forest_, source)) : step_.emission->power(source - elements_);
+    }
+    /// What each ray has of something that a source radiates.
+    RgbD per_ray(std::uint32_t source, const RgbD& light) const {
+        if (!step_.equal_quanta) return light * (source < elements_ ? area_per_ray(source) : per_ray(source));
+        const double sum = channel_sum(radiated(source));
+        return sum > 0 ? light / sum : RgbD(0);
+    }
     double importance_of_leaf(std::uint32_t leaf) const {
         return materials_.mean_reflectance(forest_.patch(leaf)) * step_.importance[leaf] * area_per_ray(leaf);
     }
@@ -203,6 +213,16 @@ struct Units {
             contribution[Arrivals::importance_term] = importance.from(carried.importance(source));
         return contribution;
     }
+
+    /// Of that the power of each light group.
+    void add_groups(const TransportStep& step, const Carried& carried, std::uint32_t source,
+                    std::vector<std::int64_t>& terms) const {
+        terms.clear();
+        for (std::size_t g = 0; g < step.groups.size(); ++g) {
+            const FixedPoint::Value of_group = power.from(carried.power(source, g));
+            terms.insert(terms.end(), of_group.begin(), of_group.end());
+        }
+    }
 };
 
 /// Notes how many points every leaf, and every part of the luminaires, has consumed.
@@ -227,6 +247,7 @@ struct Batch {
 
     RayBatch shot;
     std::vector<Hit> hits;
+    std::vector<std::int64_t> group_terms;  // of one source
     Receiver receiver;
 };
 
@@ -237,7 +258,12 @@ class Arrived {
         : arrivals_(arrivals), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
 
     Arrivals::Contribution take(std::uint32_t e) { return arrivals_.take(number(e)); }
-    void add(std::uint32_t e, const Arrivals::Contribution& contribution) { arrivals_.add(number(e), contribution); }
+    std::array<std::int64_t, 3> take(std::uint32_t e, std::size_t group) { return arrivals_.take(number(e), group); }
+    /// What arrived at an element arrives at another one.
+    void move(std::uint32_t from, std::uint32_t to) {
+        arrivals_.add(number(to), take(from));
+        for (std::size_t g = 0; g < arrivals_.groups(); ++g) arrivals_.add(number(to), g, take(from, g));
+    }
     void release(std::size_t begin, std::size_t end) {
         if (end <= old_size_) arrivals_.release(begin, end);
     }
@@ -254,7 +280,7 @@ class Arrived {
 void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
-        for (std::uint32_t e = first; e < first + 4; ++e) arrived.add(parent, arrived.take(e));
+        for (std::uint32_t e = first; e < first + 4; ++e) arrived.move(e, parent);
     }
 }
 
@@ -317,6 +343,7 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
     constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums fill a large page of 2 MiB
     if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
+    received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
     parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             const auto [red, green, blue, square, importance] = arrived.take(e);
@@ -325,6 +352,8 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
                 received.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
                 received.variance[e] = static_cast<float>(units.square.to_number(square) / area / area);
             }
+            for (std::size_t g = 0; g < received.groups.size(); ++g)
+                received.groups[g][e] = Rgb(units.power.to_colour(arrived.take(e, g))) / area;
             if (step.carries_importance())
                 received.importance[e] = static_cast<float>(units.importance.to_number(importance) / area);
         }
@@ -337,6 +366,7 @@ void balance(const ElementForest& forest, const TransportStep& step, Received& r
     if (step.carries_power() && !step.leaves_only) {
         push(forest, received.irradiance), pull(forest, received.irradiance);
         push(forest, received.variance), pull_variance(forest, received.variance);
+        for (std::vector<Rgb>& of_group : received.groups) push(forest, of_group), pull(forest, of_group);
     }
     if (step.carries_importance()) push(forest, received.importance), pull(forest, received.importance);
 }
@@ -353,6 +383,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         received.irradiance.assign(step.carries_power() ? forest.size() : 0, Rgb(0));
         received.variance.assign(received.irradiance.size(), 0.0f);
         received.importance.assign(step.carries_importance() ? forest.size() : 0, 0.0f);
+        received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size(), Rgb(0)));
         return received;
     }
 
@@ -366,7 +397,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         return Batch({materials, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
     });
     const auto trace_batch = [&](std::size_t begin, std::size_t end) {
-        auto& [shot, hits, receiver] = batches.local();
+        auto& [shot, hits, group_terms, receiver] = batches.local();
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), shot);
         hits.resize(shot.rays.size());
         ray_caster.trace(shot.rays, hits);
@@ -374,9 +405,11 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         for (const auto& [source, first, last] : shot.sources) {
             const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size());
             for (; fetched < fetch; ++fetched) receiver.prefetch(hits[fetched]);
-            receiver.take(
-                source, units.contribution(step, carried, source), std::span(shot.rays).subspan(first, last - first),
-                std::span(shot.origins).subspan(first, last - first), std::span(hits).subspan(first, last - first));
+            units.add_groups(step, carried, source, group_terms);
+            receiver.take(source, units.contribution(step, carried, source), group_terms,
+                          std::span(shot.rays).subspan(first, last - first),
+                          std::span(shot.origins).subspan(first, last - first),
+                          std::span(hits).subspan(first, last - first));
         }
         receiver.finish_batch();
     };
@@ -413,7 +446,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
 
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams) {
-    Arrivals arrivals(forest.capacity());
+    Arrivals arrivals(forest.capacity(), step.groups.size());
     return transport(materials, forest, ray_caster, std::move(step), streams, arrivals, StopRequest());
 }
 

@@ -9,6 +9,7 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/arrivals.h"
+#include "interflect/solver/group_light.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/quanta.h"
@@ -37,6 +38,7 @@ struct TransportStep {
     Radiosity light;                     ///< What leaves the elements, to be shot; empty: rays carry no power.
     const Emission* emission = nullptr;  ///< Luminaires that shoot too; null: none do.
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
+    GroupRadiosity groups;  ///< Light groups whose shares of the power are received apart.
     /// Of power every ray carries B_s over the sum of its channels, wherever it starts. False: B_s A_s / (N q_s), which
     /// makes the estimate unbiased.
     bool equal_quanta = false;
@@ -66,6 +68,7 @@ struct Received {
     std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
     /// Estimated variance of the luminance of that: as if rays arrived independently of each other (Poisson).
     std::vector<float> variance;
+    GroupLight groups;              ///< Of the irradiance what each light group brought.
     std::vector<float> importance;  ///< Importance per area, likewise; empty unless the step carried it.
     /// Of every part of the luminaires, empty unless the step carried importance: its rays, and the sum of the
     /// importance per area, rho psi, that they found where they arrived.

@@ -251,7 +251,7 @@ Arrived follow_paths(SolverState& state, const Payload& payload, std::int64_t pa
 /// What noise it has if all of it arrives in equal quanta, independently.
 FreshEstimate independent_arrivals(const SolverState& state, const Arrived& arrived) {
     const double power = luminance(integral(*state.forest, arrived.irradiance));
-    FreshEstimate fresh{arrived.irradiance, {}};
+    FreshEstimate fresh{arrived.irradiance, {}, {}};
     for (std::uint32_t i = 0; i < arrived.irradiance.size(); ++i)
         fresh.variance.push_back(static_cast<float>(luminance(arrived.irradiance[i]) * power /
                                                     (static_cast<double>(arrived.rays) * state.forest->area(i))));

@@ -17,6 +17,7 @@ void WellDistributedRays::prepare(SolverState& state) {
     shot_.assign(state.forest->size(), 0.0);
     shot_by_parts_.assign(state.emission.part_count(), 0.0);
     arrived_.assign(state.forest->size(), Rgb(0));
+    arrived_groups_.assign(state.groups.size(), arrived_);
 }
 
 void WellDistributedRays::archive(StateArchive& archive) {
@@ -24,6 +25,7 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/shot", shot_);
     archive("well_distributed/shot_by_parts", shot_by_parts_);
     archive("well_distributed/arrived", arrived_);
+    archive_groups(archive, "well_distributed/groups", arrived_groups_);
     archive("well_distributed/escaped", escaped_);
     archive("well_distributed/total", total_);
 }
@@ -34,6 +36,7 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     auto [step, power, weighted_power, lost_leaves] =
         power_step(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
     step.equal_quanta = true;
+    step.groups = group_radiosity(state, state.solution.groups);
     // These methods know no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(state));
     double lacking = 0;
@@ -66,18 +69,23 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     for (std::uint32_t e = elements_before; e < state.forest->size(); ++e)
         shot_[e] = shot_[state.forest->parent(e)] * state.forest->area(e) / state.forest->area(state.forest->parent(e));
     inherit(*state.forest, elements_before, arrived_);
+    inherit(*state.forest, elements_before, arrived_groups_);
 
     const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(total_));
     const auto quantum = static_cast<float>(all_power / static_cast<double>(rays));
-    FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size())};
+    FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size()), {}};
     for (std::size_t e = 0; e < arrived_.size(); ++e) {
         fresh.irradiance[e] = quantum * received.irradiance[e];
         fresh.variance[e] = quantum * (quantum * received.variance[e]);  // the square may be out of range
         arrived_[e] += received.irradiance[e];
     }
     pull(*state.forest, arrived_);
+    accumulate(arrived_groups_, received.groups);
+    pull(*state.forest, arrived_groups_);
     estimate_noise(state, fresh, rays);
     for (std::size_t e = 0; e < arrived_.size(); ++e) state.solution.irradiance[e] = power_per_ray * arrived_[e];
+    state.solution.groups = arrived_groups_;
+    scale(state.solution.groups, power_per_ray);
     state.history.assign(state.forest->size(), static_cast<float>(total_));
     state.power_rays += rays;
     plan.rays = rays;

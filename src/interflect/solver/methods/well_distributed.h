@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "interflect/solver/iteration_method.h"
@@ -25,7 +26,10 @@ class WellDistributedRays : public IterationMethod {
     bool fits(const SolverState& state) const override {
         const std::size_t elements = state.forest->size(), parts = state.emission.part_count();
         const bool is_whole = shot_.size() == elements && arrived_.size() == elements && shot_by_parts_.size() == parts;
-        return passes_.fits(state) && (is_whole || total_ == 0);
+        const auto has_elements = [&](const auto& numbers) { return numbers.size() == elements; };
+        const bool has_groups = arrived_groups_.size() == state.groups.size() &&
+                                std::all_of(arrived_groups_.begin(), arrived_groups_.end(), has_elements);
+        return passes_.fits(state) && (has_groups || total_ == 0) && (is_whole || total_ == 0);
     }
 
   private:
@@ -33,6 +37,7 @@ class WellDistributedRays : public IterationMethod {
     std::vector<double> shot_;           // rays of each leaf
     std::vector<double> shot_by_parts_;  // rays of each part of the luminaires
     std::vector<Rgb> arrived_;           // quanta per area at each element, split to colours [1/m^2]
+    GroupLight arrived_groups_;          // of that, what each light group brought
     RgbD escaped_{0, 0, 0};              // quanta that left the scene
     std::int64_t total_ = 0;             // N: rays of all leaves
 };
