@@ -66,9 +66,10 @@ std::string brightness_fault(float strongest) {
                        weakest_exitance);
 }
 
-float strongest_exitance_in(const Scene& scene) {
+float brightest_source(const Scene& scene) {
     float strongest = 0;
     for (const Material& m : scene.materials) strongest = std::max(strongest, largest_channel(m.exitance));
+    for (const Luminaire& l : scene.luminaires) strongest = std::max(strongest, largest_channel(rating(l)));
     return strongest;
 }
 

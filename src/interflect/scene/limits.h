@@ -38,10 +38,10 @@ std::string patch_fault(const Scene& scene, const Patch& patch);
 /// @param width  Diagonal of the bounding box of all faces [m], scene_width().
 std::string scene_width_fault(double width);
 std::string exitance_fault(const Rgb& exitance);
-/// @param strongest  Largest channel of all exitances [lm/m^2 or W/m^2].
+/// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// Largest channel of all materials' exitances [lm/m^2 or W/m^2]; 0 where there is none.
-float strongest_exitance_in(const Scene& scene);
+/// Largest channel of what materials and luminaires are rated by, each in its unit; 0 where none emits.
+float brightest_source(const Scene& scene);
 
 }  // namespace interflect

@@ -10,7 +10,7 @@ bool emits(const Material& material) { return channel_sum(material.exitance) > 0
 
 }  // namespace
 
-Materials::Materials(const Scene& scene, const RayCaster& ray_caster) : scene_(scene) {
+Materials::Materials(const Scene& scene, const RayCaster& ray_caster) : scene_(&scene) {
     if (!ray_caster.has_covered_patches()) return;
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {

@@ -18,7 +18,7 @@ namespace interflect {
 class Materials {
   public:
     /// As if no faces coincided.
-    explicit Materials(const Scene& scene) : scene_(scene) {}
+    explicit Materials(const Scene& scene) : scene_(&scene) {}
     Materials(const Scene& scene, const RayCaster& ray_caster);
 
     const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
@@ -26,14 +26,14 @@ class Materials {
     /// What importance, one number, is reflected with: exact for grey surfaces.
     float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
     /// Tells the processor that a patch will be asked for its material.
-    void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_.patches[patch].material); }
+    void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
     const Material& material(std::uint32_t patch) const {
         if (!reduced_materials_.empty() && reduced_[patch]) return reduced_materials_[reduced_.rank(patch)];
-        return scene_.materials[scene_.patches[patch].material];
+        return scene_->materials[scene_->patches[patch].material];
     }
 
   private:
-    const Scene& scene_;
+    const Scene* scene_;
     RankedBits reduced_;                       // patches that emit less than their material does
     std::vector<Material> reduced_materials_;  // of each of them; empty where no emitter is covered
 };

@@ -41,6 +41,11 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(!o.method.no_importance || o.method.importance == ImportanceUse::off,
             fmt::format("importance: {} cannot be steered by it, since {}", o.method.name,
                         o.method.no_importance ? o.method.no_importance : ""));
+    require(o.method.takes_luminaires || scene.luminaires.empty(),
+            fmt::format("lights that are no surfaces: {} knows only surfaces that emit; choose another method",
+                        o.method.name));
+    require(o.method.separates_groups || scene.light_groups.empty(),
+            fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
     require_no_faults(faults, "cannot solve", scene);
 }
 
