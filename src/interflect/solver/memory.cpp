@@ -15,6 +15,7 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     need.ray_tracer = ray_caster.memory();
     need.patches = scene.patches.size() * sizeof(PatchGeometry);
     need.rest = program;
+    need.per_element += source_groups(scene).size() * MemoryNeed::per_element_and_group;
     return need;
 }
 
@@ -24,7 +25,7 @@ std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Sce
         throw InputError(scene.name, 0,
                          fmt::format("{} patches need {} MiB of memory, the limit is {} MiB", patches,
                                      (least >> 20) + 1, bytes >> 20));
-    return (bytes - need.without_elements()) / MemoryNeed::per_element;
+    return (bytes - need.without_elements()) / need.per_element;
 }
 
 }  // namespace interflect

@@ -17,7 +17,10 @@ struct MemoryNeed {
     /// Of each element, while a bounce's results are collected: the tree 11, H 12, importance 8, history and noise 8,
     /// points consumed 8, what the pass brought so far 16, what is shot 12 and by what importance 4, and sums of
     /// arrivals, 40, or what was received, 16, and what has not been collected yet.
-    static constexpr std::size_t per_element = 128;
+    std::size_t per_element = 128;
+    /// Of each element and light group: H, what is shot and what the pass brought, 12 each, and sums of arrivals, 24,
+    /// or what was received, 12.
+    static constexpr std::size_t per_element_and_group = 60;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
