@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "interflect/base/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/solve.h"
@@ -139,6 +140,23 @@ TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
     const std::uint32_t white = add_material(scene, Rgb(0.7f), Rgb(0));
     add_rectangle(scene, {0.2f, 0.3f, 1.2f}, {0.6f, 0, 0}, {0, 1.3f, 0.2f}, white);
     const RayCaster ray_caster(scene);
+    SolveOptions reference;
+    reference.rays = 8'000'000;
+    const Solution expected = solve(scene, ray_caster, reference);
+    const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
+    const std::vector<Solution> sample = solutions(scene);
+    EXPECT_GT(p_value(sample, exact, 1), false_alarm);
+    EXPECT_LT(p_value(sample, exact, 1.05), false_alarm) << "would notice 5%";
+}
+
+TEST_P(EveryMethod, ShootsOrRefusesLightSourcesThatAreNoSurfaces) {
+    Scene scene = colourful_box();
+    scene.luminaires = {{"lamp", 0, PointLight{{0.4f, 0.7f, 1.9f}, {20, 30, 20}}}};
+    const RayCaster ray_caster(scene);
+    if (!GetParam().options.method.takes_luminaires) {
+        EXPECT_THROW(solve(scene, ray_caster, options(1000, 1)), InputError);
+        return;
+    }
     SolveOptions reference;
     reference.rays = 8'000'000;
     const Solution expected = solve(scene, ray_caster, reference);

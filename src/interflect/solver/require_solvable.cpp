@@ -44,7 +44,7 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(o.method.takes_luminaires || scene.luminaires.empty(),
             fmt::format("lights that are no surfaces: {} knows only surfaces that emit; choose another method",
                         o.method.name));
-    require(o.method.keeps_groups || scene.light_groups.empty(),
+    require(o.method.separates_groups || scene.light_groups.empty(),
             fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
     require_no_faults(faults, "cannot solve", scene);
 }

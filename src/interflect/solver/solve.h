@@ -46,10 +46,10 @@ struct Method {
     bool follows_variance = false;  ///< Refines between complete passes as Refinement says; others by power.
     ImportanceUse importance = ImportanceUse::off;  ///< Taken as `off` where there is no view.
     const char* no_importance = nullptr;            ///< Why importance cannot steer it; null: it can.
-    bool takes_luminaires = true;                   ///< Light starts at sources that are no surfaces too.
-    bool keeps_groups = false;                      ///< Keeps the light of light groups apart.
-    bool goes_on_with_other_light = false;          ///< Sources may be dimmed in the middle of a run.
     bool is_stochastic = true;                      ///< Its noise is measured, and falls with the rays.
+    bool takes_luminaires = true;                   ///< Light sources that are no surfaces shine.
+    bool separates_groups = false;                  ///< Keeps what each light group brings apart.
+    bool follows_dimming = false;  ///< Can go on with groups that shine otherwise, see Solver::set_exitance().
 };
 
 /// All there are.

@@ -177,7 +177,7 @@ void Solver::set_exitance(const std::string& group, float factor) {
     const std::size_t g = run.state.groups.index_of(group);
     if (!(factor >= 0 && std::isfinite(factor)))
         throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));
-    if (!run.state.options.method.goes_on_with_other_light)
+    if (!run.state.options.method.follows_dimming)
         throw InputError(fmt::format("{} cannot go on with other light: choose a method that averages iterations",
                                      run.state.options.method.name));
     run.finished.reset();

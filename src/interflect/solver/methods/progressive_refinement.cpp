@@ -179,11 +179,11 @@ void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t ra
 void ProgressiveRefinement::begin_power(SolverState& state, std::int64_t rays) {
     power_budget_.begin(rays);
     emits_ = true;
-    weights_ = importance_weights(state.solution, state.neighbourhoods);
+    weights_ = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
     const std::size_t elements = state.forest->size();
     unshot_.resize(elements, Rgb(0));
     for (Rgb& h : unshot_) h *= static_cast<float>(static_cast<double>(power_rays_) / static_cast<double>(rays));
-    fresh_ = {std::vector<Rgb>(elements, Rgb(0)), std::vector<float>(elements, 0.0f)};
+    fresh_ = {std::vector<Rgb>(elements, Rgb(0)), std::vector<float>(elements, 0.0f), {}};
     power_rays_ = rays;
     escaped_ = RgbD(0, 0, 0);
     state.quanta = {};
@@ -192,14 +192,15 @@ void ProgressiveRefinement::begin_power(SolverState& state, std::int64_t rays) {
 /// One step. @return Whether there is another.
 bool ProgressiveRefinement::shoot_some_power(SolverState& state) {
     const Radiosity light(state.materials, unshot_, emits_);
-    auto [step, power, weighted_power, lost] = power_step(state.materials, state.emission, state.solution, light, weights_, false, 0);
+    auto [step, power, weighted_power, lost] =
+        power_step(state.materials, state.emission, state.solution, light, weights_, false, 0);
     if (!(power > 0)) return false;
     if (emits_) first_power_ = power, first_weighted_power_ = weighted_power;
     const double beta = first_weighted_power_ > 0 ? state.options.beta : 1;
     const double unshot = beta * ratio(power, first_power_) + (1 - beta) * ratio(weighted_power, first_weighted_power_);
     std::vector<float> chosen = step.q;
-    if (emits_)
-        for (std::uint32_t i = 0; i < unshot_.size(); ++i)
+    if (emits_)  // all emitters, and all parts of the luminaires
+        for (std::uint32_t i = 0; i < state.forest->size(); ++i)
             chosen[i] = channel_sum(state.materials.exitance(i)) > 0 ? chosen[i] : 0;
     else
         choose_largest(chosen);
@@ -258,7 +259,8 @@ void ProgressiveRefinement::retarget(SolverState& state) {
     IterationMethod::retarget(state);
     importance_history_ = 0;
     importance_budget_ = {};
-    if (power_budget_.is_under_way) weights_ = importance_weights(state.solution, state.neighbourhoods);
+    if (power_budget_.is_under_way)
+        weights_ = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
 }
 
 void ProgressiveRefinement::archive(StateArchive& archive) {
@@ -275,6 +277,8 @@ void ProgressiveRefinement::archive(StateArchive& archive) {
     archive("pr/variance", fresh_.variance);
     archive("pr/weights", weights_.elements);
     archive("pr/nearby", weights_.nearby);
+    archive("pr/parts", weights_.parts);
+    archive("pr/parts_nearby", weights_.parts_nearby);
     archive("pr/first_power", first_power_);
     archive("pr/first_weighted_power", first_weighted_power_);
     archive("pr/power_rays", power_rays_);
@@ -286,10 +290,13 @@ void ProgressiveRefinement::archive(StateArchive& archive) {
 bool ProgressiveRefinement::fits(const SolverState& state) const {
     const ElementForest& forest = *state.forest;
     const auto is_whole = [&](const auto& numbers) { return numbers.empty() || numbers.size() == forest.size(); };
+    const auto has_all_parts = [&](const auto& parts) {
+        return parts.empty() || parts.size() == state.emission.part_count();
+    };
     return is_whole(unshot_importance_) && fresh_importance_.size() == unshot_importance_.size() && is_whole(unshot_) &&
            is_whole(fresh_.irradiance) && fresh_.variance.size() == fresh_.irradiance.size() &&
-           is_whole(weights_.elements) && is_whole(weights_.nearby) &&
-           (!power_budget_.is_under_way || unshot_.size() == forest.size());
+           is_whole(weights_.elements) && is_whole(weights_.nearby) && has_all_parts(weights_.parts) &&
+           has_all_parts(weights_.parts_nearby) && (!power_budget_.is_under_way || unshot_.size() == forest.size());
 }
 
 }  // namespace
