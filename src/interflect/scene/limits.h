@@ -41,7 +41,17 @@ std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  Largest channel of all exitances [lm/m^2 or W/m^2].
 std::string brightness_fault(float strongest);
 
-/// Largest channel of all materials' exitances [lm/m^2 or W/m^2]; 0 where there is none.
+/// The largest texel of every texture. O(texels).
+std::vector<Rgb> largest_texels(const Scene& scene);
+
+/// A material's reflectance or exitance times the largest texel of its texture, if it has one.
+/// @param texture  Index into Scene::textures, or none. @param largest  largest_texels().
+inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<Rgb>& largest) {
+    return texture == none ? factor : factor * largest[texture];
+}
+
+/// Largest channel of all materials' exitances, times their textures [lm/m^2 or W/m^2]; 0 where there is none.
+/// @param scene  Its materials' textures exist. O(texels).
 float strongest_exitance_in(const Scene& scene);
 
 }  // namespace interflect
