@@ -155,6 +155,7 @@ void SolverState::archive(StateArchive& archive) {
     solution.iterations.clear();
     for (const ReportNumbers& numbers : reports) solution.iterations.push_back(report_of(numbers));
     forest->rebuild(parents);
+    materials.grow(*forest);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
     const bool has_noise = options.method.scheme != Scheme::links;
@@ -192,6 +193,7 @@ float pixel_area(const SolverState& state, std::uint32_t element) {
 void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(*state.forest, first, state.solution.irradiance);
     state.noise.grow(*state.forest, first);
+    state.materials.grow(*state.forest);
     inherit(*state.forest, first, state.history);
     if (state.view.empty()) return;
     inherit(*state.forest, first, state.solution.indirect_importance);

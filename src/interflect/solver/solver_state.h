@@ -27,7 +27,7 @@ struct SolverState {
     SolverState(const SolverState&) = delete;
 
     const Scene& scene;
-    const Materials materials;
+    Materials materials;
     const RayCaster& ray_caster;
     Solution solution;
     const SolveOptions& options = solution.options;
