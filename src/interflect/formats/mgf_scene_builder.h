@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -29,8 +30,8 @@ class MgfSceneBuilder {
     /// @throws std::invalid_argument  where `patches` more would pass the limit, to which faces left out count as well.
     void require_room(double patches) const;
 
-    /// Index of the vertex at `position` in the world [m].
-    std::uint32_t vertex(const Imath::V3d& position);
+    /// Index of the vertex at `position` in the world [m] with these texture coordinates, if it has some.
+    std::uint32_t vertex(const Imath::V3d& position, const std::optional<V2f>& texture_coordinate);
     /// Index of the material; remembers it in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     /// Index of the object with this dotted name.
@@ -54,6 +55,10 @@ class MgfSceneBuilder {
   private:
     /// @param largest  Bound of every channel: largest_reflectance, or the largest float for an exitance.
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
+    /// Index of the image, which is read where it is new; none where there is none.
+    std::uint32_t texture(const MgfTexture& texture);
+    /// That a material's reflectance and exitance keep within the limits where they are multiplied by its textures.
+    void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
     /// A face of which rounding leaves nothing.
@@ -79,7 +84,9 @@ class MgfSceneBuilder {
     std::uint64_t left_out_ = 0;
     ReadOptions options_;
     VertexWeld weld_;
-    std::unordered_map<std::string, std::uint32_t> material_index_, object_index_;
+    std::unordered_map<std::string, std::uint32_t> material_index_, object_index_, texture_index_;
+    std::vector<Rgb> largest_texels_;          // of each of scene_.textures
+    std::uint64_t texels_ = 0;                 // of all of them
     std::vector<MgfMaterial> used_materials_;  // one for each of scene_.materials
 };
 
