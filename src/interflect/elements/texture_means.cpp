@@ -30,6 +30,16 @@ bool is_linear(const Scene& scene, const Patch& patch) {
     return is_parallelogram(corners) && is_parallelogram(coordinates);
 }
 
+/// Twice the area of the triangle between three points of a patch [m^2], also where it is far smaller than rounding.
+double doubled_area(const PatchGeometry::Shape& shape, const std::array<Parameters, 3>& p) {
+    const auto edge = [&](const Parameters& a, const Parameters& b) {
+        const double au = a.u, av = a.v, bu = b.u, bv = b.v;
+        return Imath::V3d(shape.edge_u) * (bu - au) + Imath::V3d(shape.edge_v) * (bv - av) +
+               Imath::V3d(shape.twist) * (bu * bv - au * av);
+    };
+    return edge(p[0], p[1]).cross(edge(p[0], p[2])).length();
+}
+
 }  // namespace
 
 TextureMeans::TextureMeans(const Scene& scene) : scene_(scene) {
@@ -41,12 +51,11 @@ Rgb TextureMeans::mean(std::uint32_t texture, const Patch& patch, const PatchGeo
                        const Cell& cell) const {
     if (texture == none) return Rgb(1);
     RgbD sum(0, 0, 0);
-    double area = 0;  // in the unit of the parameters' areas, which are equal
+    double area = 0;
     const auto add_triangle = [&](const std::array<Parameters, 3>& p) {
         std::array<V2f, 3> coordinates;
         for (std::size_t k = 0; k < 3; ++k) coordinates[k] = texture_coordinate(scene_, patch, p[k]);
-        const auto weight =
-            static_cast<double>(geometry.jacobian({(p[0].u + p[1].u + p[2].u) / 3, (p[0].v + p[1].v + p[2].v) / 3}));
+        const double weight = doubled_area(geometry.shape(), p);
         sum += RgbD(integrals_[texture].mean(coordinates)) * weight;
         area += weight;
     };
