@@ -45,7 +45,7 @@ struct SolvedMaze {
         return o;
     }
     TransportStep step(std::int64_t rays, bool refines) {
-        TransportStep step = power_step(materials, solution, Radiosity(materials, solution.irradiance),
+        TransportStep step = power_step(materials, Emission(), solution, Radiosity(materials, solution.irradiance),
                                         importance_weights(solution, Neighbourhoods(forest)), true, rays)
                                  .step;
         if (refines) step.oracle = make_oracle(solution, solution.options.rays, 1e-6);

@@ -69,7 +69,7 @@ struct Workload {
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
         const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
-        step = power_step(materials, solution, light, weights, combined, options.rays).step;
+        step = power_step(materials, Emission(), solution, light, weights, combined, options.rays).step;
         if (options.method.refines && !refines_by_variance(options))
             step.oracle = make_oracle(solution, options.rays, options.min_area);
         step.oracle.max_elements = forest->size();

@@ -18,6 +18,7 @@
 #include "interflect/exports/solution_file.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/emission.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
 
@@ -39,6 +40,7 @@ struct Summary {
     double area = 0;      // [m^2]
     RgbD emitted_power{0, 0, 0};
     std::map<std::uint32_t, Emitter> emitters;  // by material
+    std::map<std::string, int> lights;          // that are no surfaces, by kind
 };
 
 Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
@@ -60,6 +62,8 @@ Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
         emitter.power += RgbD(exitance) * area;
         s.emitted_power += RgbD(exitance) * area;
     }
+    for (const Luminaire& luminaire : scene.luminaires) ++s.lights[kind_name(luminaire)];
+    s.emitted_power += Emission(scene).total_power();
     return s;
 }
 
@@ -94,9 +98,10 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
         {"triangles", s.triangles}, {"two_sided_patches", s.two_sided},
         {"bounds", bounds},         {"up", up ? Json{{"axis", up->axis}, {"evidence", up->evidence}} : Json(nullptr)},
         {"area", s.area},           {"emitted_power", json_of(s.emitted_power)},
-        {"emitters", emitters},     {"views", views},
-        {"memory", memory},         {"files", scene.files},
-        {"files_outside", outside}, {"warnings", warnings}};
+        {"emitters", emitters},     {"lights", s.lights},
+        {"views", views},           {"memory", memory},
+        {"files", scene.files},     {"files_outside", outside},
+        {"warnings", warnings}};
 }
 
 /// "-0.15 to 6": the ends of an interval, without digits that are rounding error in a scene of that size.
@@ -128,6 +133,7 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     for (const auto& [material, e] : s.emitters)
         print_line("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm", scene.materials[material].name, e.patches,
                    e.area, luminance(e.power));
+    for (const auto& [kind, count] : s.lights) print_line("  lights    {}: {}", kind, count);
     print_views(scene.views);
     print_line("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements",
                mebibytes(need.with(scene.patches.size())), mebibytes(need.scene), mebibytes(need.ray_tracer),

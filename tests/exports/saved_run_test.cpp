@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 struct Case {
     std::string name;
     SolveOptions options;
+    bool has_lights = false;  // that are no surfaces
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
@@ -44,6 +45,15 @@ Scene open_room() {
                         grey = add_material(scene, Rgb(0.3f), Rgb(0));
     add_rectangle(scene, {1.3f, 1.1f, 2.3f}, {0, 0.4f, 0}, {0.3f, 0, 0}, lamp, 1, 1, true);
     add_box(scene, {2.1f, 0.9f, 0}, {3.2f, 1.8f, 0.7f}, grey);
+    return scene;
+}
+
+Scene open_room_with_lights() {
+    Scene scene = open_room();
+    scene.luminaires = {{"lamp", 0, PointLight{{3, 2, 1}, {20, 30, 20}}},
+                        {"spot", 0, SpotLight{{1, 1, 2.2f}, {1, 1, -3}, {50, 50, 90}, 10, 40}},
+                        {"sun", 0, DirectionalLight{{1, 1, -3}, {80, 70, 60}}},
+                        {"sky", 0, UniformSky{{9, 10, 12}}}};
     return scene;
 }
 
@@ -85,6 +95,10 @@ std::vector<Case> cases() {
         o.separate_iterations = true;
     });
     add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.complete_passes = false; });
+    const std::size_t without_lights = all.size();
+    for (std::size_t i = 0; i < without_lights; ++i)
+        if (all[i].options.method.scheme != Scheme::links)
+            all.push_back({all[i].name + "_with_lights", all[i].options, true});
     return all;
 }
 
@@ -92,7 +106,7 @@ class SavedRun : public testing::TestWithParam<Case> {
   protected:
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "run.h5";
-    const Scene scene = open_room();
+    const Scene scene = GetParam().has_lights ? open_room_with_lights() : open_room();
 };
 INSTANTIATE_TEST_SUITE_P(Methods, SavedRun, testing::ValuesIn(cases()),
                          [](const auto& test) { return test.param.name; });

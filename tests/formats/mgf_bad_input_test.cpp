@@ -56,6 +56,13 @@ INSTANTIATE_TEST_SUITE_P(
 
         BadLine{"EmptyHole", "fh - a b d", "three different vertices"},
         BadLine{"HoleOfTwo", "fh a b d - a b", "three different vertices"},
+        BadLine{"UnknownLight", "light bulb a 1", "there is no light 'bulb'"},
+        BadLine{"LightWithoutIntensity", "light point a", "light point vertex intensity"},
+        BadLine{"NegativeLight", "light sky -1", "'-1' must not be"},
+        BadLine{"LightTooBright", "light point a 2e10", "this light is too bright"},
+        BadLine{"LightWithoutDirection", "light spot a 1 0 45", "needs a normal"},
+        BadLine{"LightOfABadColour", "cct 10\nlight sky 5", "a colour temperature must be"},
+
         BadLine{"NotANumber", "p nan 0 0", "'nan' is not a finite number"},
         BadLine{"Infinity", "p 0 inf 0", "'inf' is not a finite number"},
         BadLine{"BeyondSinglePrecision", "p 0 0 1e39", "'1e39' is not a finite number"},
@@ -89,6 +96,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"BillionCopiesTogether", "xf -a 10000 -t 1 0 0 -a 100000 -t 0 1 0", "--max-patches"},
         BadLine{"MissingInclude", "i nowhere.mgf", "there is no such file"}),
     [](const auto& bad_line) { return bad_line.param.name; });
+
+TEST(MgfBadInput, SpotLightWithoutACone) {
+    expect_in(message(three_vertices + "v x =\n n 0 0 1\nlight spot x 1 50 45\nf a b d\n"),
+              "bad.mgf:9: this light has angles of 50 and 45 degrees; expected 0 <= inner <= outer");
+}
 
 TEST(MgfBadInput, TransformThatOverflows) {
     expect_in(message(three_vertices + "xf -s 1e38 -s 1e38\nf a b d\nxf\n"), "bad.mgf:8: the transformed point");

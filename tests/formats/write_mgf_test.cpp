@@ -80,6 +80,34 @@ Scene scene_of(std::vector<Material> materials) {
 
 // ---- Whole scenes
 
+TEST(WriteMgf, KeepsLights) {
+    Scene scene = read_mgf_text(
+        "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\nf a b d\n"
+        "o lamps\nc warm =\n cct 2700\nxf -t 0 0 2 -rx 180\nv s =\n p 1 2 3\n n 0 0 1\n"
+        "light point a 5\nlight spot s 80 10 30.5\nlight directional s 1000\nxf\no\nlight sky 400\n",
+        "lights.mgf");
+    ASSERT_EQ(scene.luminaires.size(), 4u);
+    const auto& spot = std::get<SpotLight>(scene.luminaires[1].kind);
+    EXPECT_LT((spot.position - V3f(1, -2, -5)).length(), 1e-5f);  // moved up, then turned over
+    EXPECT_LT((spot.direction - V3f(0, 0, -1)).length(), 1e-6f);
+    EXPECT_NEAR(luminance(spot.intensity), 80, 1e-4);
+    EXPECT_GT(spot.intensity.x, 2 * spot.intensity.z);
+    EXPECT_EQ(scene.objects[scene.luminaires[2].object], "lamps");
+    const Scene written = there_and_back(scene);
+    ASSERT_EQ(written.luminaires.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_STREQ(kind_name(written.luminaires[i]), kind_name(scene.luminaires[i]));
+        EXPECT_EQ(written.objects[written.luminaires[i].object], scene.objects[scene.luminaires[i].object]);
+        expect_colour(rating(written.luminaires[i]), rating(scene.luminaires[i]), scene.luminaires[i].name);
+    }
+    const auto& back = std::get<SpotLight>(written.luminaires[1].kind);
+    EXPECT_EQ(back.position, spot.position);
+    EXPECT_LT((back.direction - spot.direction).length(), 1e-6f);
+    EXPECT_EQ(back.outer_angle, 30.5f);
+    EXPECT_EQ(std::get<PointLight>(written.luminaires[0].kind).position,
+              std::get<PointLight>(scene.luminaires[0].kind).position);
+}
+
 TEST(WriteMgf, FurnishedMaze) {
     const Scene maze = make_maze({.rooms = 6, .furniture = true});
     const Scene read = there_and_back(maze);

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "interflect/exports/luminaire_records.h"
 #include "interflect/exports/solve_report.h"
 
 namespace interflect {
@@ -25,6 +26,8 @@ void read_scene(const Json& json, Scene& scene) {
     for (const Json& m : json.at("materials"))
         scene.materials.push_back(
             {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
+    if (json.contains("luminaires"))
+        for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l));
     scene.objects = json.at("objects").get<std::vector<std::string>>();
     if (json.contains("files")) scene.files = json.at("files").get<std::vector<std::string>>();
 }
@@ -45,6 +48,8 @@ void read_result(const Json& json, int format_version, Solution& solution) {
 std::string describe(const Scene& scene, const Solution& solution, int format_version) {
     Json views = Json::array();
     for (const View& v : scene.views) views.push_back(json_of(v));
+    Json luminaires = Json::array();
+    for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l));
     const IterationReport last = solution.iterations.empty() ? IterationReport() : solution.iterations.back();
     const Json description{{"format", "interflect solution"},
                            {"format_version", format_version},
@@ -62,6 +67,7 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
                            {"origin", json_of(scene.origin)},
                            {"views", views},
                            {"materials", json_of_materials(scene.materials)},
+                           {"luminaires", luminaires},
                            {"objects", scene.objects}};
     return json_text(description, 1);
 }

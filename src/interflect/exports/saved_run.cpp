@@ -27,7 +27,7 @@ void Solver::save(const std::filesystem::path& path) {
     SolveOptions saved = options();
     archive_options(state, saved);
     archive(state);
-    write_solution(file.temporary_path(), scene(), result, &state);
+    write_solution(file.temporary_path(), *undimmed_scene(), result, &state);
     file.commit();
 }
 

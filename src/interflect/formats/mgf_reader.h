@@ -45,7 +45,8 @@ struct OpenMgfTransform {
 };
 
 /// Reads an MGF file, with the files that it includes, into a scene. Handlers of entities are in
-/// mgf_material_entities.cpp, mgf_surface_entities.cpp and mgf_transform_entities.cpp, the rest in mgf_reader.cpp.
+/// mgf_material_entities.cpp, mgf_surface_entities.cpp, mgf_light_entities.cpp and mgf_transform_entities.cpp, the rest
+/// in mgf_reader.cpp.
 class MgfReader {
   public:
     /// @param origin  What the scene is made relative to.
@@ -109,11 +110,13 @@ class MgfReader {
     void prism(MgfWords words);
     void transform(MgfWords words);
     void object(MgfWords words);
+    void light(MgfWords words);
 
     // What they share.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
+    V3f direction_of(std::string_view vertex);
     void add_loop(MgfWords names);
     std::uint32_t usable_material();
     void add_face();

@@ -16,6 +16,8 @@ namespace interflect {
 
 namespace {
 
+constexpr std::size_t most_lights = 1 << 16;
+
 /// Twice the area over the squared size, from which a face counts for where the scene lies, and from which it is no
 /// sliver of which rounding may leave nothing.
 constexpr double least_shape = 1e-6, least_shape_of_lost = 1e-3;
@@ -54,12 +56,12 @@ void MgfSceneBuilder::require_room(double patches) const {
             fmt::format("this would give more than {} patches; --max-patches raises the limit", options_.max_patches));
 }
 
-std::uint32_t MgfSceneBuilder::vertex(const Imath::V3d& position, const std::optional<V2f>& texture_coordinate) {
-    if (!is_within_reach(position) || !is_within_reach(position - scene_.origin))
+V3f MgfSceneBuilder::position(const Imath::V3d& world) const {
+    if (!is_within_reach(world) || !is_within_reach(world - scene_.origin))
         throw std::invalid_argument(
             fmt::format("the transformed point ({}, {}, {}) is farther than {:g} m from the origin, which is too far",
-                        position.x, position.y, position.z, farthest_coordinate));
-    return weld_.vertex(V3f(position - scene_.origin) + V3f(0), texture_coordinate);  // -0 + 0 = 0
+                        world.x, world.y, world.z, farthest_coordinate));
+    return V3f(world - scene_.origin) + V3f(0);  // -0 + 0 = 0
 }
 
 Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double largest, const Location& where) {
@@ -103,13 +105,26 @@ void MgfSceneBuilder::require_products(const Material& result, const MgfMaterial
         throw InputError(*where.file, where.line, "with the texture's largest texel, the " + fault);
 }
 
+Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Location& where) {
+    constexpr double unbounded = std::numeric_limits<float>::max();
+    return converted(colour, luminance, unbounded, where);
+}
+
+void MgfSceneBuilder::add_light(Luminaire luminaire) {
+    if (scene_.luminaires.size() >= most_lights)
+        throw std::invalid_argument(fmt::format("this is one light more than the {} that are read", most_lights));
+    luminaire.name = fmt::format("{}-{}", kind_name(luminaire), scene_.luminaires.size() + 1);
+    if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
+        throw std::invalid_argument("this light " + fault);
+    scene_.luminaires.push_back(std::move(luminaire));
+}
+
 std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view name) {
     if (material.scene_index != none) return material.scene_index;
-    constexpr double unbounded = std::numeric_limits<float>::max();
     const Material result{std::string(name),
                           converted(material.rd_colour, material.rd, largest_reflectance, material.defined),
-                          converted(material.ed_colour, material.ed, unbounded, material.defined),
-                          texture(material.rd_texture), texture(material.ed_texture)};
+                          emitted(material.ed_colour, material.ed, material.defined), texture(material.rd_texture),
+                          texture(material.ed_texture)};
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
         throw InputError(*material.defined.file, material.defined.line, fault);
     require_products(result, material);
@@ -206,7 +221,7 @@ void MgfSceneBuilder::require_width() const {
 
 /// That the scene is dark or bright enough.
 void MgfSceneBuilder::require_brightness() const {
-    if (const std::string fault = brightness_fault(strongest_exitance_in(scene_)); !fault.empty())
+    if (const std::string fault = brightness_fault(brightest_source(scene_)); !fault.empty())
         throw InputError(scene_.name, 0, "the scene " + fault);
 }
 

@@ -30,12 +30,20 @@ class MgfSceneBuilder {
     /// @throws std::invalid_argument  where `patches` more would pass the limit, to which faces left out count as well.
     void require_room(double patches) const;
 
-    /// Index of the vertex at `position` in the world [m] with these texture coordinates, if it has some.
-    std::uint32_t vertex(const Imath::V3d& position, const std::optional<V2f>& texture_coordinate);
+    /// A place in the world [m], relative to the scene's origin.
+    V3f position(const Imath::V3d& world) const;
+    /// Index of the vertex at `world` [m] with these texture coordinates, if it has some.
+    std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate) {
+        return weld_.vertex(position(world), texture_coordinate);
+    }
+    /// What is emitted in a colour, in the unit of `luminance`.
+    Rgb emitted(const MgfColour& colour, double luminance, const Location& where);
     /// Index of the material; remembers it in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     /// Index of the object with this dotted name.
     std::uint32_t object(const std::string& name);
+    /// Adds a luminaire and names it.
+    void add_light(Luminaire luminaire);
     /// Tells where the outline of the face that is added next lies in the world, before rounding.
     void place_face(std::span<const Imath::V3d> outline);
     /// Adds a face; one without area is left out.

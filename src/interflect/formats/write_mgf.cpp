@@ -66,6 +66,7 @@ class MgfWriter {
             add_face(patch);
             if (two_sided) ++i;
         }
+        for (const Luminaire& luminaire : scene_.luminaires) add_light(luminaire);
         leave_objects(0);
         flush();
     }
@@ -161,6 +162,33 @@ class MgfWriter {
         for (int k = 0; k < patch.vertex_count(); ++k) put(" v{}", patch.vertices[k]);
         put("\n");
     }
+
+    /// A vertex has its place and direction.
+    void add_light(const Luminaire& luminaire) {
+        enter_object(luminaire.object);
+        const auto [chromaticity, luminance] = from_rec709(RgbD(rating(luminaire)));
+        put("c\n\tcxy {} {}\n", chromaticity.x, chromaticity.y);
+        if (const auto* point = std::get_if<PointLight>(&luminaire.kind)) {
+            add_light_vertex(point->position, V3f(0, 0, 1));
+            put("light point {} {}\n", light_vertex, luminance);
+        } else if (const auto* spot = std::get_if<SpotLight>(&luminaire.kind)) {
+            add_light_vertex(spot->position, spot->direction);
+            put("light spot {} {} {} {}\n", light_vertex, luminance, spot->inner_angle, spot->outer_angle);
+        } else if (const auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) {
+            add_light_vertex(V3f(0), directional->direction);
+            put("light directional {} {}\n", light_vertex, luminance);
+        } else {
+            put("light sky {}\n", luminance);
+        }
+    }
+
+    void add_light_vertex(const V3f& position, const V3f& normal) {
+        const Imath::V3d world = scene_.origin + Imath::V3d(position);
+        put("v {} =\n\tp {} {} {}\n\tn {} {} {}\n", light_vertex, world.x, world.y, world.z, normal.x, normal.y,
+            normal.z);
+    }
+
+    static constexpr const char* light_vertex = "light";
 
     const Scene& scene_;
     std::ostream& out_;

@@ -10,6 +10,7 @@
 #include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/illumination.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/path_wavefront.h"
@@ -174,6 +175,7 @@ PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const V
                                camera,
                                std::move(geometry),
                                std::move(lights),
+                               sky_radiance(scene),
                                options.emitter_sampling,
                                options.seed,
                                options.width,

@@ -7,6 +7,7 @@
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
 #include "interflect/geometry/texture_mapping.h"
+#include "interflect/luminaires/illumination.h"
 
 namespace interflect {
 
@@ -77,6 +78,8 @@ void PathWavefront::advance_paths() {
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     if (hit.patch == none) {
         ++counts_.escaped_rays;
+        PathLight& light = light_[path.index];
+        (vertex_ == 1 ? light.emitted : light.reflected) += path.throughput * s_.sky;
         return false;
     }
     const Material& material = s_.material(hit.patch);
@@ -96,6 +99,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     ray.origin = offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction);
     path.normal = s_.geometry[hit.patch].normal();
     if (s_.sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
+    if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample.light);
 
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
@@ -137,7 +141,32 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
     // The integral over the hemisphere of (rho / pi) (M / pi) cosine.
     const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.patch], on_lamp) / pi;
     shadow_rays_.push_back({x, direction});
-    connections_.push_back({choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight)});
+    connections_.push_back(
+        {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0});
+}
+
+void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double uniform) {
+    const auto irradiance_from = [&](const Luminaire& luminaire, V3f& towards, float& distance) {
+        const Illumination light = illumination(luminaire, x);
+        towards = light.towards, distance = light.distance;
+        return light.irradiance * std::max(0.0f, path.normal.dot(light.towards));
+    };
+    V3f towards;
+    float distance = 0;
+    double all = 0, chosen = 0;
+    for (const Luminaire& luminaire : s_.scene.luminaires)
+        all += channel_sum(irradiance_from(luminaire, towards, distance));
+    if (!(all > 0)) return;
+    for (const Luminaire& luminaire : s_.scene.luminaires) {
+        const Rgb irradiance = irradiance_from(luminaire, towards, distance);
+        const double share = channel_sum(irradiance) / all;
+        chosen += share;
+        if (!(share > 0) || uniform > chosen) continue;
+        shadow_rays_.push_back({x, towards});
+        connections_.push_back(
+            {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance});
+        return;
+    }
 }
 
 void PathWavefront::trace_shadow_rays() {
@@ -145,9 +174,11 @@ void PathWavefront::trace_shadow_rays() {
     s_.ray_caster.trace(shadow_rays_, hits_);
     counts_.rays += static_cast<std::int64_t>(shadow_rays_.size());
     counts_.shadow_rays += static_cast<std::int64_t>(shadow_rays_.size());
-    for (std::size_t i = 0; i < connections_.size(); ++i)
-        if (hits_[i].patch == connections_[i].patch)
-            light_[connections_[i].index].reflected += connections_[i].radiance;
+    for (std::size_t i = 0; i < connections_.size(); ++i) {
+        const Connection& c = connections_[i];
+        const bool is_reached = hits_[i].patch == c.patch || (c.patch == none && hits_[i].distance > c.distance);
+        if (is_reached) light_[c.index].reflected += c.radiance;
+    }
 }
 
 }  // namespace interflect

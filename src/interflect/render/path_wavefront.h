@@ -23,6 +23,7 @@ struct PathScene {
     Camera camera;
     std::vector<PatchGeometry> geometry;  // of each patch
     LightTree lights;
+    Rgb sky;  // its radiance
     EmitterSampling sampling;
     std::uint64_t seed;
     int width;
@@ -68,10 +69,11 @@ class PathWavefront {
     struct PathLight {
         Rgb emitted{0, 0, 0}, reflected{0, 0, 0};
     };
-    /// The contribution of a shadow ray if it hits the patch that it is sent to.
+    /// The contribution of a shadow ray if it hits the patch that it is sent to, or nothing nearer than a luminaire.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
+        float distance;  // to the luminaire [m]
     };
 
     void start_paths(std::span<const BatchOfPaths> batches);
@@ -83,6 +85,8 @@ class PathWavefront {
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
     /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample);
+    /// The same for luminaires: one of them, chosen by what it would bring if nothing were in its way.
+    void connect_to_luminaire(const V3f& x, const Path& path, double uniform);
     void trace_shadow_rays();
 
     const PathScene& s_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interflect/geometry/texture_mapping.h"
+#include "interflect/luminaires/illumination.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
 
@@ -61,6 +62,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
     const Camera camera(view, options.width, options.height, scene.origin);
+    const RgbD sky(sky_radiance(scene));
     const Shader shader(scene, forest, irradiance, options);
 
     Rendering result;
@@ -72,7 +74,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
         std::int64_t escaped = 0;
         for (std::size_t i = 0; i < samples.rays.size(); ++i) {
             if (samples.hits[i].patch == none)
-                ++escaped;
+                ++escaped, sum += sky;
             else
                 sum += RgbD(shader.luminance_at(samples.rays[i], samples.hits[i]));
         }

@@ -72,11 +72,12 @@ std::vector<Rgb> largest_texels(const Scene& scene) {
     return largest;
 }
 
-float strongest_exitance_in(const Scene& scene) {
+float brightest_source(const Scene& scene) {
     const std::vector<Rgb> largest = largest_texels(scene);
     float strongest = 0;
     for (const Material& m : scene.materials)
         strongest = std::max(strongest, largest_channel(textured(m.exitance, m.exitance_texture, largest)));
+    for (const Luminaire& l : scene.luminaires) strongest = std::max(strongest, largest_channel(rating(l)));
     return strongest;
 }
 

@@ -38,7 +38,7 @@ std::string patch_fault(const Scene& scene, const Patch& patch);
 /// @param width  Diagonal of the bounding box of all faces [m], scene_width().
 std::string scene_width_fault(double width);
 std::string exitance_fault(const Rgb& exitance);
-/// @param strongest  Largest channel of all exitances [lm/m^2 or W/m^2].
+/// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
 /// The largest texel of every texture. O(texels).
@@ -50,8 +50,8 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
     return texture == none ? factor : factor * largest[texture];
 }
 
-/// Largest channel of all materials' exitances, times their textures [lm/m^2 or W/m^2]; 0 where there is none.
-/// @param scene  Its materials' textures exist. O(texels).
-float strongest_exitance_in(const Scene& scene);
+/// Largest channel of what materials, times their textures, and luminaires are rated by, each in its unit; 0 where none
+/// emits. @param scene  Its materials' textures exist. O(texels).
+float brightest_source(const Scene& scene);
 
 }  // namespace interflect

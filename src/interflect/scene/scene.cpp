@@ -103,7 +103,13 @@ void check_materials(const Scene& scene, Faults& faults) {
     const std::vector<Rgb> largest = largest_texels(scene);
     for (const Material& m : scene.materials)
         if (m.is_textured()) check_products(m, largest, faults);
-    faults.add(brightness_fault(strongest_exitance_in(scene)), [] { return std::string("the scene "); });
+    faults.add(brightness_fault(brightest_source(scene)), [] { return std::string("the scene "); });
+}
+
+void check_luminaire(const Scene& scene, const Luminaire& l, Faults& faults) {
+    faults.add(luminaire_fault(l), [&] { return fmt::format("light '{}' ", l.name); });
+    faults.check(l.object < scene.objects.size(),
+                 [&] { return fmt::format("light '{}': there is no object {}", l.name, l.object); });
 }
 
 void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
@@ -136,6 +142,7 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
     const auto the_scene = [] { return std::string("the scene "); };
     if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), the_scene);
+    for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     for (const View& v : scene.views) faults.add(view_fault(v), [&] { return fmt::format("view '{}': ", v.name); });
     return faults.take();
 }

@@ -8,6 +8,8 @@
 
 #include "interflect/base/colour.h"
 #include "interflect/base/warnings.h"
+#include "interflect/scene/light_groups.h"
+#include "interflect/scene/luminaire.h"
 #include "interflect/scene/texture.h"
 
 namespace interflect {
@@ -68,7 +70,9 @@ struct Scene {
     std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().
     std::vector<Material> materials;
     std::vector<Texture> textures;
-    std::vector<std::string> objects;  ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
+    std::vector<Luminaire> luminaires;     ///< Sources of light beside the patches that emit.
+    std::vector<LightGroup> light_groups;  ///< Whose light is kept apart; see source_groups().
+    std::vector<std::string> objects;      ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
     std::vector<View> views;
     std::vector<std::string> files;  ///< Every file that was read, the scene's own first.
     Warnings warnings;

@@ -21,7 +21,21 @@ void Arrivals::ScatterBuffer::flush(std::size_t region) {
         for (std::size_t c = 0; c < power_terms; ++c) sum[c] += contribution[c] & power;
         sum[importance_term] += contribution[importance_term] & -static_cast<std::int64_t>(a.importance);
     }
+    if (arrivals_->group_terms_ > 0) add_groups(bin);
     bin.count = 0;
+}
+
+void Arrivals::ScatterBuffer::add_groups(const Bin& bin) {
+    const std::size_t terms = arrivals_->group_terms_;
+    for (std::size_t i = 0; i < bin.count; ++i)
+        __builtin_prefetch(&arrivals_->group_sums_[bin.arrivals[i].element * terms], 1);
+    for (std::size_t i = 0; i < bin.count; ++i) {
+        const Arrival& a = bin.arrivals[i];
+        if (!a.power) continue;
+        const std::int64_t* power = &group_contributions_[a.source * terms];
+        std::int64_t* sum = &arrivals_->group_sums_[a.element * terms];
+        for (std::size_t c = 0; c < terms; ++c) sum[c] += power[c];
+    }
 }
 
 }  // namespace interflect

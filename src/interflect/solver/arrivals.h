@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,35 +20,55 @@ class Arrivals {
   public:
     static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
     using Contribution = std::array<std::int64_t, 5>;
-    static constexpr std::size_t reserved_per_element = sizeof(Contribution);  ///< Bytes of addresses.
+    /// Bytes of addresses.
+    static constexpr std::size_t reserved_per_element(std::size_t groups) {
+        return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
+    }
 
     /// @param capacity  Most elements ever.
-    explicit Arrivals(std::size_t capacity) : sums_(capacity) {}
+    /// @param groups    Light groups, each of which has three more sums of power an element.
+    explicit Arrivals(std::size_t capacity, std::size_t groups = 0)
+        : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
     /// To be called before a step. @param elements  Of the forest so far.
     void begin(std::size_t elements);
     /// Nothing has arrived at the first `elements`.
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
+        for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;
     }
     /// What arrived at an element; nothing has from then on.
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
+    /// The same of a light group's power.
+    std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
+        std::array<std::int64_t, 3> power{};
+        for (std::size_t c = 0; c < 3; ++c) power[c] = std::exchange(group_sum(element, group)[c], 0);
+        return power;
+    }
+    std::size_t groups() const { return group_terms_ / 3; }
     void add(std::size_t element, const Contribution& contribution) {
         for (std::size_t c = 0; c < contribution.size(); ++c) sums_[element][c] += contribution[c];
+    }
+    void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
+        for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
     /// To be called for elements that were taken. Few keep their memory for the next step, since clearing it anew takes
     /// longer than adding to it.
     void release(std::size_t begin, std::size_t end) {
-        if (elements_ > most_kept) sums_.release(begin, end);
+        if (elements_ <= most_kept) return;
+        sums_.release(begin, end);
+        if (group_terms_ > 0) group_sums_.release(begin * group_terms_, end * group_terms_);
     }
 
     class ScatterBuffer {
       public:
         explicit ScatterBuffer(Arrivals& arrivals) : arrivals_(&arrivals) {}
 
-        /// @param contribution  What one ray of the source carries. @return The source's number.
-        std::uint32_t add_source(const Contribution& contribution) {
+        /// @param contribution  What one ray of the source carries. @param of_groups  Of that, the power of each group.
+        /// @return The source's number.
+        std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
             contributions_.push_back(contribution);
+            group_contributions_.insert(group_contributions_.end(), of_groups.begin(), of_groups.end());
             return static_cast<std::uint32_t>(contributions_.size() - 1);
         }
         const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }
@@ -66,6 +87,7 @@ class Arrivals {
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();
+            group_contributions_.clear();
         }
 
       private:
@@ -79,9 +101,11 @@ class Arrivals {
             std::array<Arrival, 127> arrivals;
         };
         void flush(std::size_t region);
+        void add_groups(const Bin& bin);
 
         Arrivals* arrivals_;
         std::vector<Contribution> contributions_;
+        std::vector<std::int64_t> group_contributions_;
         std::vector<Bin> bins_ = std::vector<Bin>(regions);
     };
 
@@ -92,7 +116,13 @@ class Arrivals {
 
     static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
 
+    std::int64_t* group_sum(std::size_t element, std::size_t group) {
+        return &group_sums_[element * group_terms_ + 3 * group];
+    }
+
     StableArray<Contribution> sums_;
+    std::size_t group_terms_;
+    StableArray<std::int64_t> group_sums_;  // three of each group, element by element
     std::size_t elements_ = 0;
     int region_shift_ = 0;
     std::array<std::mutex, regions> region_locks_;

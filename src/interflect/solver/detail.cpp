@@ -285,6 +285,20 @@ double error_weight(const SolverState& state, std::uint32_t element) {
     return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
 }
 
+namespace {
+
+/// Lets what each group has be no less than nothing, and all of it sum to what there is.
+void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) {
+    for (std::size_t e = 0; e < irradiance.size() && !groups.empty(); ++e)
+        for (int c = 0; c < 3; ++c) {
+            float sum = 0;
+            for (std::vector<Rgb>& of_group : groups) sum += of_group[e][c] = std::max(0.0f, of_group[e][c]);
+            for (std::vector<Rgb>& of_group : groups) of_group[e][c] *= sum > 0 ? irradiance[e][c] / sum : 0;
+        }
+}
+
+}  // namespace
+
 void finish_solution(SolverState& state) {
     const ElementForest& forest = *state.forest;
     Solution& solution = state.solution;
@@ -299,6 +313,7 @@ void finish_solution(SolverState& state) {
     state.streams.used.resize(forest.size(), 0);
     solution.rays.assign(state.streams.used.begin(), state.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
+    GroupLight reduced_groups = solution.groups;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
         const Detail detail = detail_of(state, first);
@@ -311,11 +326,20 @@ void finish_solution(SolverState& state) {
             float lowest = 0;
             for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
             const float mean = reduced[parent][c], factor = -lowest > mean ? mean / -lowest : 1;
-            for (std::uint32_t k = 0; k < 4; ++k)
+            for (std::uint32_t k = 0; k < 4; ++k) {
                 reduced[first + k][c] = std::max(0.0f, mean + factor * difference[k][c]);
+                for (std::size_t g = 0; g < reduced_groups.size(); ++g)
+                    reduced_groups[g][first + k][c] =
+                        reduced_groups[g][parent][c] +
+                        factor * kept * (solution.groups[g][first + k][c] - solution.groups[g][parent][c]);
+            }
         }
     });
     solution.irradiance = std::move(reduced);
+    for (std::size_t g = 0; g < reduced_groups.size(); ++g)
+        if (solution.dimming[g] == 0) reduced_groups[g].assign(forest.size(), Rgb(0));
+    share_among_groups(solution.irradiance, reduced_groups);
+    solution.groups = std::move(reduced_groups);
 }
 
 }  // namespace interflect

@@ -11,18 +11,18 @@
 
 namespace interflect {
 
-/// Importance that rays find where they arrive, added up for the leaves that they left: the mean over a leaf's rays
-/// estimates the same transported importance as the rays that bring it there (Eq. 7), but from where light starts. So
-/// it is known of small bright lamps, which few rays from the view ever meet.
+/// Importance that rays find where they arrive, added up for the leaves, or parts of luminaires, that they left: the
+/// mean over a leaf's rays estimates the same transported importance as the rays that bring it there (Eq. 7), but from
+/// where light starts. So it is known of small bright lamps, which few rays from the view ever meet.
 class GatheredImportance {
   public:
-    /// @param most_per_ray  What a ray can find at most. @param elements  That rays may leave.
-    GatheredImportance(double most_per_ray, std::int64_t rays, std::size_t elements)
-        : unit_(most_per_ray * static_cast<double>(rays)), sums_(elements) {}
+    /// @param most_per_ray  What a ray can find at most. @param sources  That rays may leave.
+    GatheredImportance(double most_per_ray, std::int64_t rays, std::size_t sources)
+        : unit_(most_per_ray * static_cast<double>(rays)), sums_(sources) {}
 
-    /// Adds what some rays of a leaf found; other threads may do so at the same time.
-    void add(std::uint32_t leaf, double found) { add_concurrently(sums_[leaf], unit_.from(found)); }
-    double sum(std::uint32_t leaf) const { return unit_.to_number(sums_[leaf]); }
+    /// Adds what some rays of a source found; other threads may do so at the same time.
+    void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }
+    double sum(std::size_t source) const { return unit_.to_number(sums_[source]); }
 
   private:
     FixedPoint unit_;

@@ -27,9 +27,12 @@ class IterationMethod {
     /// Looks at the views that the options have now; importance is found anew.
     virtual void retarget(SolverState& state);
 
+    /// The sources of a light group emit `factor` times what they did when light of it was last found.
+    virtual void scale_group(SolverState&, std::size_t /*group*/, float /*factor*/) {}
+
     virtual void archive(StateArchive& archive) = 0;
-    /// Whether what archive() has read can belong to this forest.
-    virtual bool fits(const ElementForest&) const { return true; }
+    /// Whether what archive() has read can belong to this run.
+    virtual bool fits(const SolverState&) const { return true; }
 };
 
 /// The one that the options ask for. The state must outlive it.

@@ -26,7 +26,7 @@ Materials::Materials(const Scene& scene, const RayCaster& ray_caster)
     : Materials(scene, uncovered_shares(scene, ray_caster)) {}
 
 Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
-    : scene_(scene), elements_(scene, exitance_share) {
+    : scene_(&scene), elements_(scene, exitance_share) {
     if (exitance_share.empty() && elements_.empty()) return;
     constexpr std::size_t patches_at_once = 64;
     std::vector<std::uint32_t> patches;

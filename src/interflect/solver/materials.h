@@ -28,10 +28,10 @@ class Materials {
     /// What importance, one number, is reflected with: exact for grey surfaces.
     float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
     /// Tells the processor that a patch will be asked for its material.
-    void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_.patches[patch].material); }
+    void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
     const Material& material(std::uint32_t patch) const {
         if (!own_materials_.empty() && has_own_[patch]) return own_materials_[has_own_.rank(patch)];
-        return scene_.materials[scene_.patches[patch].material];
+        return scene_->materials[scene_->patches[patch].material];
     }
 
     /// Of an element of `patch`.
@@ -53,7 +53,7 @@ class Materials {
     /// @param exitance_share  That each patch keeps; empty: all.
     Materials(const Scene& scene, std::vector<float> exitance_share);
 
-    const Scene& scene_;
+    const Scene* scene_;
     TexturedElements elements_;
     RankedBits has_own_;                   // patches that are textured, or emit less than their material does
     std::vector<Material> own_materials_;  // of each of them

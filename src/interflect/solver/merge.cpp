@@ -84,6 +84,15 @@ void merge(const SolverState& state, std::vector<float>& mean, const std::vector
     merge_into(state, mean, received, plan, static_cast<float>(of_these_views));
 }
 
+void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan) {
+    for (std::size_t g = 0; g < mean.size(); ++g)
+        if (state.solution.dimming[g] > 0) merge(state, mean[g], received[g], plan);
+}
+void merge_details(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan) {
+    for (std::size_t g = 0; g < mean.size(); ++g)
+        if (state.solution.dimming[g] > 0) merge_details(state, mean[g], received[g], plan);
+}
+
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new) {
     const auto rays = static_cast<float>(plan.rays), inherited = static_cast<float>(state.options.inherited_weight);
     parallel_for_ranges(state.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {

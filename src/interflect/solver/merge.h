@@ -22,6 +22,11 @@ void merge(const SolverState& state, std::vector<float>& mean, const std::vector
 void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                    const IterationPlan& plan);
 
+/// merge() and merge_details() for the parts that light groups bring; what is known of one that is dimmed to nothing
+/// stays as it is.
+void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
+void merge_details(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
+
 /// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
 /// inherited a mean that is too smooth, less of them count.
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new);

@@ -9,6 +9,7 @@
 
 #include "interflect/base/colour.h"
 #include "interflect/elements/forest.h"
+#include "interflect/solver/group_light.h"
 #include "interflect/solver/state_archive.h"
 
 namespace interflect {
@@ -17,6 +18,7 @@ namespace interflect {
 struct FreshEstimate {
     std::vector<Rgb> irradiance;  ///< H of every element [lm/m^2 or W/m^2].
     std::vector<float> variance;  ///< Of its luminance, if rays arrived independently of each other.
+    GroupLight groups = {};       ///< Of H what each light group brought.
 };
 
 /// How noisy the running mean of irradiance is. Of every element it keeps the variance that one ray would cause if rays

@@ -51,6 +51,17 @@ WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, 
     });
 }
 
+/// Weighs every part of the luminaires. @param sums  Has the leaves'.
+void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightSums& sums) {
+    for (std::size_t i = 0; i < s.part_count(); ++i) {
+        const double power = channel_sum(s.emission->power(i));
+        sums.power += power;
+        if (shares.weighted_power > 0 && !s.part_importance.empty())
+            sums.weighted_power += power * s.part_importance[i];
+        if (shares.power_nearby > 0 && !s.part_nearby.empty()) sums.power_nearby += power * s.part_nearby[i];
+    }
+}
+
 /// Raises numbers >= 0 to a power.
 void raise(std::span<float> numbers, float exponent) {
     if (exponent == 0.75f) {  // the usual one takes square roots alone, many at a time
@@ -65,14 +76,15 @@ void raise(std::span<float> numbers, float exponent) {
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     const ElementForest& forest = sampled.forest;
     StableArray<Weights> weights(forest.size());  // 0 for inner elements
-    const WeightSums sums = weigh_leaves(sampled, shares, weights);
+    WeightSums sums = weigh_leaves(sampled, shares, weights);
+    weigh_parts(sampled, shares, sums);
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
     const double for_power = factor(shares.power, sums.power),
                  for_driven = factor(shares.weighted_power, sums.weighted_power),
                  for_nearby = factor(shares.power_nearby, sums.power_nearby),
                  for_importance = factor(shares.importance, sums.importance);
-    std::vector<float> q(forest.size());
-    parallel_for_ranges(q.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> q(forest.size() + sampled.part_count());
+    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             double by_power = for_power;
             if (for_driven > 0) by_power += for_driven * sampled.importance_weight[e];
@@ -81,6 +93,12 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
             q[e] = static_cast<float>(by_power * w.power + for_importance * w.importance);
         }
     });
+    for (std::size_t i = 0; i < sampled.part_count(); ++i) {
+        double by_power = for_power;
+        if (!sampled.part_importance.empty()) by_power += for_driven * sampled.part_importance[i];
+        if (!sampled.part_nearby.empty()) by_power += for_nearby * sampled.part_nearby[i];
+        q[forest.size() + i] = static_cast<float>(by_power * channel_sum(sampled.emission->power(i)));
+    }
     return {std::move(q), sums.lost, sums.power, sums.weighted_power};
 }
 

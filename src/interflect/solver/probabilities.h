@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/luminaires/emission.h"
 #include "interflect/solver/radiosity.h"
 
 namespace interflect {
@@ -17,7 +18,11 @@ struct SamplingWeights {
     Importance reflected_importance;  ///< psi of Eq. 8 [1/m^2].
     std::span<const float>
         importance_weight;  ///< psi of Eq. 9 or 10, total or indirect importance, of every element [1/m^2].
-    std::span<const float> nearby = {};  ///< The same of every patch, as it is in its neighbourhood.
+    std::span<const float> nearby = {};           ///< The same of every patch, as it is in its neighbourhood.
+    const Emission* emission = nullptr;           ///< Luminaires that shoot too; null: none do.
+    std::span<const float> part_importance = {};  ///< psi of Eq. 10 of every part of them; empty: not known.
+    std::span<const float> part_nearby = {};      ///< The same, as it is in parts alike.
+    std::size_t part_count() const { return emission ? emission->part_count() : 0; }
 
     /// Eq. 3: P_s, all channels together.
     double power(std::uint32_t s) const {
@@ -42,8 +47,9 @@ struct MixtureWeights {
 
 /// Who gets rays.
 struct Mixture {
-    std::vector<float> q;          ///< Of every element, 0 for inner ones; they sum to the shares that are used.
-    std::int64_t lost_leaves = 0;  ///< Those whose radiosity is not finite: nothing is shot from there.
+    /// Of every element, 0 for inner ones, then of every part; they sum to the shares that are used.
+    std::vector<float> q;
+    std::int64_t lost_leaves = 0;          ///< Those whose radiosity is not finite: nothing is shot from there.
     double power = 0, weighted_power = 0;  ///< Sums of these weights over the leaves, before they were normalised.
 };
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares);

@@ -22,6 +22,7 @@ class Radiosity {
         : materials_(&materials), irradiance_(irradiance), emits_(emits) {}
 
     bool empty() const { return irradiance_.empty(); }
+    bool emits() const { return emits_; }
 
     /// B, or 0 where it is not finite.
     Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }

@@ -35,6 +35,7 @@ class RayAllocation {
     }
 
     std::size_t block_count() const { return blocks_.size(); }
+    static std::size_t block_of(std::size_t source) { return source / block_sources; }
     /// Calls body(s, first, next) for every source that has rays [first, next), of one block of sources, until it
     /// returns false. @return What it returned last, or true.
     template <class Body>

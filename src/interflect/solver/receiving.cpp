@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 namespace interflect {
 
-void Receiver::take(std::uint32_t leaf, const Arrivals::Contribution& contribution, std::span<const Ray> rays,
+void Receiver::take(std::uint32_t source, const Arrivals::Contribution& contribution,
+                    std::span<const std::int64_t> of_groups, std::span<const Ray> rays,
                     std::span<const Parameters> origins, std::span<const Hit> hits) {
-    const std::uint32_t source = buffer_.add_source(contribution);
-    left_.push_back({leaf, 0});
+    const std::uint32_t carried = buffer_.add_source(contribution, of_groups);
+    left_.push_back({source, 0});
     const auto left = static_cast<std::uint32_t>(left_.size() - 1);
     bool ancestors_are_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
@@ -17,12 +20,15 @@ void Receiver::take(std::uint32_t leaf, const Arrivals::Contribution& contributi
             for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
             ++escaped_.rays;
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
-            buffer_.add(hits[r].patch, source, true, true);
+            buffer_.add(hits[r].patch, carried, true, true);
             if (gathered_) gather(left, hits[r].patch, hits[r].patch);
         } else {
             while (open_count_ == lanes) advance();
-            if (!std::exchange(ancestors_are_known, true)) append_ancestors(leaf);
-            begin(source, left, rays[r], origins[r], hits[r]);
+            if (refines_ && source >= old_size_)
+                append_part(source - old_size_, rays[r], hits[r]);
+            else if (!std::exchange(ancestors_are_known, true))
+                append_ancestors(source);
+            begin(carried, left, rays[r], origins[r], hits[r]);
         }
     }
 }
@@ -41,7 +47,7 @@ void Receiver::finish_batch() {
     ancestors_.clear();
     buffer_.release_sources();
     if (gathered_)
-        for (const auto& [leaf, found] : left_) gathered_->add(leaf, found);
+        for (const auto& [source, found] : left_) gathered_->add(source, found);
     left_.clear();
 }
 
@@ -70,6 +76,19 @@ void Receiver::append_ancestors(std::uint32_t leaf) {
     leaf_ancestor_ = static_cast<std::uint32_t>(ancestors_.size() - 1);
 }
 
+/// A part of a luminaire is to the oracle a small disk that faces the ray, as bright as the part is where the ray
+/// arrives.
+void Receiver::append_part(std::uint32_t part, const Ray& ray, const Hit& hit) {
+    constexpr float share_of_view = 1e-6f;  // so small that it is never the larger end of a pair
+    constexpr float tiny = std::numeric_limits<float>::min();
+    const float squared = std::max(hit.distance * hit.distance, tiny);
+    const float area = std::max(share_of_view * std::min(squared, 4 * step_.oracle.min_area), tiny);
+    Rgb radiosity = step_.emission->irradiance(part, hit.distance) * (std::numbers::pi_v<float> * squared / area);
+    for (int c = 0; c < 3; ++c) radiosity[c] = std::min(radiosity[c], std::numeric_limits<float>::max());
+    ancestors_.push_back({none, Cell(), ray.origin, area, radiosity});
+    root_ancestor_ = leaf_ancestor_ = static_cast<std::uint32_t>(ancestors_.size() - 1);
+}
+
 /// Begins at the patches of both ends.
 void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start,
                      const Hit& hit) {
@@ -95,7 +114,8 @@ void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, c
     pairs_.importance[i] = 1;
     pairs_.lowest_shooter[i] = leaf_ancestor_;
     set_shooter(i, root_ancestor_);
-    pairs_.shooter_normal.set(i, forest_.geometry(ancestors_[root_ancestor_].element).normal());
+    const std::uint32_t shooter = ancestors_[root_ancestor_].element;
+    pairs_.shooter_normal.set(i, shooter == none ? ray.direction : forest_.geometry(shooter).normal());
 }
 
 /// Takes all rays in flight one level further (Eq. 14, 15): of a pair that the oracle does not accept the larger end is

@@ -43,11 +43,12 @@ class Receiver {
         pairs_.next.fill(none);
     }
 
-    /// Takes rays of one leaf.
-    /// @param contribution  What each carries.
-    /// @param origins       Their parameters on the leaf's patch.
-    void take(std::uint32_t leaf, const Arrivals::Contribution& contribution, std::span<const Ray> rays,
-              std::span<const Parameters> origins, std::span<const Hit> hits);
+    /// Takes rays of one source.
+    /// @param source        A leaf, or elements when the step began + a part of a luminaire.
+    /// @param contribution  What each carries. @param of_groups  Of that, the power of each light group.
+    /// @param origins       Their parameters on the leaf's patch; of a part's rays they mean nothing.
+    void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const std::int64_t> of_groups,
+              std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits);
     /// Tells the processor that a ray will be taken soon.
     void prefetch(const Hit& hit) const;
     /// To be called at the end of a task: rays must not wait for those of another.
@@ -108,6 +109,7 @@ class Receiver {
     template <class Condition>
     std::span<const std::uint32_t> open_lanes_if(Lanes& found, const Condition& condition) const;
     void append_ancestors(std::uint32_t leaf);
+    void append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start, const Hit& hit);
     void advance();
     void look_up_receiver(std::size_t i);
@@ -132,10 +134,10 @@ class Receiver {
     Escaped escaped_;
     GatheredImportance* gathered_;
     struct Left {
-        std::uint32_t leaf;
+        std::uint32_t source;
         double found;  // importance, by its rays so far
     };
-    std::vector<Left> left_;  // leaves whose rays the task has taken
+    std::vector<Left> left_;  // sources whose rays the task has taken
     Pairs pairs_{};
     std::array<RayState, lanes> rays_;
     Lanes open_;  // lanes in use come first, then the others

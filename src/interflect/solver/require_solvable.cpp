@@ -40,6 +40,10 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");
     require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
             "importance: a method that keeps every ray needs rays of equal power, which importance does not give");
+    require(o.method.scheme != Scheme::links || scene.luminaires.empty(),
+            "lights that are no surfaces: this method knows only surfaces that emit; choose another one");
+    require(scene.light_groups.empty() || (o.method.scheme != Scheme::links && o.method.scheme != Scheme::random_walk),
+            "light groups: this method keeps all light together; choose another one");
     require_no_faults(faults, "cannot solve", scene);
 }
 

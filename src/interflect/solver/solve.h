@@ -143,7 +143,12 @@ struct IterationReport {
 /// elements have the mean of their children.
 struct Solution {
     std::shared_ptr<const ElementForest> forest;
-    std::vector<Rgb> irradiance;              ///< H [lm/m^2 or W/m^2].
+    std::vector<Rgb> irradiance;  ///< H [lm/m^2 or W/m^2].
+    /// Of H what each light group brings, [group][element]: they sum to H. Empty unless the scene has light groups.
+    std::vector<std::vector<Rgb>> groups;
+    std::vector<std::string> group_names;  ///< As in source_groups(scene).
+    /// What the sources of each group are scaled by, of what the scene says they emit; see Solver::set_exitance().
+    std::vector<float> dimming;
     std::vector<float> view_importance;       ///< v; empty where there is no view.
     std::vector<float> indirect_importance;   ///< psi - v; likewise.
     std::vector<float> standard_error;        ///< Estimated, of the luminance of H [as H].

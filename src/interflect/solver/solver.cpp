@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "interflect/base/error.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/solver/detail.h"
@@ -17,12 +19,14 @@ namespace interflect {
 
 struct Solver::Run {
     Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options)
-        : scene(std::move(s)),
+        : undimmed_scene(std::move(s)),
           ray_caster(std::move(caster)),
-          state(*scene, *ray_caster, options),
-          method(make_iteration_method(state)) {}
+          state(*undimmed_scene, *ray_caster, options),
+          method(make_iteration_method(state)),
+          known_dimming(state.groups.size(), 1) {}
 
-    const std::shared_ptr<const Scene> scene;
+    const std::shared_ptr<const Scene> undimmed_scene;
+    std::shared_ptr<const Scene> scene = undimmed_scene;  // as its sources are now
     const std::shared_ptr<const RayCaster> ray_caster;
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
@@ -31,12 +35,35 @@ struct Solver::Run {
     int iteration = 0;
     IterationPlan plan;                // of the iteration under way; 0 rays: there is none
     std::optional<Solution> finished;  // solution() as of now
+    std::vector<float> known_dimming;  // of each light group when light of it was last found
 
     void iterate_until(const Limits& limits);
     IterationPlan next_plan(std::int64_t rays_asked_for);
     void limit_time();
     Solution snapshot();
+    void dim(std::size_t group, float factor);
+    void dim_sources();
 };
+
+void Solver::Run::dim_sources() {
+    const bool is_dimmed = std::any_of(state.solution.dimming.begin(), state.solution.dimming.end(),
+                                       [](float factor) { return factor != 1; });
+    const std::shared_ptr<const Scene> before = scene;  // until nothing refers to it
+    scene = is_dimmed ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.groups, state.solution.dimming))
+                      : undimmed_scene;
+    set_sources(state, *scene);
+}
+
+void Solver::Run::dim(std::size_t group, float factor) {
+    Solution& solution = state.solution;
+    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // a dark group's light is kept as it was
+    if (factor > 0) known_dimming[group] = factor;
+    solution.dimming[group] = factor;
+    for (Rgb& h : solution.groups[group]) h *= change;
+    solution.irradiance = sum_of(solution.groups, solution.dimming);
+    method->scale_group(state, group, change);
+    dim_sources();
+}
 
 void Solver::Run::limit_time() { state.stop.limit_time(state.start, state.options.seconds - state.earlier_seconds); }
 
@@ -145,6 +172,20 @@ void Solver::set_views(std::vector<WeightedView> views) {
     run.error = solution_error(run.state).total();
 }
 
+void Solver::set_exitance(const std::string& group, float factor) {
+    Run& run = *run_;
+    const std::size_t g = run.state.groups.index_of(group);
+    if (!(factor >= 0 && std::isfinite(factor)))
+        throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));
+    if (run.state.options.method.scheme != Scheme::averaged)
+        throw InputError(fmt::format("{} cannot go on with other light: choose a method that averages iterations",
+                                     run.state.options.method.name));
+    run.finished.reset();
+    run.is_finished = false;
+    run.dim(g, factor);
+    run.error = solution_error(run.state).total();
+}
+
 void Solver::set_plan(std::int64_t rays, double seconds, double until) {
     Run& run = *run_;
     SolveOptions options = run.state.options;
@@ -166,18 +207,25 @@ Solution Solver::take_solution() && {
 }
 
 std::shared_ptr<const Scene> Solver::shared_scene() const { return run_->scene; }
+std::shared_ptr<const Scene> Solver::undimmed_scene() const { return run_->undimmed_scene; }
 std::shared_ptr<const RayCaster> Solver::shared_ray_caster() const { return run_->ray_caster; }
 const SolveOptions& Solver::options() const { return run_->state.options; }
 
 void Solver::archive(StateArchive& archive) {
     run_->state.archive(archive);
     run_->method->archive(archive);
-    if (archive.reads() && !run_->method->fits(*run_->state.forest))
+    if (archive.reads() && !run_->method->fits(run_->state))
         throw std::runtime_error("the state of the run: arrays and elements differ in number");
     archive("is_prepared", run_->is_prepared);
     archive("is_finished", run_->is_finished);
     archive("error", run_->error);
     archive("iteration", run_->iteration);
+    archive("known_dimming", run_->known_dimming);
+    archive("dimming", run_->state.solution.dimming);
+    if (archive.reads() && (run_->known_dimming.size() != run_->state.groups.size() ||
+                            run_->state.solution.dimming.size() != run_->state.groups.size()))
+        throw std::runtime_error("the state of the run: expected the dimming of every light group");
+    if (archive.reads()) run_->dim_sources();
     archive("plan/rays", run_->plan.rays);
     archive("plan/warms_up", run_->plan.warms_up);
     archive("plan/is_final", run_->plan.is_final);

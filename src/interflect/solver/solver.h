@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "interflect/raycast/ray_caster.h"
@@ -59,6 +60,11 @@ class Solver {
     /// Goes on with other views: what is known of the light is kept, importance is found anew.
     /// @throws InputError as the constructor does; then the views are as before.
     void set_views(std::vector<WeightedView> views);
+    /// Scales the sources of a light group of the scene: 1 is what the scene says they emit. The light of the group is
+    /// scaled with them at once.
+    /// @throws InputError for a group that there is not, for a factor that is negative or not finite, and unless the
+    /// method averages iterations (Scheme::averaged).
+    void set_exitance(const std::string& group, float factor);
     /// Replaces the limits of the plan: rays in all, time in all [s], error.
     void set_plan(std::int64_t rays, double seconds, double until);
 
@@ -67,6 +73,7 @@ class Solver {
     const Solution& solution() const;
     /// The same without a copy; the solver is of no use any more.
     Solution take_solution() &&;
+    /// With its sources as set_exitance() has scaled them.
     const Scene& scene() const { return *shared_scene(); }
     const RayCaster& ray_caster() const { return *shared_ray_caster(); }
     std::shared_ptr<const Scene> shared_scene() const;
@@ -83,6 +90,7 @@ class Solver {
   private:
     struct Run;
     void archive(StateArchive& archive);
+    std::shared_ptr<const Scene> undimmed_scene() const;
 
     std::unique_ptr<Run> run_;
 };

@@ -21,7 +21,9 @@ namespace {
 /// as many as no step of a second or two makes, or for what fits half of the addresses that the process may have.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
-    constexpr std::size_t per_element = ElementForest::reserved_per_element + Arrivals::reserved_per_element;
+    const std::size_t groups = std::min(scene.light_groups.size() + 1, most_light_groups);
+    const std::size_t per_element =
+        ElementForest::reserved_per_element + Arrivals::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
     if (options.method.scheme == Scheme::links) return options.max_elements;
     const std::size_t fitting = free_address_space() / 2 / per_element;
@@ -39,19 +41,24 @@ V3f centre_of(const ElementForest& forest, std::uint32_t element) {
 SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOptions& o)
     : scene(s),
       materials(scene, caster),
+      emission(scene),
       ray_caster(caster),
+      groups(source_groups(scene)),
       forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
       view(o.views, o.seed),
       floor(scene, o),
       streams(o.points, o.seed),
-      arrivals(forest->capacity()),
+      arrivals(forest->capacity(), groups.size()),
       schedule(o, scene.patches.size()),
       noise(scene.patches.size()) {
     solution.forest = forest;
     solution.options = o;
     solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
+    solution.groups.assign(groups.size(), solution.irradiance);
+    solution.group_names = groups.names;
+    solution.dimming.assign(groups.size(), 1);
     history.assign(forest->size(), 0.0f);
-    solution.emitted_power = radiated_power(*forest, Radiosity(materials, solution.irradiance));
+    solution.emitted_power = radiated_power(*this);
     look(*this);
 }
 
@@ -67,7 +74,17 @@ void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
                     : Clock::time_point::max();
 }
 
+void set_sources(SolverState& state, const Scene& lit) {
+    state.materials = Materials(lit, state.ray_caster);
+    state.materials.grow(*state.forest);
+    state.emission = Emission(lit);
+    state.solution.emitted_power =
+        radiated_power(*state.forest, Radiosity(state.materials, std::vector<Rgb>(state.forest->size(), Rgb(0))));
+    state.solution.emitted_power += state.emission.total_power();
+}
+
 void look(SolverState& state) {
+    state.part_importance.assign(state.emission.part_count(), {});
     state.view = ViewImportance(state.options.views, state.options.seed);
     state.floor = ElementFloor(state.scene, state.options);
     state.view.trace_view_rays(*state.forest, state.ray_caster, state.options.camera_rays);
@@ -137,6 +154,7 @@ void SolverState::archive(StateArchive& archive) {
     const std::vector<std::uint32_t> parents = archive.by_value("subdivided", forest->subdivided());
     archive("seconds", earlier_seconds);
     archive("irradiance", solution.irradiance);
+    for (std::size_t g = 0; g < groups.size(); ++g) archive("groups/" + std::to_string(g), solution.groups[g]);
     archive("indirect_importance", solution.indirect_importance);
     archive("non_finite", solution.non_finite);
     archive("history", history);
@@ -146,6 +164,8 @@ void SolverState::archive(StateArchive& archive) {
     archive("risk", risk_check);
     quanta.archive(archive);
     archive("points/used", streams.used);
+    archive("points/used_by_parts", streams.used_by_parts);
+    archive("part_importance", part_importance);
     archive("points/allocations", streams.allocations);
     archive("power_rays", power_rays);
     archive("importance_rays", importance_rays);
@@ -158,10 +178,14 @@ void SolverState::archive(StateArchive& archive) {
     materials.grow(*forest);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
+    for (const std::vector<Rgb>& of_group : solution.groups)
+        require(of_group.size() == elements, "expected the irradiance of every element by every light group");
     const bool has_noise = options.method.scheme != Scheme::links;
     require(!has_noise || (history.size() == elements && noise.elements() == elements),
             "expected the noise of every element");
     require(streams.used.size() <= elements, "expected points of elements that there are");
+    require(streams.used_by_parts.size() <= emission.part_count() && part_importance.size() == emission.part_count(),
+            "expected the importance of every part of the luminaires");
     require(solution.indirect_importance.size() == (view.empty() ? 0 : elements),
             "expected the importance of every element");
     require(view.fits(*forest), "expected points of views on patches of the scene");
@@ -175,8 +199,22 @@ Received run_step(SolverState& state, TransportStep step) {
                                   state.arrivals, state.stop);
     state.has_traced_step = true;
     state.escaped_rays += received.escaped_rays;
+    for (std::size_t i = 0; i < received.part_importance.size(); ++i) {
+        state.part_importance[i].found += received.part_importance[i].found;
+        state.part_importance[i].rays += received.part_importance[i].rays;
+    }
     if (state.forest->size() > before) grow_with_forest(state, before);
     return received;
+}
+
+GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits) {
+    if (state.groups.empty()) return {};
+    return {&state.groups, &irradiance, &state.solution.dimming, emits};
+}
+
+RgbD radiated_power(const SolverState& state) {
+    return radiated_power(*state.forest, Radiosity(state.materials, state.solution.irradiance)) +
+           state.emission.total_power();
 }
 
 float min_area(const SolverState& state, std::uint32_t element) {
@@ -192,6 +230,7 @@ float pixel_area(const SolverState& state, std::uint32_t element) {
 
 void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(*state.forest, first, state.solution.irradiance);
+    inherit(*state.forest, first, state.solution.groups);
     state.noise.grow(*state.forest, first);
     state.materials.grow(*state.forest);
     inherit(*state.forest, first, state.history);
@@ -221,7 +260,7 @@ void report(SolverState& state, int iteration, const RgbD& escaped_power) {
     r.escaped_rays = state.escaped_rays;
     r.elements = state.forest->size();
     r.leaves = state.forest->patch_count() + (r.elements - state.forest->patch_count()) / 4 * 3;
-    r.total_power = radiated_power(*state.forest, Radiosity(state.materials, state.solution.irradiance));
+    r.total_power = radiated_power(state);
     r.escaped_power = escaped_power;
     const SolutionError error = solution_error(state);
     r.error_estimate = error.total();

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "interflect/luminaires/emission.h"
 #include "interflect/solver/element_floor.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/neighbourhoods.h"
@@ -28,13 +29,16 @@ struct SolverState {
 
     const Scene& scene;
     Materials materials;
+    Emission emission;  // of the luminaires
     const RayCaster& ray_caster;
+    const SourceGroups groups;
     Solution solution;
     const SolveOptions& options = solution.options;
     const std::shared_ptr<ElementForest> forest;
     ViewImportance view;
     ElementFloor floor;
-    Neighbourhoods neighbourhoods;  // none without a view
+    Neighbourhoods neighbourhoods;                // none without a view
+    std::vector<PartImportance> part_importance;  // that the luminaires' rays have found for the present views
     SampleStreams streams;
     Arrivals arrivals;
     Schedule schedule;
@@ -67,11 +71,20 @@ struct SolverState {
     void archive(StateArchive& archive);
 };
 
+/// The sources emit what those of another scene do, which must outlive the state: the same but for that.
+void set_sources(SolverState& state, const Scene& lit);
+
 /// Finds what the views of the options show; importance is not known then.
 void look(SolverState& state);
 
 /// Traces a step's rays; afterwards everything kept by element has grown with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);
+
+/// What each light group shoots of `irradiance`, and where `emits`, of its own; refers to them.
+GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
+
+/// All power that leaves surfaces and luminaires [lm or W].
+RgbD radiated_power(const SolverState& state);
 
 /// The smallest area that an element's parts may have, and the area that a pixel shows there: see ElementFloor [m^2].
 float min_area(const SolverState& state, std::uint32_t element);

@@ -81,4 +81,14 @@ class StateArchive {
     std::map<std::string, std::vector<std::byte>> arrays_;
 };
 
+/// Names and lists what is kept for each light group, [group][element]; reads as many groups as were written.
+template <class T>
+void archive_groups(StateArchive& archive, const std::string& name, std::vector<std::vector<T>>& groups) {
+    constexpr std::uint64_t most = 256;
+    const std::uint64_t count = archive.by_value(name + "/count", std::vector<std::uint64_t>{groups.size()}).at(0);
+    if (count > most) throw std::runtime_error("the state of the run has too many light groups");
+    groups.resize(count);
+    for (std::size_t g = 0; g < groups.size(); ++g) archive(name + "/" + std::to_string(g), groups[g]);
+}
+
 }  // namespace interflect

@@ -49,14 +49,43 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods) {
+namespace {
+
+/// Importance of the luminaires' parts, and of parts alike (those of one emitter). Few rays of a part say little: what
+/// they found counts beside the mean of its like as if that were known from a few rays as well.
+void weigh_parts(const std::vector<PartImportance>& found, float exponent, ImportanceWeights& weights) {
+    constexpr std::size_t alike = Emission::parts_per_emitter;
+    constexpr double rays_of_mean = 8;
+    PartImportance all;
+    for (const PartImportance& part : found) all.found += part.found, all.rays += part.rays;
+    if (!(all.rays > 0)) return;
+    weights.parts.resize(found.size());
+    weights.parts_nearby.resize(found.size());
+    for (std::size_t begin = 0; begin < found.size(); begin += alike) {
+        PartImportance group{rays_of_mean * all.found / all.rays, rays_of_mean};
+        for (std::size_t i = begin; i < begin + alike; ++i) group.found += found[i].found, group.rays += found[i].rays;
+        const double mean = group.found / group.rays;
+        for (std::size_t i = begin; i < begin + alike; ++i) {
+            const double own = (found[i].found + rays_of_mean * mean) / (found[i].rays + rays_of_mean);
+            weights.parts[i] = std::pow(static_cast<float>(own), exponent);
+            weights.parts_nearby[i] = std::pow(static_cast<float>(mean), exponent);
+        }
+    }
+}
+
+}  // namespace
+
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
+                                     const std::vector<PartImportance>& found) {
     const SolveOptions& o = so_far.options;
     const ElementForest& forest = *so_far.forest;
     if (power_step_shares(so_far, false, false).weighted_power == 0) return {};
     const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
                            : o.total_importance                            ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
-    ImportanceWeights weights{importance_weight(forest, psi, o.importance_smoothing, o.importance_exponent), {}};
+    ImportanceWeights weights{
+        importance_weight(forest, psi, o.importance_smoothing, o.importance_exponent), {}, {}, {}};
+    weigh_parts(found, static_cast<float>(o.importance_exponent), weights);
     if (neighbourhoods.empty() || o.importance_smoothing == 0) return weights;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
     neighbourhoods.smooth(forest, weights.nearby, taken_over);
@@ -64,14 +93,17 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     return weights;
 }
 
-PowerStep power_step(const Materials& materials, const Solution& so_far, const Radiosity& light,
-                     const ImportanceWeights& weights, bool combined, std::int64_t rays) {
+PowerStep power_step(const Materials& materials, const Emission& emission, const Solution& so_far,
+                     const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays) {
     TransportStep step;
     const MixtureWeights shares = power_step_shares(so_far, combined, !weights.nearby.empty());
     step.light = step.known_light = light;
+    if (light.emits() && emission.part_count() > 0) step.emission = &emission;
     if (combined) step.importance = importance_of(so_far);
     auto [q, lost_leaves, power, weighted_power] =
-        mixture({materials, *so_far.forest, light, step.importance, weights.elements, weights.nearby}, shares);
+        mixture({materials, *so_far.forest, light, step.importance, weights.elements, weights.nearby, step.emission,
+                 weights.parts, weights.parts_nearby},
+                shares);
     step.q = std::move(q);
     step.rays = rays;
     step.importance_at_patches = !so_far.options.importance_at_elements;

@@ -26,8 +26,11 @@ std::vector<float> total_importance(const Solution& so_far);
 struct ImportanceWeights {
     std::vector<float> elements;
     std::vector<float> nearby;  ///< Of patches, as it is in their neighbourhoods; empty where it is taken as it is.
+    std::vector<float> parts, parts_nearby;  ///< The same of the luminaires' parts; empty without luminaires.
 };
-ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods);
+/// @param found  By the rays of the luminaires' parts so far.
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
+                                     const std::vector<PartImportance>& found = {});
 
 /// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
 /// drives rays (Eq. 9, 10; 0 where none does).
@@ -42,9 +45,10 @@ struct PowerStep {
 /// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
 /// taken for unimportant the few rays that start there carry much. No oracle is set.
 /// @param weights  importance_weights(so_far).
-/// @param light    What is to be shot. The step refers to what `so_far` and `light` do.
-PowerStep power_step(const Materials& materials, const Solution& so_far, const Radiosity& light,
-                     const ImportanceWeights& weights, bool combined, std::int64_t rays);
+/// @param emission  Of the luminaires: it is shot where `light` emits.
+/// @param light    What is to be shot. The step refers to what `so_far`, `emission` and `light` do.
+PowerStep power_step(const Materials& materials, const Emission& emission, const Solution& so_far,
+                     const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
 /// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
 /// it.

@@ -6,8 +6,10 @@
 #include "interflect/base/colour.h"
 #include "interflect/base/points.h"
 #include "interflect/elements/forest.h"
+#include "interflect/luminaires/emission.h"
 #include "interflect/raycast/ray_caster.h"
 #include "interflect/solver/arrivals.h"
+#include "interflect/solver/group_light.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/quanta.h"
@@ -22,16 +24,21 @@ struct SampleStreams {
 
     PointSet points;
     std::uint64_t seed;
-    std::vector<std::uint64_t> used;  ///< Points that each element has consumed; grows with the forest.
-    std::uint64_t allocations = 0;    ///< Steps that have drawn from these streams.
+    std::vector<std::uint64_t> used;           ///< Points that each element has consumed; grows with the forest.
+    std::vector<std::uint64_t> used_by_parts;  ///< The same of parts of the luminaires.
+    std::uint64_t allocations = 0;             ///< Steps that have drawn from these streams.
 };
 
 /// One step of transport: which rays start where, what they carry, and where it is received.
 struct TransportStep {
-    /// Sampling weight of every element of the forest, >= 0; 0 for those that are not leaves. All 0 shoots nothing.
+    /// Sampling weight of every element of the forest, >= 0, then of every part of `emission`; 0 for elements that are
+    /// not leaves. All 0 shoots nothing.
     std::vector<float> q;
-    std::int64_t rays = 0;  ///< N > 0.
-    Radiosity light;        ///< What leaves the elements, to be shot; empty: rays carry no power.
+    std::int64_t rays = 0;               ///< N > 0.
+    Radiosity light;                     ///< What leaves the elements, to be shot; empty: rays carry no power.
+    const Emission* emission = nullptr;  ///< Luminaires that shoot too; null: none do.
+    std::size_t part_count() const { return emission ? emission->part_count() : 0; }
+    GroupRadiosity groups;  ///< Light groups whose shares of the power are received apart.
     /// Of power every ray carries B_s over the sum of its channels, wherever it starts. False: B_s A_s / (N q_s), which
     /// makes the estimate unbiased.
     bool equal_quanta = false;
@@ -50,26 +57,37 @@ struct TransportStep {
     bool leaves_only = false;
 };
 
+/// Importance that the rays of a part of a luminaire have found.
+struct PartImportance {
+    double found = 0;  ///< Sum over its rays [1/m^2].
+    double rays = 0;
+};
+
 /// What one step brought, for every element of the (grown) forest.
 struct Received {
     std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]; an inner element has the mean of its children.
     /// Estimated variance of the luminance of that: as if rays arrived independently of each other (Poisson).
     std::vector<float> variance;
+    GroupLight groups;              ///< Of the irradiance what each light group brought.
     std::vector<float> importance;  ///< Importance per area, likewise; empty unless the step carried it.
-    Quanta quanta;                  ///< What its rays carried, one by one.
-    RgbD shot_power{0, 0, 0};       ///< What all rays carried together [lm or W]: the sum of what arrived and escaped.
-    RgbD escaped_power{0, 0, 0};    ///< What the rays that hit nothing carried.
+    /// Of every part of the luminaires, empty unless the step carried importance: its rays, and the sum of the
+    /// importance per area, rho psi, that they found where they arrived.
+    std::vector<PartImportance> part_importance;
+    Quanta quanta;                ///< What its rays carried, one by one.
+    RgbD shot_power{0, 0, 0};     ///< What all rays carried together [lm or W]: the sum of what arrived and escaped.
+    RgbD escaped_power{0, 0, 0};  ///< What the rays that hit nothing carried.
     std::int64_t escaped_rays = 0;
 };
 
 /// Estimates what every element receives in one bounce of Eq. 1 (power) and Eq. 7 (importance), Prikryl et al. 2000,
 /// without any form factor. A ray starts on leaf s with probability q_s / sum q, uniformly on s, in a
-/// cosine-distributed direction; it brings B_s A_s / (N q_s) of power to element i, and rho_s psi_s A_s / (N q_s) of
-/// importance to the leaf that it hits. Without a refining oracle i is the leaf that is hit; with one, the search
-/// starts at the patches of both ends and the larger side is subdivided until the oracle accepts the pair, making
-/// children where there are none. The paper's rays carry B_j, the mean over the accepted shooter j; that loses or makes
-/// energy wherever B varies over j together with what j sees, 0.4% in a closed box, while B_s keeps shot = received +
-/// escaped exactly. Unbiased on a fixed mesh for every q that is positive wherever what is carried is.
+/// cosine-distributed direction, or as the luminaire emits; it brings B_s A_s / (N q_s) of power to element i, and
+/// rho_s psi_s A_s / (N q_s) of importance to the leaf that it hits. Without a refining oracle i is the leaf that is
+/// hit; with one, the search starts at the patches of both ends and the larger side is subdivided until the oracle
+/// accepts the pair, making children where there are none. The paper's rays carry B_j, the mean over the accepted
+/// shooter j; that loses or makes energy wherever B varies over j together with what j sees, 0.4% in a closed box,
+/// while B_s keeps shot = received + escaped exactly. Unbiased on a fixed mesh for every q that is positive wherever
+/// what is carried is.
 /// @param forest   Grows when the oracle asks for it; the numbers of its old elements stay.
 /// @param arrivals  Nothing has arrived yet, and nothing has afterwards: for as many elements as the forest may have.
 /// @param streams  Read and advanced. The same streams give the same bits for any number of threads.

@@ -339,10 +339,9 @@ void LinkedElements::retarget(SolverState& state) {
     refines_next_ = is_settled_ = false;
 }
 
-bool LinkedElements::fits(const ElementForest& forest) const {
-    const auto joins_elements = [&](const auto& link) {
-        return link.ends.a < forest.size() && link.ends.b < forest.size();
-    };
+bool LinkedElements::fits(const SolverState& state) const {
+    const std::uint32_t elements = state.forest->size();
+    const auto joins_elements = [&](const auto& link) { return link.ends.a < elements && link.ends.b < elements; };
     return std::all_of(links_.begin(), links_.end(), joins_elements) &&
            std::all_of(candidates_.begin(), candidates_.end(), joins_elements);
 }

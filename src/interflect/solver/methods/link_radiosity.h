@@ -66,7 +66,7 @@ class LinkedElements : public IterationMethod {
     void finish(SolverState& state) const override;
     void retarget(SolverState& state) override;
     void archive(StateArchive& archive) override;
-    bool fits(const ElementForest& forest) const override;
+    bool fits(const SolverState& state) const override;
 
   private:
     RgbD gather_light();

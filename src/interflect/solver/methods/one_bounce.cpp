@@ -29,17 +29,20 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         const Radiosity light(state.materials, solution.irradiance);
-        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods);
+        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods, state.part_importance);
         auto [step, power, weighted_power, lost_leaves] =
-            power_step(state.materials, solution, light, weights, combined, rays);
+            power_step(state.materials, state.emission, solution, light, weights, combined, rays);
+        step.groups = group_radiosity(state, solution.groups);
         const bool deferred = state.options.defer_refinement && plan.warms_up;
         if (state.options.method.refines && !deferred)
             step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
         Received received = run_step(state, std::move(step));
         solution.non_finite += lost_leaves;
-        const FreshEstimate fresh{std::move(received.irradiance), std::move(received.variance)};
+        const FreshEstimate fresh{std::move(received.irradiance), std::move(received.variance),
+                                  std::move(received.groups)};
         if (!plan.warms_up) estimate_noise(state, fresh, rays);
         merge(state, solution.irradiance, fresh.irradiance, plan);
+        merge(state, solution.groups, fresh.groups, plan);
         if (combined) merge(state, solution.indirect_importance, received.importance, plan);
         escaped_power = received.escaped_power;
     }

@@ -27,8 +27,10 @@ double unshot_weight(const PowerStep& bounce, const Pass& pass, double beta) {
 }
 
 void add(FreshEstimate& sum, Received& received) {
+    accumulate(sum.groups, received.groups);
     if (sum.irradiance.empty()) {
-        sum = {received.irradiance, std::move(received.variance)};
+        sum.irradiance = received.irradiance;
+        sum.variance = std::move(received.variance);
         return;
     }
     parallel_for_ranges(sum.irradiance.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
@@ -37,6 +39,11 @@ void add(FreshEstimate& sum, Received& received) {
             sum.variance[e] += received.variance[e];
         }
     });
+}
+
+void set_estimate(SolverState& state, FreshEstimate estimate) {
+    state.solution.irradiance = std::move(estimate.irradiance);
+    state.solution.groups = std::move(estimate.groups);
 }
 
 std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + state.importance_rays; }
@@ -70,11 +77,14 @@ void Passes::begin_pass(SolverState& state, std::int64_t rays) {
     pass_ = {};
     pass_.is_under_way = true;
     pass_.budget = BounceBudget(rays, bounces_, is_final_);
-    pass_.weights = importance_weights(state.solution, state.neighbourhoods);
+    pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
     pass_.unshot = std::exchange(unshot_, {});
     if (pass_.unshot.empty()) pass_.unshot.assign(state.forest->size(), Rgb(0));
     const auto factor = static_cast<float>(unshot_rays_ / static_cast<double>(rays));
     for (Rgb& h : pass_.unshot) h *= factor;
+    pass_.unshot_groups = std::exchange(unshot_groups_, {});
+    if (pass_.unshot_groups.empty()) pass_.unshot_groups.assign(state.groups.size(), pass_.unshot);
+    scale(pass_.unshot_groups, factor);
     state.quanta = {};
 }
 
@@ -85,13 +95,15 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     const bool carries_importance =
         pass_.emits && importance_use(solution) == ImportanceUse::full && !state.options.separate_iterations;
     const Radiosity light(state.materials, pass_.unshot, pass_.emits);
-    PowerStep bounce = power_step(state.materials, solution, light, pass_.weights, carries_importance, 0);
+    PowerStep bounce =
+        power_step(state.materials, state.emission, solution, light, pass_.weights, carries_importance, 0);
     if (pass_.emits) pass_.first_power = bounce.power, pass_.first_weighted_power = bounce.weighted_power;
     BounceBudget budget = pass_.budget;
     const double weight = unshot_weight(bounce, pass_, state.options.beta);
     const std::int64_t traced = bounce.power > 0 ? budget.next(weight) : 0;
     TransportStep& step = bounce.step;
     step.rays = traced;
+    step.groups = group_radiosity(state, pass_.unshot_groups, pass_.emits);
     step.known_light = Radiosity(state.materials, solution.irradiance);
     step.leaves_only = !oracle_refines;
     if (oracle_refines)
@@ -114,12 +126,14 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     if (!pass_.fresh.irradiance.empty()) {
         inherit(*state.forest, before, pass_.fresh.irradiance);
         inherit(*state.forest, before, pass_.fresh.variance);
+        inherit(*state.forest, before, pass_.fresh.groups);
     }
     if (!pass_.weights.elements.empty()) inherit(*state.forest, before, pass_.weights.elements);
     add(pass_.fresh, received);
     if (carries_importance)
         merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = traced});
     pass_.unshot = std::move(received.irradiance);
+    pass_.unshot_groups = std::move(received.groups);
     return traced;
 }
 
@@ -130,12 +144,16 @@ FreshEstimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool ora
     }
     FreshEstimate fresh = std::move(pass_.fresh);
     if (fresh.irradiance.empty())  // nothing could be shot
-        fresh = {std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
+        fresh = {std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f),
+                 GroupLight(state.groups.size(), std::vector<Rgb>(state.forest->size(), Rgb(0)))};
     bounces_ = pass_.budget.bounces();
     unshot_ = std::move(pass_.unshot);
+    unshot_groups_ = std::move(pass_.unshot_groups);
     unshot_rays_ = static_cast<double>(rays);
     pass_ = {};
-    if (!oracle_refines) pull(*state.forest, fresh.irradiance), pull_variance(*state.forest, fresh.variance);
+    if (oracle_refines) return fresh;
+    pull(*state.forest, fresh.irradiance), pull_variance(*state.forest, fresh.variance);
+    pull(*state.forest, fresh.groups);
     return fresh;
 }
 
@@ -148,9 +166,9 @@ void Passes::prepare(SolverState& state) {
     }
     for (const Stage pass : {Stage::coarse_pass, Stage::refining_pass}) {
         if (stage_ != pass) continue;
-        if (state.options.method.refines)
-            state.solution.irradiance = trace_pass(state, rays, pass == Stage::refining_pass).irradiance;
+        if (state.options.method.refines) set_estimate(state, trace_pass(state, rays, pass == Stage::refining_pass));
         unshot_.clear();
+        unshot_groups_.clear();
         stage_ = pass == Stage::coarse_pass ? Stage::refining_pass : Stage::report;
     }
     if (stage_ == Stage::report) {
@@ -164,18 +182,20 @@ void Passes::make_first_estimate(SolverState& state) {
     prepare(state);
     if (state.power_rays > 0 && !pass_.is_under_way) return;
     is_final_ = true;
-    state.solution.irradiance = trace_pass(state, state.schedule.start_rays(), false).irradiance;
+    set_estimate(state, trace_pass(state, state.schedule.start_rays(), false));
     state.schedule.began_with(0, rays_so_far(state));
     report(state, 0, escaped_power_);
 }
 
 namespace {
 
-/// How rays that carry power are shared among the elements now.
+/// How rays that carry power are shared among the elements now; those of luminaires are left out.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
-    const ImportanceWeights weights = importance_weights(state.solution, state.neighbourhoods);
-    return power_step(state.materials, state.solution, light, weights, false, 0).step.q;
+    const ImportanceWeights weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+    std::vector<float> q = power_step(state.materials, state.emission, state.solution, light, weights, false, 0).step.q;
+    q.resize(state.forest->size());
+    return q;
 }
 
 /// Importance of every patch, all together.
@@ -216,7 +236,8 @@ void Passes::retarget(SolverState& state) {
     }
     IterationMethod::retarget(state);
     importance_ = {};
-    if (pass_.is_under_way) pass_.weights = importance_weights(state.solution, state.neighbourhoods);
+    if (pass_.is_under_way)
+        pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
     finds_importance_ = stage_ != Stage::importance && importance_use(state.solution) == ImportanceUse::full;
     if (!finds_importance_) old_q_.clear(), old_importance_.clear();
 }
@@ -245,6 +266,13 @@ void Passes::adapt_to_views(SolverState& state) {
     state.noise.scale_by_patch(*state.forest, ratio);
 }
 
+void Passes::scale_group(SolverState& state, std::size_t group, float factor) {
+    pass_ = {};
+    if (unshot_groups_.empty()) return;
+    for (Rgb& h : unshot_groups_[group]) h *= factor;
+    unshot_ = sum_of(unshot_groups_, state.solution.dimming);
+}
+
 void Passes::archive(StateArchive& archive) {
     archive("passes/stage", stage_);
     archive("passes/importance/is_under_way", importance_.is_under_way);
@@ -258,11 +286,16 @@ void Passes::archive(StateArchive& archive) {
     archive("passes/pass/unshot", pass_.unshot);
     archive("passes/pass/weights", pass_.weights.elements);
     archive("passes/pass/nearby", pass_.weights.nearby);
+    archive("passes/pass/parts", pass_.weights.parts);
+    archive("passes/pass/parts_nearby", pass_.weights.parts_nearby);
     pass_.budget.archive(archive, "passes/pass/budget");
     archive("passes/pass/first_power", pass_.first_power);
     archive("passes/pass/first_weighted_power", pass_.first_weighted_power);
     archive("passes/unshot", unshot_);
     archive("passes/unshot_rays", unshot_rays_);
+    archive_groups(archive, "passes/pass/groups", pass_.fresh.groups);
+    archive_groups(archive, "passes/pass/unshot_groups", pass_.unshot_groups);
+    archive_groups(archive, "passes/unshot_groups", unshot_groups_);
     archive("passes/bounces", bounces_);
     archive("passes/finds_importance", finds_importance_);
     archive("passes/old_q", old_q_);
@@ -275,17 +308,26 @@ void Passes::archive(StateArchive& archive) {
     archive("passes/elements_before", elements_before_);
 }
 
-bool Passes::fits(const ElementForest& forest) const {
+bool Passes::fits(const SolverState& state) const {
+    const ElementForest& forest = *state.forest;
+    const auto has_parts = [&](const auto& numbers) {
+        return numbers.empty() || numbers.size() == state.emission.part_count();
+    };
     const auto is_whole = [&](const auto& numbers) { return numbers.empty() || numbers.size() == forest.size(); };
+    const auto has_groups = [&](const GroupLight& light) {
+        return light.empty() ||
+               (light.size() == state.groups.size() && std::all_of(light.begin(), light.end(), is_whole));
+    };
     const bool pass_fits = !pass_.is_under_way || pass_.unshot.size() == forest.size();
     const bool importance_fits = !importance_.is_under_way || importance_.unshot.size() == forest.size();
     return stage_ >= Stage::importance && stage_ <= Stage::done && pass_fits && importance_fits &&
            is_whole(pass_.fresh.irradiance) && is_whole(pass_.fresh.variance) && is_whole(pass_.weights.elements) &&
+           has_groups(pass_.fresh.groups) && has_groups(pass_.unshot_groups) && has_groups(unshot_groups_) &&
            is_whole(unshot_) && old_q_.size() <= forest.size() &&
            (old_q_.empty() ||
             (old_q_.size() >= forest.patch_count() && old_importance_.size() == forest.patch_count())) &&
            (pass_.weights.nearby.empty() || pass_.weights.nearby.size() == forest.patch_count()) &&
-           elements_before_ <= forest.size();
+           has_parts(pass_.weights.parts) && has_parts(pass_.weights.parts_nearby) && elements_before_ <= forest.size();
 }
 
 RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
@@ -314,11 +356,13 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         plan.rays = std::max<std::int64_t>(1, rays_so_far(state) - rays_before_);
         estimate_noise(state, fresh, plan.rays);
         merge_details(state, state.solution.irradiance, fresh.irradiance, plan);
+        merge_details(state, state.solution.groups, fresh.groups, plan);
         update_history(state, plan, elements_before_);
         if (state.options.method.refines && !by_power && state.noise.is_known()) {
             const std::uint32_t size = state.forest->size();
             refine_by_variance(state);
             inherit(*state.forest, size, unshot_);
+            inherit(*state.forest, size, unshot_groups_);
         }
     }
     importance_step_is_done_ = false;

@@ -14,6 +14,7 @@ struct Pass {
     bool emits = true;        ///< The next bounce is the first.
     FreshEstimate fresh;      ///< What all bounces so far brought.
     std::vector<Rgb> unshot;  ///< Of that, what is to be shot next.
+    GroupLight unshot_groups;
     ImportanceWeights weights;
     BounceBudget budget;
     double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce, see PowerStep.
@@ -40,8 +41,10 @@ class Passes : public IterationMethod {
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
     /// What is known of the light is kept, and counts as much as it is worth.
     void retarget(SolverState& state) override;
+    /// The pass under way begins anew.
+    void scale_group(SolverState& state, std::size_t group, float factor) override;
     void archive(StateArchive& archive) override;
-    bool fits(const ElementForest& forest) const override;
+    bool fits(const SolverState& state) const override;
 
     /// A first estimate for iterations of another kind: prepare(), then a pass if that traced no power.
     void make_first_estimate(SolverState& state);
@@ -61,6 +64,7 @@ class Passes : public IterationMethod {
     /// Irradiance that was received and not shot when the last pass ended, as many rays as it had, by element: the next
     /// one shoots it too, so that the mean of all lacks nothing.
     std::vector<Rgb> unshot_;
+    GroupLight unshot_groups_;
     double unshot_rays_ = 0;
     /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
     double bounces_ = 0;

@@ -41,10 +41,11 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// What particles carry; every vector has an entry for every patch. Importance (Eq. 7) is importance emitted by the
+/// What particles carry; every vector has an entry for every patch, `emitted` and `density` then for every part of the
+/// luminaires where these emit. Importance (Eq. 7) is importance emitted by the
 /// cameras: a patch first emits the reflected part of what it received from them, the same in all channels.
 struct Payload {
-    std::vector<Rgb> emitted;      ///< What leaves a patch at first: W [lm or W], or rho V.
+    std::vector<Rgb> emitted;      ///< What leaves a source at first: W [lm or W], or rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
     std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
 };
@@ -59,8 +60,8 @@ struct Sums {
 
     explicit Sums(const Payload& payload)
         : unit(sum_headroom * most_expected(payload)),
-          received(payload.emitted.size()),
-          started(payload.emitted.size(), 0) {}
+          received(payload.reflectance.size()),
+          started(payload.reflectance.size(), 0) {}
 
     /// No channel of all that arrives has a greater expected value: what is emitted over 1 - rho.
     static double most_expected(const Payload& payload) {
@@ -71,7 +72,7 @@ struct Sums {
     }
 };
 
-/// Power that is about to leave a patch.
+/// Power that is about to leave a patch, or a part of the luminaires.
 struct Particle {
     std::uint32_t patch;
     Rgb power;
@@ -98,6 +99,7 @@ class PathBatch {
     /// @param paths  > 0.  @param key  Of the batch's random numbers.
     PathBatch(const SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key)
         : forest_(*state.forest),
+          emission_(state.emission),
           ray_caster_(state.ray_caster),
           stop_(state.stop),
           first_points_(state.options.points),
@@ -148,9 +150,14 @@ class PathBatch {
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
             const double share = quantum_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
             std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(payload_.emitted[s]) * share)});
-            shoot_rays(forest_.geometry(s), Cell(), ray_caster_.ray_offset(s), first_points_,
-                       sub_key(key_, WalkPurpose::emission, s), static_cast<std::uint64_t>(from - first), w.points,
-                       std::span(w.rays).subspan(offset, count), std::span(w.origins).subspan(offset, count));
+            const std::uint64_t key = sub_key(key_, WalkPurpose::emission, s);
+            const auto first_sample = static_cast<std::uint64_t>(from - first);
+            const std::span<Ray> rays = std::span(w.rays).subspan(offset, count);
+            if (s < forest_.patch_count())
+                shoot_rays(forest_.geometry(s), Cell(), ray_caster_.ray_offset(s), first_points_, key, first_sample,
+                           w.points, rays, std::span(w.origins).subspan(offset, count));
+            else
+                emission_.shoot(s - forest_.patch_count(), first_points_, key, first_sample, w.points, rays);
         };
         allocation_->for_each_source(begin, end, emit_some);
     }
@@ -163,7 +170,7 @@ class PathBatch {
             const auto& [source, power] = w.particles[i];
             const std::uint32_t patch = w.hits[i].patch;
             const FixedPoint::Value term = sums_.unit.from(RgbD(power));
-            add_concurrently(sums_.started[source], 1);
+            if (source < sums_.started.size()) add_concurrently(sums_.started[source], 1);
             if (patch == none) {
                 for (std::size_t c = 0; c < 3; ++c) escaped[c] += term[c];
                 continue;
@@ -203,6 +210,7 @@ class PathBatch {
     }
 
     const ElementForest& forest_;
+    const Emission& emission_;
     const RayCaster& ray_caster_;
     const StopRequest& stop_;
     PointSet first_points_;
@@ -243,7 +251,7 @@ Arrived follow_paths(SolverState& state, const Payload& payload, std::int64_t pa
 /// What noise it has if all of it arrives in equal quanta, independently.
 FreshEstimate independent_arrivals(const SolverState& state, const Arrived& arrived) {
     const double power = luminance(integral(*state.forest, arrived.irradiance));
-    FreshEstimate fresh{arrived.irradiance, {}};
+    FreshEstimate fresh{arrived.irradiance, {}, {}};
     for (std::uint32_t i = 0; i < arrived.irradiance.size(); ++i)
         fresh.variance.push_back(static_cast<float>(luminance(arrived.irradiance[i]) * power /
                                                     (static_cast<double>(arrived.rays) * state.forest->area(i))));
@@ -303,6 +311,10 @@ Payload light(const SolverState& state) {
         payload.reflectance.push_back(state.materials.reflectance(i));
     }
     payload.density = particle_density(state.solution, payload.emitted);
+    for (std::size_t i = 0; i < state.emission.part_count(); ++i) {
+        payload.emitted.emplace_back(state.emission.power(i));
+        payload.density.push_back(1);  // the mean: what parts matter to the views is not known
+    }
     return payload;
 }
 

@@ -15,13 +15,17 @@ WellDistributedRays::WellDistributedRays(const SolverState& state)
 void WellDistributedRays::prepare(SolverState& state) {
     if (state.options.complete_passes) passes_.make_first_estimate(state);
     shot_.assign(state.forest->size(), 0.0);
+    shot_by_parts_.assign(state.emission.part_count(), 0.0);
     arrived_.assign(state.forest->size(), Rgb(0));
+    arrived_groups_.assign(state.groups.size(), arrived_);
 }
 
 void WellDistributedRays::archive(StateArchive& archive) {
     passes_.archive(archive);
     archive("well_distributed/shot", shot_);
+    archive("well_distributed/shot_by_parts", shot_by_parts_);
     archive("well_distributed/arrived", arrived_);
+    archive_groups(archive, "well_distributed/groups", arrived_groups_);
     archive("well_distributed/escaped", escaped_);
     archive("well_distributed/total", total_);
 }
@@ -30,21 +34,28 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
     auto [step, power, weighted_power, lost_leaves] =
-        power_step(state.materials, state.solution, light, {}, false, plan.rays);
+        power_step(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
     step.equal_quanta = true;
+    step.groups = group_radiosity(state, state.solution.groups);
     // These methods know no importance: the weights are the leaves' shares of all power.
-    const double all_power = channel_sum(radiated_power(forest, light));
+    const double all_power = channel_sum(radiated_power(state));
     double lacking = 0;
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         const double lacks = static_cast<double>(total_ + plan.rays) * step.q[e] - shot_[e];
         step.q[e] = forest.is_leaf(e) ? static_cast<float>(std::max(0.0, lacks)) : 0.0f;
         lacking += step.q[e];
     }
+    for (std::size_t i = 0; i < step.part_count(); ++i) {
+        float& q = step.q[forest.size() + i];
+        q = static_cast<float>(std::max(0.0, static_cast<double>(total_ + plan.rays) * q - shot_by_parts_[i]));
+        lacking += q;
+    }
     step.rays = std::max<std::int64_t>(1, std::llround(lacking));
     const std::int64_t rays = step.rays;
     if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_ + rays, state.floor.unseen());
 
-    std::vector<std::uint64_t> used_before = state.streams.used;
+    std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
+    used_by_parts_before.resize(shot_by_parts_.size(), 0);
     const std::uint32_t elements_before = forest.size();
     used_before.resize(elements_before, 0);
     const Received received = run_step(state, std::move(step));
@@ -52,22 +63,29 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     state.solution.non_finite += lost_leaves;
     for (std::uint32_t e = 0; e < elements_before; ++e)
         shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
+    for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)
+        shot_by_parts_[i] += static_cast<double>(state.streams.used_by_parts[i] - used_by_parts_before[i]);
     shot_.resize(state.forest->size());
     for (std::uint32_t e = elements_before; e < state.forest->size(); ++e)
         shot_[e] = shot_[state.forest->parent(e)] * state.forest->area(e) / state.forest->area(state.forest->parent(e));
     inherit(*state.forest, elements_before, arrived_);
+    inherit(*state.forest, elements_before, arrived_groups_);
 
     const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(total_));
     const auto quantum = static_cast<float>(all_power / static_cast<double>(rays));
-    FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size())};
+    FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size()), {}};
     for (std::size_t e = 0; e < arrived_.size(); ++e) {
         fresh.irradiance[e] = quantum * received.irradiance[e];
         fresh.variance[e] = quantum * (quantum * received.variance[e]);  // the square may be out of range
         arrived_[e] += received.irradiance[e];
     }
     pull(*state.forest, arrived_);
+    accumulate(arrived_groups_, received.groups);
+    pull(*state.forest, arrived_groups_);
     estimate_noise(state, fresh, rays);
     for (std::size_t e = 0; e < arrived_.size(); ++e) state.solution.irradiance[e] = power_per_ray * arrived_[e];
+    state.solution.groups = arrived_groups_;
+    scale(state.solution.groups, power_per_ray);
     state.history.assign(state.forest->size(), static_cast<float>(total_));
     state.power_rays += rays;
     plan.rays = rays;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "interflect/solver/iteration_method.h"
@@ -22,17 +23,23 @@ class WellDistributedRays : public IterationMethod {
     /// Grows N by plan.rays and takes the irradiance from all rays so far.
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
     void archive(StateArchive& archive) override;
-    bool fits(const ElementForest& forest) const override {
-        const auto is_whole = [&](std::size_t size) { return size == forest.size() || total_ == 0; };
-        return passes_.fits(forest) && is_whole(shot_.size()) && is_whole(arrived_.size());
+    bool fits(const SolverState& state) const override {
+        const std::size_t elements = state.forest->size(), parts = state.emission.part_count();
+        const bool is_whole = shot_.size() == elements && arrived_.size() == elements && shot_by_parts_.size() == parts;
+        const auto has_elements = [&](const auto& numbers) { return numbers.size() == elements; };
+        const bool has_groups = arrived_groups_.size() == state.groups.size() &&
+                                std::all_of(arrived_groups_.begin(), arrived_groups_.end(), has_elements);
+        return passes_.fits(state) && (has_groups || total_ == 0) && (is_whole || total_ == 0);
     }
 
   private:
-    Passes passes_;             // before the first iteration
-    std::vector<double> shot_;  // rays of each leaf
-    std::vector<Rgb> arrived_;  // quanta per area at each element, split to colours [1/m^2]
-    RgbD escaped_{0, 0, 0};     // quanta that left the scene
-    std::int64_t total_ = 0;    // N: rays of all leaves
+    Passes passes_;                      // before the first iteration
+    std::vector<double> shot_;           // rays of each leaf
+    std::vector<double> shot_by_parts_;  // rays of each part of the luminaires
+    std::vector<Rgb> arrived_;           // quanta per area at each element, split to colours [1/m^2]
+    GroupLight arrived_groups_;          // of that, what each light group brought
+    RgbD escaped_{0, 0, 0};              // quanta that left the scene
+    std::int64_t total_ = 0;             // N: rays of all leaves
 };
 
 }  // namespace interflect

@@ -1,0 +1,148 @@
+#include "interflect/luminaires/emission.h"
+
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "interflect/geometry/tangent_frame.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+/// The box around all patches, a little larger than it must be: rays that start on it are outside.
+Imath::Box3f box_around(const Scene& scene) {
+    constexpr float margin = 1e-3f;  // of its diagonal
+    Imath::Box3f box;
+    for (const Patch& patch : scene.patches)
+        for (int k = 0; k < patch.vertex_count(); ++k)
+            box.extendBy(scene.vertices[patch.vertices[static_cast<std::size_t>(k)]]);
+    const V3f around(margin * box.size().length());
+    box.min -= around, box.max += around;
+    return box;
+}
+
+/// Cosine of the angle of a ray of a cone to its axis, for v in (0, 1]: the inner part is uniform in solid angle;
+/// beyond it intensity is in proportion to (c - outer)^2.
+float sample_cosine(float v, float inner, float outer, float inner_share) {
+    if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
+    return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
+}
+
+}  // namespace
+
+Emission::Emission(const Scene& scene) {
+    if (scene.luminaires.empty() || scene.patches.empty()) return;
+    const Imath::Box3f box = box_around(scene);
+    for (const float x : {box.min.x, box.max.x})
+        for (const float y : {box.min.y, box.max.y})
+            for (const float z : {box.min.z, box.max.z}) corners_.emplace_back(x, y, z);
+    for (std::size_t i = 0; i < scene.luminaires.size(); ++i) {
+        const std::size_t first = emitters_.size();
+        std::visit([&](const auto& light) { add(light); }, scene.luminaires[i].kind);
+        for (std::size_t e = first; e < emitters_.size(); ++e) emitters_[e].luminaire = i;
+    }
+}
+
+RgbD Emission::total_power() const {
+    RgbD sum(0, 0, 0);
+    for (const Emitter& e : emitters_) sum += e.part_power * static_cast<double>(parts_per_emitter);
+    return sum;
+}
+
+void Emission::add(const PointLight& light) {
+    add_cone({light.position, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, -1, -1, 1}, light.intensity);
+}
+
+void Emission::add(const SpotLight& light) {
+    const V3f axis = light.direction.normalized();
+    const TangentFrame frame(axis);
+    const float inner = light.inner_cosine(), outer = light.outer_cosine();
+    const float within = 1 - inner, beyond = (inner - outer) / 3;
+    add_cone({light.position, axis, frame.s, frame.t, inner, outer, within / (within + beyond)}, light.intensity);
+}
+
+void Emission::add_cone(const Cone& cone, const Rgb& intensity) {
+    const double solid_angle = 2 * std::numbers::pi * ((1.0 - cone.inner) + (double{cone.inner} - cone.outer) / 3);
+    emitters_.push_back({cone, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
+}
+
+/// Starts on the rectangle that the scene's box fills as seen along the light.
+void Emission::add(const DirectionalLight& light) {
+    const V3f direction = light.direction.normalized();
+    const TangentFrame frame(direction);
+    V3f low(std::numeric_limits<float>::max()), high(-low);
+    for (const V3f& corner : corners_) {
+        const V3f p(corner.dot(frame.s), corner.dot(frame.t), corner.dot(direction));
+        for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+    }
+    const V3f corner = frame.s * low.x + frame.t * low.y + direction * low.z;
+    add_window({corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, 0, false},
+               light.irradiance);
+}
+
+/// Within a convex surface that emits diffusely everywhere, radiance is the same in all directions: here the six sides
+/// of the scene's box, which nothing is ever hit by.
+void Emission::add(const UniformSky& sky) {
+    const V3f low = corners_.front(), size = corners_.back() - low;
+    for (int axis = 0; axis < 3; ++axis) {
+        V3f edge_u(0), edge_v(0), normal(0), across(0);
+        edge_u[(axis + 1) % 3] = size[(axis + 1) % 3];
+        edge_v[(axis + 2) % 3] = size[(axis + 2) % 3];
+        normal[axis] = 1, across[axis] = size[axis];
+        const TangentFrame inward(normal), opposite(-normal);
+        add_window({low, edge_u, edge_v, normal, inward.s, inward.t, 0, true}, sky.radiance * pi);
+        add_window({low + across, edge_u, edge_v, -normal, opposite.s, opposite.t, 0, true}, sky.radiance * pi);
+    }
+}
+
+void Emission::add_window(Window window, const Rgb& exitance) {
+    window.part_area = window.edge_u.length() * window.edge_v.length() / float{parts_per_emitter};
+    emitters_.push_back({window, exitance, RgbD(exitance) * double{window.part_area}});
+}
+
+void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
+                     std::span<Ray> rays) const {
+    const Emitter& emitter = emitters_[part / parts_per_emitter];
+    const std::size_t cell = part % parts_per_emitter;
+    const auto column = static_cast<float>(cell % cells_per_side), row = static_cast<float>(cell / cells_per_side);
+    const auto turned = [](const V3f& axis, const V3f& s, const V3f& t, float cosine, float turn) {
+        const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), angle = 2 * pi * turn;
+        return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
+    };
+    for (std::size_t begin = 0; begin < rays.size(); begin += PointBlock::capacity) {
+        const std::size_t count = std::min(PointBlock::capacity, rays.size() - begin);
+        fill_points(set, key, first_sample + begin, count, points);
+        const auto& [a, b, c, d] = points.coordinate;
+        for (std::size_t i = 0; i < count; ++i) {
+            const float u = (column + a[i]) / cells_per_side, v = (row + b[i]) / cells_per_side;
+            Ray& ray = rays[begin + i];
+            if (const Cone* cone = std::get_if<Cone>(&emitter.shape)) {
+                const float cosine = sample_cosine(v, cone->inner, cone->outer, cone->inner_share);
+                ray = {cone->position, turned(cone->axis, cone->s, cone->t, cosine, u)};
+            } else {
+                const Window& window = std::get<Window>(emitter.shape);
+                ray.origin = window.corner + window.edge_u * u + window.edge_v * v;
+                ray.direction = window.is_diffuse
+                                    ? turned(window.direction, window.s, window.t, std::sqrt(1 - c[i]), d[i])
+                                    : window.direction;
+            }
+        }
+    }
+}
+
+Rgb Emission::irradiance(std::size_t part, float distance) const {
+    const Emitter& emitter = emitters_[part / parts_per_emitter];
+    const float squared = std::max(distance * distance, std::numeric_limits<float>::min());
+    if (std::holds_alternative<Cone>(emitter.shape)) return emitter.rating / squared;
+    const Window& window = std::get<Window>(emitter.shape);
+    return window.is_diffuse ? emitter.rating * (window.part_area / (window.part_area + pi * squared)) : emitter.rating;
+}
+
+}  // namespace interflect

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "interflect/base/colour.h"
+#include "interflect/base/points.h"
+#include "interflect/raycast/ray_caster.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+/// Rays from the luminaires of a scene. What a luminaire emits is divided into parts of equal power, by direction
+/// (point and spot lights) or by place (a directional light, a sky): each part gets rays of its own, so that importance
+/// can tell which of them matter. Immutable, shared by all threads.
+class Emission {
+  public:
+    Emission() = default;  ///< There are no luminaires.
+    explicit Emission(const Scene& scene);
+
+    std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
+    /// What a part emits [lm or W]. Of directional light and of a sky: what crosses the box around the scene, on which
+    /// its rays start.
+    RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
+    RgbD total_power() const;
+    /// Index in Scene::luminaires.
+    std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
+    /// Neighbouring parts, those of one luminaire or of one side of the sky, are alike in what their importance is
+    /// worth: part / parts_per_emitter tells which belong together.
+    static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
+
+    /// Makes the rays of samples first_sample, first_sample + 1, ... of a part; all carry the same power.
+    /// @param key     Names the part's point sequence (fill_points).
+    /// @param points  Working space.
+    /// @param rays    Receives the rays; its size is their number.
+    void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
+               std::span<Ray> rays) const;
+
+    /// What the part causes where one of its rays arrives, on a surface that faces the ray [lm/m^2 or W/m^2].
+    /// @param distance  That the ray has gone [m].
+    Rgb irradiance(std::size_t part, float distance) const;
+
+  private:
+    /// Into the cone around `axis` from cosine 1 to `outer`.
+    struct Cone {
+        V3f position, axis, s, t;
+        float inner, outer;  // cosines
+        float inner_share;   // of the power, within the inner angle
+    };
+    /// Starts on a parallelogram; all in one direction, or with a density cos(theta) / pi about it.
+    struct Window {
+        V3f corner, edge_u, edge_v;
+        V3f direction, s, t;
+        float part_area;
+        bool is_diffuse;
+    };
+    struct Emitter {
+        std::variant<Cone, Window> shape;
+        Rgb rating;
+        RgbD part_power;
+        std::size_t luminaire = 0;
+    };
+
+    void add(const PointLight& light);
+    void add(const SpotLight& light);
+    void add(const DirectionalLight& light);
+    void add(const UniformSky& sky);
+    void add_cone(const Cone& cone, const Rgb& intensity);
+    void add_window(Window window, const Rgb& exitance);
+
+    std::vector<V3f> corners_;  // of the box around the scene; empty without patches
+    std::vector<Emitter> emitters_;
+};
+
+}  // namespace interflect

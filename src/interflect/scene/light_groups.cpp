@@ -1,0 +1,172 @@
+#include "interflect/scene/light_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "interflect/base/error.h"
+#include "interflect/scene/scene.h"
+
+namespace interflect {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+    return text;
+}
+
+/// Whether a pattern matches an object, or one that it is within.
+bool matches_object(std::string_view pattern, std::string_view name) {
+    for (std::size_t end = name.find('.'); end != name.npos; end = name.find('.', end + 1))
+        if (matches(pattern, name.substr(0, end))) return true;
+    return !name.empty() && matches(pattern, name);
+}
+
+std::string outermost(const std::string& object) { return object.substr(0, object.find('.')); }
+
+/// Finds groups by names, and remembers what it found.
+class Matcher {
+  public:
+    explicit Matcher(const Scene& scene) : scene_(scene) {}
+
+    /// Index of the group, or as many as there are.
+    std::size_t group_of(std::uint32_t object, const std::string& own_name) {
+        const auto [entry, is_new] = known_.try_emplace({object, own_name}, scene_.light_groups.size());
+        if (!is_new) return entry->second;
+        const auto found =
+            std::find_if(scene_.light_groups.begin(), scene_.light_groups.end(), [&](const LightGroup& g) {
+                return matches_object(g.pattern, scene_.objects[object]) || matches(g.pattern, own_name);
+            });
+        return entry->second = static_cast<std::size_t>(found - scene_.light_groups.begin());
+    }
+
+  private:
+    const Scene& scene_;
+    std::map<std::pair<std::uint32_t, std::string>, std::size_t> known_;
+};
+
+void require_names(const std::vector<LightGroup>& groups) {
+    std::set<std::string> names;
+    for (const LightGroup& g : groups) {
+        if (g.name.empty() || g.pattern.empty())
+            throw InputError("a light group needs a name and a pattern, as in 'desk=lamps.desk*'");
+        if (!names.insert(g.name).second) throw InputError(fmt::format("two light groups are called '{}'", g.name));
+    }
+}
+
+void require_count(std::size_t groups) {
+    if (groups > most_light_groups)
+        throw InputError(fmt::format("{} light groups; at most {} are kept", groups, most_light_groups));
+}
+
+void scale(Luminaire& luminaire, float factor) {
+    if (auto* point = std::get_if<PointLight>(&luminaire.kind)) point->intensity *= factor;
+    if (auto* spot = std::get_if<SpotLight>(&luminaire.kind)) spot->intensity *= factor;
+    if (auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) directional->irradiance *= factor;
+    if (auto* sky = std::get_if<UniformSky>(&luminaire.kind)) sky->radiance *= factor;
+}
+
+}  // namespace
+
+bool matches(std::string_view pattern, std::string_view name) {
+    std::size_t p = 0, n = 0;
+    std::optional<std::size_t> star, resume;  // the last '*', and what is matched after it
+    while (n < name.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star = p++, resume = n;
+        } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+            ++p, ++n;
+        } else if (star) {
+            p = *star + 1, n = ++*resume;
+        } else {
+            return false;
+        }
+    }
+    return pattern.find_first_not_of('*', p) == pattern.npos;
+}
+
+std::size_t SourceGroups::index_of(const std::string& name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    throw InputError(names.empty() ? fmt::format("there is no light group '{}': the light was not kept by groups", name)
+                                   : fmt::format("there is no light group '{}'; there are {}", name, listed(names)));
+}
+
+SourceGroups source_groups(const Scene& scene) {
+    SourceGroups groups;
+    if (scene.light_groups.empty()) return groups;
+    require_names(scene.light_groups);
+    require_count(scene.light_groups.size());
+    const std::size_t other = scene.light_groups.size();
+    std::vector<bool> used(other + 1, false);
+    Matcher matcher(scene);
+    const auto group_of = [&](std::uint32_t object, const std::string& name) {
+        const std::size_t group = matcher.group_of(object, name);
+        used[group] = true;
+        return static_cast<std::uint8_t>(group);
+    };
+    for (const Patch& p : scene.patches) {
+        const Material& m = scene.materials[p.material];
+        groups.of_patch.push_back(channel_sum(m.exitance) > 0 ? group_of(p.object, m.name) : 0);
+    }
+    for (const Luminaire& l : scene.luminaires) groups.of_luminaire.push_back(group_of(l.object, l.name));
+    for (std::size_t g = 0; g < other; ++g) {
+        groups.names.push_back(scene.light_groups[g].name);
+        if (!used[g])
+            throw InputError(fmt::format("light group '{}': no source of light matches '{}'", groups.names[g],
+                                         scene.light_groups[g].pattern));
+    }
+    if (used[other]) groups.names.emplace_back("other");
+    require_count(groups.size());
+    return groups;
+}
+
+std::vector<LightGroup> groups_by_name(const Scene& scene) {
+    std::set<std::string> objects, names;
+    const auto add = [&](std::uint32_t object, const std::string& name) {
+        objects.insert(outermost(scene.objects[object]));
+        names.insert(name);
+    };
+    for (const Patch& p : scene.patches)
+        if (const Material& m = scene.materials[p.material]; channel_sum(m.exitance) > 0) add(p.object, m.name);
+    for (const Luminaire& l : scene.luminaires) add(l.object, l.name);
+    const std::set<std::string>& chosen = objects.size() > 1 ? objects : names;
+    std::vector<LightGroup> groups;
+    for (const std::string& name : chosen)
+        if (!name.empty()) groups.push_back({name, name});
+    if (groups.size() > most_light_groups)
+        throw InputError(
+            fmt::format("the sources of light have {} names, at most {} light groups are kept: name the "
+                        "groups, with patterns of what is in them",
+                        groups.size(), most_light_groups));
+    return groups;
+}
+
+Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors) {
+    Scene result = scene;
+    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // materials
+    for (std::size_t i = 0; i < result.patches.size(); ++i) {
+        std::uint32_t& material = result.patches[i].material;
+        const float factor = factors[groups.of_patch[i]];
+        if (factor == 1 || channel_sum(scene.materials[material].exitance) == 0) continue;
+        const auto [entry, is_new] =
+            scaled.try_emplace({material, factor}, static_cast<std::uint32_t>(result.materials.size()));
+        if (is_new) {
+            result.materials.push_back(scene.materials[material]);
+            result.materials.back().exitance *= factor;
+        }
+        material = entry->second;
+    }
+    for (std::size_t i = 0; i < result.luminaires.size(); ++i)
+        scale(result.luminaires[i], factors[groups.of_luminaire[i]]);
+    return result;
+}
+
+}  // namespace interflect

@@ -1,0 +1,78 @@
+#include "interflect/scene/luminaire.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "interflect/scene/limits.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr float straight_angle = 180;  // [degrees]
+constexpr float degree = std::numbers::pi_v<float> / straight_angle;
+
+std::string position_fault(const V3f& x) {
+    const Imath::V3d position(x);
+    if (!is_finite(position)) return "has a position that is not finite";
+    return is_within_reach(position) ? std::string()
+                                     : fmt::format("is farther than {:g} m from the origin", farthest_coordinate);
+}
+
+std::string direction_fault(const V3f& d) {
+    return is_finite(Imath::V3d(d)) && d.length() > 0 ? std::string()
+                                                      : std::string("needs a direction that is finite and not zero");
+}
+
+std::string placement_fault(const PointLight& light) { return position_fault(light.position); }
+std::string placement_fault(const DirectionalLight& light) { return direction_fault(light.direction); }
+std::string placement_fault(const UniformSky&) { return {}; }
+std::string placement_fault(const SpotLight& light) {
+    const bool is_cone = light.inner_angle >= 0 && light.inner_angle <= light.outer_angle && light.outer_angle > 0 &&
+                         light.outer_angle <= straight_angle;
+    if (!is_cone)
+        return fmt::format("has angles of {} and {} degrees; expected 0 <= inner <= outer, 0 < outer <= 180",
+                           light.inner_angle, light.outer_angle);
+    const std::string fault = position_fault(light.position);
+    return fault.empty() ? direction_fault(light.direction) : fault;
+}
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+}  // namespace
+
+float SpotLight::inner_cosine() const { return std::cos(inner_angle * degree); }
+float SpotLight::outer_cosine() const { return std::cos(outer_angle * degree); }
+
+Rgb rating(const Luminaire& luminaire) {
+    return std::visit(Overloaded{[](const PointLight& light) { return light.intensity; },
+                                 [](const SpotLight& light) { return light.intensity; },
+                                 [](const DirectionalLight& light) { return light.irradiance; },
+                                 [](const UniformSky& sky) { return sky.radiance; }},
+                      luminaire.kind);
+}
+
+const char* kind_name(const Luminaire& luminaire) {
+    constexpr std::array<const char*, 4> names{"point", "spot", "directional", "sky"};
+    return names[luminaire.kind.index()];
+}
+
+std::string luminaire_fault(const Luminaire& luminaire) {
+    const Rgb value = rating(luminaire);
+    if (!is_finite(value) || std::min({value.x, value.y, value.z}) < 0)
+        return fmt::format("has a colour ({}, {}, {}) that is negative or not finite", value.x, value.y, value.z);
+    if (largest_channel(value) > strongest_exitance)
+        return fmt::format("is too bright: expected at most {:g} in its unit", strongest_exitance);
+    return std::visit([](const auto& light) { return placement_fault(light); }, luminaire.kind);
+}
+
+}  // namespace interflect
