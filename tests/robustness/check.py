@@ -151,6 +151,15 @@ def can_be_drawn(name):
     return check
 
 
+def can_be_resumed(name):
+    """What `--checkpoint` has written, `resume` goes on with."""
+
+    def check(run):
+        return succeeds(run, "resume", name, "-o", "resumed.h5", "--time", "0.01") if run.has_file(name) else []
+
+    return check
+
+
 def scene_can_be_read(name):
     def check(run):
         return succeeds(run, "info", name) if run.has_file(name) and run.kept_result() else []
@@ -192,13 +201,13 @@ def same_bytes(expected):
     return check
 
 
-def damage_is_refused(expected_picture):
-    """A damaged solution is refused; that it draws the same picture is no excuse."""
+def damage_is_refused(output, expected):
+    """A damaged solution is refused; that the same comes of it is no excuse."""
 
     def check(run):
-        if run.exit_code == DONE and run.has_file("out.exr"):
-            same = run.bytes("out.exr") == expected_picture
-            yield Fault(UNNOTICED, "draws the same picture") if same else Fault(RESULT, "draws another picture in silence")
+        if run.exit_code == DONE and run.has_file(output):
+            same = run.bytes(output) == expected
+            yield Fault(UNNOTICED, f"the same {output!a}") if same else Fault(RESULT, f"another {output!a} in silence")
 
     return check
 

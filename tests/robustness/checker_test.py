@@ -86,9 +86,13 @@ class Checker(unittest.TestCase):
 
     def test_damage_that_is_not_noticed(self):
         for sort, expected in ((UNNOTICED, b"result\n"), (RESULT, b"another result\n")):
-            checks = (check.damage_is_refused(expected),)
+            checks = (check.damage_is_refused("out.exr", expected),)
             drawn = {"arguments": ("render", "-o", "out.exr"), "outputs": ("out.exr",), "checks": checks}
             self.assert_found(sort, SOUND, **drawn)
+
+    def test_run_that_cannot_be_resumed(self):
+        script = f"[ $1 = resume ] && exit 1; {SOUND}"
+        self.assert_found(RESULT, script, checks=(check.can_be_resumed("out"),))
 
     def test_message(self):
         allowed = frozenset({FAILED})

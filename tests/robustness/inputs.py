@@ -102,5 +102,5 @@ def solution(rng, seeds, _):
         files={"room.h5": damaged},
         allowed=READ,
         may_leave=("out.exr",),
-        checks=(check.damage_is_refused(seeds.written["render .exr"]["out.exr"]),),
+        checks=(check.damage_is_refused("out.exr", seeds.written["render .exr"]["out.exr"]),),
     )

@@ -12,9 +12,11 @@ SCENES = Path(__file__).parent / "scenes"
 SCENE = ("room.mgf", "room.views.json")
 ENTITIES = ("entities.mgf", "part.mgf", "lamp.ies")
 SOLUTION = ("room.h5",)
+RUN = ("run.h5",)  # that can go on
 PICTURES = ("a.exr", "b.exr", "a.hdr", "a.png")
 
 ROOM_RAYS = ("--rays", "2k", "--seed", "3")
+RESUMED = ("--rays", "4k")
 TINY = ("--size", "16x12", "--samples", "1")
 
 
@@ -71,6 +73,7 @@ class SeedError(Exception):
 class Seeds:
     """@param files     Sound inputs: name to bytes.
     @param written      Of each of WRITERS, what an undisturbed run writes: name to bytes.
+    @param resumed      What becomes of run.h5.
     @param helps        Of each subcommand, its help.
     @param sanitized    Whether the command was built with a sanitizer: slower, and in need of all addresses.
     """
@@ -78,6 +81,7 @@ class Seeds:
     program: str
     files: dict[str, bytes] = field(default_factory=dict)
     written: dict[str, dict[str, bytes]] = field(default_factory=dict)
+    resumed: bytes = b""
     helps: dict[tuple[str, ...], str] = field(default_factory=dict)
     sanitized: bool = False
     makes_devices: bool = False
@@ -87,7 +91,7 @@ class Seeds:
         return {name: self.files[name] for name in names}
 
 
-SUBCOMMANDS = [("info",), ("solve",), ("render",), ("compare",), ("bench",)]
+SUBCOMMANDS = [("info",), ("solve",), ("resume",), ("render",), ("compare",), ("bench",)]
 SUBCOMMANDS += [("make-scene", kind) for kind in ("maze", "office", "boxes", "two-rooms")]
 
 
@@ -107,7 +111,7 @@ def make_files(program, folder):
         (folder / path.name).write_bytes(path.read_bytes())
     make = ("make-scene", "maze", "--rooms", "1", "-o", "room.mgf")
     solve = ("solve", "room.mgf", "-o", "room.h5", "--view", "room-0", *ROOM_RAYS)
-    for arguments in (make, solve):
+    for arguments in (make, (*solve, "--checkpoint", *RUN)):
         run_or_raise(program, folder, arguments)
     for k, picture in enumerate(PICTURES):
         size = ("--size", "16x12", "--samples", str(1 + k))
@@ -133,6 +137,8 @@ def make_seeds(program):
         os.mkdir(folder / "disk")
         seeds.mounts = may(folder, "mount", "-t", "tmpfs", "none", "disk") and may(folder, "umount", "disk")
     seeds.written = {key: written_by(program, seeds, command) for key, command in WRITERS.items()}
+    resume = Command(("resume", *RUN, "-o", "out.h5", *RESUMED), RUN, ("out.h5",))
+    seeds.resumed = written_by(program, seeds, resume)["out.h5"]
     seeds.helps = {words: run_or_raise(program, ".", (*words, "--help")) for words in SUBCOMMANDS}
     seeds.sanitized = b"__asan_init" in Path(program).read_bytes()
     return seeds

@@ -32,14 +32,13 @@ void Solver::save(const std::filesystem::path& path) {
 }
 
 Solver Solver::open(const std::filesystem::path& path) {
-    SolvedScene solved = read_solution(path);
-    StateArchive state = read_state(path);
+    auto [solved, state] = read_saved_run(path);
     try {
         archive_options(state, solved.solution.options);
         Solver solver(std::move(solved.scene), solved.solution.options);
         solver.archive(state);
         return solver;
-    } catch (const std::runtime_error& e) {
+    } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
     }
 }

@@ -1,13 +1,10 @@
 #include "interflect/exports/solution_file.h"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -18,7 +15,9 @@
 #include "interflect/base/error.h"
 #include "interflect/exports/checksums.h"
 #include "interflect/exports/description.h"
+#include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
+#include "interflect/exports/texture_records.h"
 
 namespace interflect {
 
@@ -28,106 +27,6 @@ namespace {
 /// the origin was 0.
 constexpr int format_version = 4, oldest_format_version = 2, first_with_checksums = 4, first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
-/// Most entries of one array that a file may claim.
-constexpr hsize_t largest_array = hsize_t{1} << 32;
-
-/// To be called before all else: errors become exceptions, not text on stderr. The handler at the process's end is left
-/// out, since it crashes where a file could not be written.
-void prepare_hdf5() {
-    [[maybe_unused]] static const herr_t first_of_all = H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
-/// What the system last said of a disk that takes no more; empty where it said something else.
-std::string reason_of_disk() {
-    const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
-    return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
-}
-
-/// An HDF5 identifier that closes itself.
-class Handle {
-  public:
-    Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
-        if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}{}", what, reason_of_disk()));
-    }
-    ~Handle() { close_(id_); }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    operator hid_t() const { return id_; }
-
-  private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-
-void require(herr_t status, const std::string& what) {
-    if (status < 0) throw std::runtime_error("HDF5: " + what + reason_of_disk());
-}
-
-/// Memory and file type of what one array entry is made of.
-template <class T>
-hid_t native_type();
-template <>
-hid_t native_type<float>() {
-    return H5T_NATIVE_FLOAT;
-}
-template <>
-hid_t native_type<std::uint32_t>() {
-    return H5T_NATIVE_UINT32;
-}
-template <>
-hid_t native_type<char>() {
-    return H5T_NATIVE_CHAR;
-}
-template <>
-hid_t native_type<std::byte>() {
-    return H5T_NATIVE_UCHAR;
-}
-
-Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space) {
-    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
-    H5Pset_obj_track_times(properties, false);
-    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "cannot make properties");
-    H5Pset_create_intermediate_group(links, 1);
-    return {H5Dcreate2(file, name.c_str(), type, space, links, properties, H5P_DEFAULT), H5Dclose,
-            "cannot write an array"};
-}
-
-/// Writes `rows` rows of `columns` numbers; no time stamps, so that equal contents are equal bytes.
-/// @return Where they are in the file.
-template <class T>
-FileRange write_array(hid_t file, const std::string& name, const T* data, std::size_t rows, std::size_t columns) {
-    const std::array<hsize_t, 2> size{rows, columns};
-    const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose, "cannot size an array");
-    const Handle set = new_dataset(file, name, native_type<T>(), space);
-    if (rows * columns == 0) return {name, checksum_block_size, 0};
-    require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write '" + name + "'");
-    return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
-}
-
-template <class T>
-std::vector<T> read_array(hid_t file, const std::string& name, std::size_t columns) {
-    const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "an array is missing");
-    const Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
-    // HDF5 sets memory aside for numbers as large as the file says they are.
-    const Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
-    if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
-    std::array<hsize_t, 2> size{0, 1};
-    const int rank = H5Sget_simple_extent_ndims(space);
-    if (rank != (columns == 1 ? 1 : 2)) throw std::runtime_error("array '" + name + "' has the wrong rank");
-    H5Sget_simple_extent_dims(space, size.data(), nullptr);
-    // What a damaged file says of its arrays may be anything: no memory for more than it holds.
-    hsize_t file_size = 0;
-    require(H5Fget_filesize(file, &file_size), "cannot tell the file's size");
-    if (size[1] != columns || size[0] > largest_array / columns ||
-        size[0] * columns * sizeof(T) > std::min(H5Dget_storage_size(set), file_size))
-        throw std::runtime_error("array '" + name + "' has an unexpected size");
-    std::vector<T> data(size[0] * columns);
-    if (!data.empty())
-        require(H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
-                "cannot read '" + name + "'");
-    return data;
-}
 
 template <class Vector>
 std::vector<float> flattened(const std::vector<Vector>& v) {
@@ -249,109 +148,104 @@ bool has_hdf5_signature(const std::filesystem::path& path, std::uint64_t offset)
     return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == hdf5_signature;
 }
 
-void read_scene_arrays(hid_t file, int version, Scene& scene) {
-    scene.vertices = grouped<V3f>(read_array<float>(file, "/scene/vertices", 3));
+void read_scene_arrays(const Hdf5Reader& file, int version, Scene& scene) {
+    scene.vertices = grouped<V3f>(file.read<float>("/scene/vertices", 3));
     const bool has_contacts = version >= first_with_contacts;
     const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
-    scene.patches = patches_of(read_array<std::uint32_t>(file, "/scene/patches", each), each);
-    if (has_contacts) scene.contacts = contacts_of(grouped<V3f>(read_array<float>(file, "/scene/contacts", 3)));
+    scene.patches = patches_of(file.read<std::uint32_t>("/scene/patches", each), each);
+    if (has_contacts) scene.contacts = contacts_of(grouped<V3f>(file.read<float>("/scene/contacts", 3)));
+    read_textures(file, scene);
 }
 
-void read_solution_arrays(hid_t file, int version, bool has_importance, SolvedScene& solved) {
+void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importance, SolvedScene& solved) {
     Solution& solution = solved.solution;
-    solution.forest = forest_of(solved.scene, read_array<std::uint32_t>(file, "/elements/subdivided", 1));
-    solution.irradiance = grouped<Rgb>(read_array<float>(file, "/solution/irradiance", 3));
+    solution.forest = forest_of(solved.scene, file.read<std::uint32_t>("/elements/subdivided"));
+    solution.irradiance = grouped<Rgb>(file.read<float>("/solution/irradiance", 3));
     for (const ElementNumbers& n : element_numbers) {
         if (n.needs_view && !has_importance) continue;
         if (version < n.since_version)
             (solution.*n.values).assign(solution.forest->size(), 0.0f);
         else
-            solution.*n.values = read_array<float>(file, n.dataset, 1);
+            solution.*n.values = file.read<float>(n.dataset);
     }
     IterationReport& last = solution.iterations.back();
     last.elements = solution.forest->size();
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
 }
 
-SolvedScene read_solution_unchecked(const std::filesystem::path& path) {
+/// A solution file whose checksums have been verified, if it has them.
+struct VerifiedFile {
+    bool has_checksums;
+    Hdf5Reader arrays;
+};
+
+VerifiedFile verified(const std::filesystem::path& path) {
     // HDF5 would look for its beginning farther on; a file without checksums begins with it.
-    const bool checked = !has_hdf5_signature(path, 0);
-    if (checked) verify_checksums(path);
-    prepare_hdf5();
-    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
+    const bool has_checksums = !has_hdf5_signature(path, 0);
+    if (has_checksums) verify_checksums(path);
+    return {has_checksums, Hdf5Reader(path)};
+}
+
+SolvedScene read_solved_scene(const VerifiedFile& file) {
     SolvedScene solved;
-    const std::vector<char> text = read_array<char>(file, "/description", 1);
+    const std::vector<char> text = file.arrays.read<char>("/description");
     const bool has_importance =
         read_description({text.data(), text.size()}, oldest_format_version, format_version, solved);
-    if (!checked && solved.format_version >= first_with_checksums)
+    if (!file.has_checksums && solved.format_version >= first_with_checksums)
         throw std::runtime_error("the file is damaged: its checksums are missing");
-    read_scene_arrays(file, solved.format_version, solved.scene);
+    read_scene_arrays(file.arrays, solved.format_version, solved.scene);
     require_valid(solved.scene);
-    read_solution_arrays(file, solved.format_version, has_importance, solved);
+    read_solution_arrays(file.arrays, solved.format_version, has_importance, solved);
     require_valid(solved.solution);
     return solved;
 }
 
 /// @return Where the arrays are in the file.
-std::vector<FileRange> write_arrays(hid_t file, const std::string& description, const Scene& scene,
+std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& description, const Scene& scene,
                                     const Solution& solution) {
-    const std::vector<std::uint32_t> parents = solution.forest->subdivided();
-    std::vector<FileRange> ranges = {
-        write_array(file, "/description", description.data(), description.size(), 1),
-        write_array(file, "/scene/vertices", flattened(scene.vertices).data(), scene.vertices.size(), 3),
-        write_array(file, "/scene/patches", patch_numbers(scene).data(), scene.patches.size(), numbers_per_patch),
-        write_array(file, "/scene/contacts", flattened(contact_ends(scene)).data(), 2 * scene.contacts.size(), 3),
-        write_array(file, "/elements/subdivided", parents.data(), parents.size(), 1),
-        write_array(file, "/solution/irradiance", flattened(solution.irradiance).data(), solution.irradiance.size(),
-                    3)};
+    const auto write = [&]<class T>(const char* name, const std::vector<T>& numbers, std::size_t columns) {
+        return file.write(name, std::span<const T>(numbers), columns);
+    };
+    std::vector<FileRange> ranges = {file.write("/description", std::span<const char>(description)),
+                                     write("/scene/vertices", flattened(scene.vertices), 3),
+                                     write("/scene/patches", patch_numbers(scene), numbers_per_patch),
+                                     write("/scene/contacts", flattened(contact_ends(scene)), 3),
+                                     write("/elements/subdivided", solution.forest->subdivided(), 1),
+                                     write("/solution/irradiance", flattened(solution.irradiance), 3)};
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
-            ranges.push_back(write_array(file, n.dataset, (solution.*n.values).data(), (solution.*n.values).size(), 1));
+            ranges.push_back(write(n.dataset, solution.*n.values, 1));
+    for (FileRange& range : write_textures(file, scene)) ranges.push_back(std::move(range));
     return ranges;
 }
 
-constexpr const char *state_index = "/state/index", *state_bytes = "/state/bytes";
+constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
 /// Of what the arrays of a state are: to be raised whenever one of them changes.
 constexpr int state_version = 1;
 
 /// Writes the arrays of a state one after the other as one, and a list of them. @return Where they are in the file.
-std::vector<FileRange> write_state(hid_t file, const StateArchive& state) {
+std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();
-    hsize_t size = 0;
+    std::vector<std::span<const std::byte>> parts;
     for (const auto& [name, bytes] : state.written()) {
         arrays.push_back({name, bytes.size()});
-        size += bytes.size();
+        parts.push_back(bytes);
     }
     const std::string index =
         json_text({{"state_version", state_version}, {"version", INTERFLECT_VERSION}, {"arrays", arrays}});
-    const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "cannot size an array");
-    const Handle set = new_dataset(file, state_bytes, native_type<std::byte>(), space);
-    hsize_t begin = 0;
-    for (const auto& [name, bytes] : state.written()) {
-        const hsize_t count = bytes.size();
-        if (count == 0) continue;
-        const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose, "cannot size an array");
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
-        require(H5Dwrite(set, native_type<std::byte>(), memory, space, H5P_DEFAULT, bytes.data()),
-                "cannot write the state of the run");
-        begin += count;
-    }
-    return {write_array(file, state_index, index.data(), index.size(), 1),
-            {state_bytes, H5Dget_offset(set), H5Dget_storage_size(set)}};
+    const FileRange joined = file.write_joined(state_bytes, parts);
+    return {file.write(state_index, std::span<const char>(index)), joined};
 }
 
-StateArchive read_state_unchecked(const std::filesystem::path& path) {
-    verify_checksums(path);
-    prepare_hdf5();
-    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "not an HDF5 file");
-    if (H5Lexists(file, "/state", H5P_DEFAULT) <= 0)
+StateArchive read_state(const VerifiedFile& file) {
+    if (!file.has_checksums || !file.arrays.has(state_group))
         throw std::runtime_error("it has only the result of a run, not its state: see solve --checkpoint");
-    const std::vector<char> text = read_array<char>(file, state_index, 1);
+    const std::vector<char> text = file.arrays.read<char>(state_index);
     const Json index = parse_json_text({text.data(), text.size()});
     if (index.at("state_version") != state_version || index.at("version") != INTERFLECT_VERSION)
         throw std::runtime_error(fmt::format("its run was saved by Interflect {}; this is {}",
                                              index.at("version").get<std::string>(), INTERFLECT_VERSION));
-    const std::vector<std::byte> bytes = read_array<std::byte>(file, state_bytes, 1);
+    const std::vector<std::byte> bytes = file.arrays.read<std::byte>(state_bytes);
     std::map<std::string, std::vector<std::byte>> arrays;
     std::span<const std::byte> left = bytes;
     for (const Json& array : index.at("arrays")) {
@@ -367,18 +261,30 @@ StateArchive read_state_unchecked(const std::filesystem::path& path) {
 /// An HDF5 file that begins with an empty block for checksums.
 std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
                                   const Solution& solution, const StateArchive* state) {
-    prepare_hdf5();
-    errno = 0;
-    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make properties");
-    require(H5Pset_userblock(creation, checksum_block_size), "cannot set a user block");
-    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose,
-                      "cannot create the file");
+    Hdf5Writer file(path, checksum_block_size);
     std::vector<FileRange> ranges = write_arrays(file, description, scene, solution);
     if (state)
         for (FileRange& range : write_state(file, *state)) ranges.push_back(std::move(range));
-    require(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot write the file");
+    file.flush();
     return ranges;
 }
+
+void require_solution_file(const std::filesystem::path& path) {
+    if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
+    if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
+    if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
+}
+
+/// What `read` returns; what it throws becomes an InputError that names the file and begins with `fault`.
+template <class Read>
+auto read_or_refuse(const std::filesystem::path& path, const char* fault, const Read& read) {
+    try {
+        return read();
+    } catch (const std::exception& e) {
+        throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
+    }
+}
+constexpr const char* unreadable = "not a solution file that can be read";
 
 }  // namespace
 
@@ -396,23 +302,15 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
-    if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
-    if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
-    try {
-        return read_solution_unchecked(path);
-    } catch (const std::exception& e) {
-        throw InputError(path, 0, fmt::format("not a solution file that can be read: {}", e.what()));
-    }
+    require_solution_file(path);
+    return read_or_refuse(path, unreadable, [&] { return read_solved_scene(verified(path)); });
 }
 
-StateArchive read_state(const std::filesystem::path& path) {
-    if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
-    try {
-        return read_state_unchecked(path);
-    } catch (const std::exception& e) {
-        throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
-    }
+SavedRun read_saved_run(const std::filesystem::path& path) {
+    require_solution_file(path);
+    const VerifiedFile file = read_or_refuse(path, unreadable, [&] { return verified(path); });
+    SolvedScene solved = read_or_refuse(path, unreadable, [&] { return read_solved_scene(file); });
+    return {std::move(solved), read_or_refuse(path, "a run that cannot go on", [&] { return read_state(file); })};
 }
 
 bool is_solution_file(const std::filesystem::path& path) {

@@ -30,9 +30,15 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 /// @throws InputError for a file that is missing, damaged or something else.
 SolvedScene read_solution(const std::filesystem::path& path);
 
-/// For reading the state of the run in a file that write_solution() wrote. @throws InputError where it has none, and as
-/// read_solution().
-StateArchive read_state(const std::filesystem::path& path);
+/// A run that can go on.
+struct SavedRun {
+    SolvedScene solved;
+    StateArchive state;  ///< For reading.
+};
+
+/// Reads what write_solution() wrote with a state: opens and verifies the file once. @throws InputError where it has no
+/// state, or one of another version of Interflect, and as read_solution().
+SavedRun read_saved_run(const std::filesystem::path& path);
 
 /// Whether the file at `path` begins like a solution file, of this version or an older one; false when it cannot be
 /// read. True of a new one whose first bytes are damaged.

@@ -1,0 +1,153 @@
+#include "interflect/exports/hdf5_arrays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace interflect {
+
+namespace {
+
+/// Most entries of one array that a file may claim.
+constexpr hsize_t largest_array = hsize_t{1} << 32;
+
+/// To be called before all else: errors become exceptions, not text on stderr. The handler at the process's end is left
+/// out, since it crashes where a file could not be written.
+void prepare_hdf5() {
+    [[maybe_unused]] static const herr_t first_of_all = H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    errno = 0;
+}
+
+/// What the system last said of a disk that takes no more; empty where it said something else.
+std::string reason_of_disk() {
+    const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
+    return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
+}
+
+void require(herr_t status, const std::string& what) {
+    if (status < 0) throw std::runtime_error("HDF5: " + what + reason_of_disk());
+}
+
+/// Memory and file type of what one array entry is made of.
+template <class T>
+hid_t native_type();
+template <>
+hid_t native_type<float>() {
+    return H5T_NATIVE_FLOAT;
+}
+template <>
+hid_t native_type<std::uint32_t>() {
+    return H5T_NATIVE_UINT32;
+}
+template <>
+hid_t native_type<char>() {
+    return H5T_NATIVE_CHAR;
+}
+template <>
+hid_t native_type<std::byte>() {
+    return H5T_NATIVE_UCHAR;
+}
+
+Hdf5Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space) {
+    const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
+    H5Pset_obj_track_times(properties, false);
+    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "cannot make properties");
+    H5Pset_create_intermediate_group(links, 1);
+    return {H5Dcreate2(file, name.c_str(), type, space, links, properties, H5P_DEFAULT), H5Dclose,
+            "cannot write an array"};
+}
+
+hid_t opened(const std::filesystem::path& path) {
+    prepare_hdf5();
+    return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+}
+
+hid_t created(const std::filesystem::path& path, std::uint64_t user_block) {
+    prepare_hdf5();
+    const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make properties");
+    require(H5Pset_userblock(creation, user_block), "cannot set a user block");
+    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+}
+
+}  // namespace
+
+Hdf5Handle::Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+    if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}{}", what, reason_of_disk()));
+}
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : file_(opened(path), H5Fclose, "not an HDF5 file") {}
+
+template <class T>
+std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) const {
+    const Hdf5Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose, "an array is missing");
+    const Hdf5Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
+    // HDF5 sets memory aside for numbers as large as the file says they are.
+    const Hdf5Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
+    if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
+    std::array<hsize_t, 2> size{0, 1};
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank != (columns == 1 ? 1 : 2)) throw std::runtime_error("array '" + name + "' has the wrong rank");
+    H5Sget_simple_extent_dims(space, size.data(), nullptr);
+    // What a damaged file says of its arrays may be anything: no memory for more than it holds.
+    hsize_t file_size = 0;
+    require(H5Fget_filesize(file_, &file_size), "cannot tell the file's size");
+    if (size[1] != columns || size[0] > largest_array / columns ||
+        size[0] * columns * sizeof(T) > std::min(H5Dget_storage_size(set), file_size))
+        throw std::runtime_error("array '" + name + "' has an unexpected size");
+    std::vector<T> data(size[0] * columns);
+    if (!data.empty())
+        require(H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
+                "cannot read '" + name + "'");
+    return data;
+}
+
+template std::vector<float> Hdf5Reader::read(const std::string&, std::size_t) const;
+template std::vector<std::uint32_t> Hdf5Reader::read(const std::string&, std::size_t) const;
+template std::vector<char> Hdf5Reader::read(const std::string&, std::size_t) const;
+template std::vector<std::byte> Hdf5Reader::read(const std::string&, std::size_t) const;
+
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& path, std::uint64_t user_block)
+    : file_(created(path, user_block), H5Fclose, "cannot create the file") {}
+
+template <class T>
+FileRange Hdf5Writer::write(const std::string& name, std::span<const T> numbers, std::size_t columns) {
+    const std::array<hsize_t, 2> size{numbers.size() / columns, columns};
+    const Hdf5Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose,
+                           "cannot size an array");
+    const Hdf5Handle set = new_dataset(file_, name, native_type<T>(), space);
+    if (numbers.empty()) return {name, checksum_block_size, 0};
+    require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+            "cannot write '" + name + "'");
+    return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
+}
+
+template FileRange Hdf5Writer::write(const std::string&, std::span<const float>, std::size_t);
+template FileRange Hdf5Writer::write(const std::string&, std::span<const std::uint32_t>, std::size_t);
+template FileRange Hdf5Writer::write(const std::string&, std::span<const char>, std::size_t);
+
+FileRange Hdf5Writer::write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts) {
+    hsize_t size = 0;
+    for (const auto& part : parts) size += part.size();
+    const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "cannot size an array");
+    const Hdf5Handle set = new_dataset(file_, name, native_type<std::byte>(), space);
+    hsize_t begin = 0;
+    for (const auto& part : parts) {
+        const hsize_t count = part.size();
+        if (count == 0) continue;
+        const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose, "cannot size an array");
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
+        require(H5Dwrite(set, native_type<std::byte>(), memory, space, H5P_DEFAULT, part.data()),
+                "cannot write '" + name + "'");
+        begin += count;
+    }
+    return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
+}
+
+void Hdf5Writer::flush() { require(H5Fflush(file_, H5F_SCOPE_LOCAL), "cannot write the file"); }
+
+}  // namespace interflect

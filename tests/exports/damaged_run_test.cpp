@@ -1,0 +1,121 @@
+// A saved run that is damaged is refused, and never crashes what opens it. Seen to fail when Solver::open() reads a
+// file without comparing its checksums, and when it lets other exceptions than InputError pass.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include "interflect/base/error.h"
+#include "interflect/exports/checksums.h"
+#include "interflect/solver/solver.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+/// Of an array in a file, in bytes.
+struct Place {
+    std::size_t begin, size;
+};
+
+class DamagedRun : public testing::Test {
+  protected:
+    DamagedRun() {
+        Scene scene = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.5f), Rgb(1)}});
+        SolveOptions options;
+        options.method = find_method("ihsrr");
+        options.views = {{{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}}};
+        options.rays = 20'000;
+        options.camera_rays = 1000;
+        Solver solver(std::move(scene), options);
+        solver.advance({.rays = 10'000});
+        solver.save(path_);
+        std::ifstream file(path_, std::ios::binary);
+        bytes_ = {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    /// What Solver::open() says of the file; empty where it opens it. Other exceptions than InputError pass.
+    std::string error() const {
+        try {
+            Solver::open(path_);
+        } catch (const InputError& e) {
+            return e.what();
+        }
+        return "";
+    }
+
+    void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes; }
+
+    /// The undamaged file but for one bit.
+    void write_flipped(std::size_t at, std::size_t bit) const {
+        std::string damaged = bytes_;
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));
+        write(damaged);
+    }
+
+    Place place_of(const char* array) const {
+        write(bytes_);
+        const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
+                    set = H5Dopen2(file, array, H5P_DEFAULT);
+        const Place place{H5Dget_offset(set), H5Dget_storage_size(set)};
+        H5Dclose(set), H5Fclose(file);
+        return place;
+    }
+
+    const TemporaryFolder folder_;
+    const fs::path path_ = folder_.path() / "run.h5";
+    std::string bytes_;
+};
+
+TEST_F(DamagedRun, IsRefusedWithAnyByteFlipped) {
+    EXPECT_EQ(error(), "") << "undamaged";
+    for (const std::uint32_t seed : {1u, 2u, 3u}) {
+        std::mt19937 random(seed);
+        for (int trial = 0; trial < 100; ++trial) {
+            const std::size_t at = random() % bytes_.size(), bit = random() % 8;
+            write_flipped(at, bit);
+            EXPECT_THAT(error(), AnyOf(HasSubstr("the file is damaged: "), HasSubstr("not a solution file")))
+                << "byte " << at << ", bit " << bit;
+        }
+    }
+}
+
+TEST_F(DamagedRun, IsRefusedWithoutItsStateOrAPartOfIt) {
+    for (const char* part : {"/state", "/state/index", "/state/bytes"}) {
+        write(bytes_);
+        const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+        ASSERT_GE(H5Ldelete(file, part, H5P_DEFAULT), 0);
+        H5Fclose(file);
+        write_checksums(path_, {});
+        EXPECT_THAT(error(), HasSubstr("a run that cannot go on: ")) << part;
+    }
+}
+
+// What the checksums do not tell, since it was there when they were made. Most such runs open, and are wrong.
+TEST_F(DamagedRun, NeverCrashesWhateverItsStateSays) {
+    std::mt19937 random(1);
+    int refused = 0;
+    for (const char* array : {"/state/index", "/state/bytes"}) {
+        const Place place = place_of(array);
+        for (int trial = 0; trial < 100; ++trial) {
+            write_flipped(place.begin + random() % place.size, random() % 8);
+            write_checksums(path_, {});
+            refused += !error().empty();
+        }
+    }
+    EXPECT_GT(refused, 50);
+}
+
+}  // namespace
+}  // namespace interflect
