@@ -86,7 +86,7 @@ TEST(TextureMapping, TexelMultipliesWhatTheMaterialDoes) {
     scene.materials = {{.name = "m", .reflectance = Rgb(0.8f), .exitance = Rgb(10), .reflectance_texture = 0}};
     scene.textures = {{"two", 2, 1, {Rgb(0.5f), Rgb(1)}}};
     add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    scene.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (const V3f& x : scene.vertices) scene.texture_coordinates.emplace_back(x.x, x.y);
     const Patch& patch = scene.patches[0];
     EXPECT_NEAR(reflectance_at(scene, patch, {0.25f, 0.5f}).x, 0.4f, 1e-6f);
     EXPECT_NEAR(reflectance_at(scene, patch, {0.75f, 0.1f}).x, 0.8f, 1e-6f);

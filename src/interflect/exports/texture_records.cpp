@@ -1,6 +1,5 @@
 #include "interflect/exports/texture_records.h"
 
-#include <cstring>
 #include <string>
 
 namespace interflect {
@@ -22,7 +21,8 @@ std::vector<Vector> read_vectors(const Hdf5Reader& file, const std::string& name
     constexpr std::size_t columns = sizeof(Vector) / sizeof(float);
     const std::vector<float> numbers = file.read<float>(name, columns);
     std::vector<Vector> vectors(numbers.size() / columns);
-    if (!numbers.empty()) std::memcpy(vectors.data(), numbers.data(), numbers.size() * sizeof(float));
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        vectors[i / columns][static_cast<int>(i % columns)] = numbers[i];
     return vectors;
 }
 
