@@ -32,6 +32,11 @@ void read_scene(const Json& json, Scene& scene) {
         read_textures(m, scene.materials.back());
     }
     if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
+    if (json.contains("luminaires"))
+        for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l));
+    if (json.contains("light_groups"))
+        for (const Json& g : json.at("light_groups"))
+            scene.light_groups.push_back({g.at("name").get<std::string>(), g.at("pattern").get<std::string>()});
     scene.objects = json.at("objects").get<std::vector<std::string>>();
     if (json.contains("files")) scene.files = json.at("files").get<std::vector<std::string>>();
 }
@@ -55,6 +60,9 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
     Json luminaires = Json::array();
     for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l));
     const IterationReport last = solution.iterations.empty() ? IterationReport() : solution.iterations.back();
+    Json groups = Json::array(), dimming = Json::array();
+    for (const LightGroup& g : scene.light_groups) groups.push_back({{"name", g.name}, {"pattern", g.pattern}});
+    for (const float factor : solution.dimming) dimming.push_back(shortest_number(factor));
     Json description{{"format", "interflect solution"},
                      {"format_version", format_version},
                      {"version", INTERFLECT_VERSION},
@@ -72,6 +80,8 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
                      {"views", views},
                      {"materials", json_of_materials(scene.materials)},
                      {"luminaires", luminaires},
+                     {"light_groups", groups},
+                     {"dimming", dimming},
                      {"objects", scene.objects}};
     if (!scene.textures.empty()) description["textures"] = json_of(scene.textures);
     return json_text(description, 1);
@@ -92,6 +102,7 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
     read_result(json, solved.format_version, solution);
     solution.emitted_power = vector_of<RgbD>(json.at("emitted_power"));
     solution.interrupted = json.at("interrupted").get<bool>();
+    if (json.contains("dimming")) solution.dimming = json.at("dimming").get<std::vector<float>>();
     return json.at("has_importance").get<bool>();
 }
 

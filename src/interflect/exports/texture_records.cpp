@@ -21,8 +21,7 @@ std::vector<Vector> read_vectors(const Hdf5Reader& file, const std::string& name
     constexpr std::size_t columns = sizeof(Vector) / sizeof(float);
     const std::vector<float> numbers = file.read<float>(name, columns);
     std::vector<Vector> vectors(numbers.size() / columns);
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        vectors[i / columns][static_cast<int>(i % columns)] = numbers[i];
+    for (std::size_t i = 0; i < numbers.size(); ++i) vectors[i / columns][static_cast<int>(i % columns)] = numbers[i];
     return vectors;
 }
 

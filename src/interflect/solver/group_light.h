@@ -26,8 +26,8 @@ void accumulate(GroupLight& sum, const GroupLight& more);
 /// Multiplies all of it.
 void scale(GroupLight& light, float factor);
 
-/// All groups together, but for those that are dimmed to nothing.
-std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming);
+/// All groups together. @param dimming  Solution::dimming: those that are dimmed to nothing are left out.
+std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
 /// The groups' shares of what leaves elements and luminaires; the shares of one source sum to what it radiates. Refers
 /// to what it is made of.

@@ -24,6 +24,7 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     need.ray_tracer = ray_caster.memory();
     need.patches = scene.patches.size() * sizeof(PatchGeometry);
     need.rest = program;
+    need.per_element += source_groups(scene).size() * MemoryNeed::per_element_and_group;
     return need;
 }
 

@@ -19,6 +19,9 @@ struct MemoryNeed {
     /// arrivals, 40, or what was received, 16, and what has not been collected yet.
     /// Where the scene has textures, 25 more: means over the element, and which elements have some.
     std::size_t per_element = 128;
+    /// Of each element and light group: H, what is shot and what the pass brought, 12 each, and sums of arrivals, 24,
+    /// or what was received, 12.
+    static constexpr std::size_t per_element_and_group = 60;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
