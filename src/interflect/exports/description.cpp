@@ -4,6 +4,7 @@
 
 #include "interflect/exports/luminaire_records.h"
 #include "interflect/exports/solve_report.h"
+#include "interflect/exports/texture_records.h"
 
 namespace interflect {
 
@@ -14,8 +15,10 @@ constexpr int first_with_options = 4;
 
 Json json_of_materials(const std::vector<Material>& materials) {
     Json json = Json::array();
-    for (const Material& m : materials)
+    for (const Material& m : materials) {
         json.push_back({{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
+        add_textures(m, json.back());
+    }
     return json;
 }
 
@@ -23,9 +26,12 @@ void read_scene(const Json& json, Scene& scene) {
     scene.name = json.at("scene").get<std::string>();
     if (json.contains("origin")) scene.origin = vector_of<Imath::V3d>(json.at("origin"));
     for (const Json& v : json.at("views")) scene.views.push_back(view_of(v));
-    for (const Json& m : json.at("materials"))
+    for (const Json& m : json.at("materials")) {
         scene.materials.push_back(
             {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
+        read_textures(m, scene.materials.back());
+    }
+    if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
     if (json.contains("luminaires"))
         for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l));
     if (json.contains("light_groups"))
@@ -57,26 +63,27 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
     Json groups = Json::array(), dimming = Json::array();
     for (const LightGroup& g : scene.light_groups) groups.push_back({{"name", g.name}, {"pattern", g.pattern}});
     for (const float factor : solution.dimming) dimming.push_back(shortest_number(factor));
-    const Json description{{"format", "interflect solution"},
-                           {"format_version", format_version},
-                           {"version", INTERFLECT_VERSION},
-                           {"scene", scene.name},
-                           {"files", scene.files},
-                           {"method", solution.options.method.name},
-                           {"seed", solution.options.seed},
-                           {"rays", last.rays},
-                           {"options", json_of(solution.options)},
-                           {"result", json_of(last)},
-                           {"emitted_power", json_of(solution.emitted_power)},
-                           {"interrupted", solution.interrupted},
-                           {"has_importance", !solution.view_importance.empty()},
-                           {"origin", json_of(scene.origin)},
-                           {"views", views},
-                           {"materials", json_of_materials(scene.materials)},
-                           {"luminaires", luminaires},
-                           {"light_groups", groups},
-                           {"dimming", dimming},
-                           {"objects", scene.objects}};
+    Json description{{"format", "interflect solution"},
+                     {"format_version", format_version},
+                     {"version", INTERFLECT_VERSION},
+                     {"scene", scene.name},
+                     {"files", scene.files},
+                     {"method", solution.options.method.name},
+                     {"seed", solution.options.seed},
+                     {"rays", last.rays},
+                     {"options", json_of(solution.options)},
+                     {"result", json_of(last)},
+                     {"emitted_power", json_of(solution.emitted_power)},
+                     {"interrupted", solution.interrupted},
+                     {"has_importance", !solution.view_importance.empty()},
+                     {"origin", json_of(scene.origin)},
+                     {"views", views},
+                     {"materials", json_of_materials(scene.materials)},
+                     {"luminaires", luminaires},
+                     {"light_groups", groups},
+                     {"dimming", dimming},
+                     {"objects", scene.objects}};
+    if (!scene.textures.empty()) description["textures"] = json_of(scene.textures);
     return json_text(description, 1);
 }
 

@@ -17,6 +17,7 @@
 #include "interflect/exports/description.h"
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
+#include "interflect/exports/texture_records.h"
 
 namespace interflect {
 
@@ -157,6 +158,7 @@ void read_scene_arrays(const Hdf5Reader& file, int version, Scene& scene) {
     const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
     scene.patches = patches_of(file.read<std::uint32_t>("/scene/patches", each), each);
     if (has_contacts) scene.contacts = contacts_of(grouped<V3f>(file.read<float>("/scene/contacts", 3)));
+    read_textures(file, scene);
 }
 
 std::string group_dataset(std::size_t group) { return fmt::format("/solution/groups/{}", group); }
@@ -237,6 +239,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             ranges.push_back(write(n.dataset, solution.*n.values, 1));
+    for (FileRange& range : write_textures(file, scene)) ranges.push_back(std::move(range));
     for (std::size_t g = 0; g < solution.groups.size(); ++g)
         ranges.push_back(write(group_dataset(g).c_str(), flattened(solution.groups[g]), 3));
     return ranges;
