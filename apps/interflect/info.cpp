@@ -80,7 +80,7 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
     const Json memory{{"scene", need.scene},
                       {"ray_tracer", need.ray_tracer},
                       {"patches", need.patches},
-                      {"per_element", MemoryNeed::per_element},
+                      {"per_element", need.per_element},
                       {"at_least", need.with(scene.patches.size())}};
     Json views = Json::array(), warnings = Json::array(), emitters = Json::array();
     for (const View& v : scene.views) views.push_back(json_of(v));
@@ -137,7 +137,7 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     print_views(scene.views);
     print_line("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements",
                mebibytes(need.with(scene.patches.size())), mebibytes(need.scene), mebibytes(need.ray_tracer),
-               mebibytes(need.patches), mebibytes(1'000'000 * MemoryNeed::per_element));
+               mebibytes(need.patches), mebibytes(1'000'000 * need.per_element));
     print_line("  files     {}", scene.files.size());
     for (const std::string& file : outside) print_line("  outside   {}: not in the scene's own folder", file);
 }

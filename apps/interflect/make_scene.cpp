@@ -4,11 +4,14 @@
 #include <functional>
 #include <iterator>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
 #include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
+#include "interflect/formats/texture_files.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/formats/write_mgf.h"
 #include "interflect/generators/boxes.h"
@@ -32,23 +35,39 @@ std::string file_content(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// The views beside a scene were not named by whoever asks for it: they may be someone's own.
-void require_replaceable(const PendingFile& views, bool force) {
-    if (force || !fs::exists(views.final_path()) ||
-        file_content(views.final_path()) == file_content(views.temporary_path()))
+/// The files beside a scene were not named by whoever asks for it: they may be someone's own.
+/// @param content  What is in the file.
+void require_replaceable(const PendingFile& file, bool force, const std::string& content) {
+    if (force || !fs::exists(file.final_path()) ||
+        file_content(file.final_path()) == file_content(file.temporary_path()))
         return;
-    throw InputError(views.final_path(), 0, "has other views than the scene's: expected --force to replace them");
+    throw InputError(file.final_path(), 0,
+                     "has other " + content + " than the scene's: expected --force to replace them");
 }
 
-/// Makes a scene and writes it with its views. Both files are opened before the work begins.
+/// Writes the images of a scene beside it. @return Their files, to be committed.
+std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions& output,
+                                        const std::vector<std::string>& names) {
+    std::vector<PendingFile> files;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const PendingFile& file = files.emplace_back(output.path.parent_path() / names[i]);
+        write_texture(file.temporary_path(), scene.textures[i]);
+        require_replaceable(file, output.force, "texels");
+    }
+    return files;
+}
+
+/// Makes a scene and writes it with its views and textures. Files are opened before the work begins.
 void write(const OutputOptions& output, const std::function<Scene()>& make) {
     const fs::path& path = output.path;
     if (path.extension() != ".mgf") throw InputError(path, 0, "scenes are written as .mgf");
     PendingFile scene_file(path), view_file(view_list_path(path));
     const Scene scene = make();
-    write_mgf(scene, scene_file.temporary_path());
+    const std::vector<std::string> textures = texture_files(scene, path);
+    write_mgf(scene, scene_file.temporary_path(), textures);
     write_view_list(scene.views, view_file.temporary_path());
-    require_replaceable(view_file, output.force);
+    require_replaceable(view_file, output.force, "views");
+    for (PendingFile& file : write_textures(scene, output, textures)) file.commit();
     scene_file.commit();
     view_file.commit();
     spdlog::info("{}: {} patches; {}: {} views", path.string(), scene.patches.size(), view_file.final_path().string(),
@@ -62,7 +81,7 @@ CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string&
     CLI::App& kind = *parent.add_subcommand(name, help);
     kind.add_option("-o,--output", output->path, "Scene file to write (.mgf); its views go beside it (.views.json)")
         ->required();
-    kind.add_flag("--force", output->force, "Replace a .views.json that has other views");
+    kind.add_flag("--force", output->force, "Replace a .views.json or an image that differs");
     kind.callback([output, make] { write(*output, make); });
     return kind;
 }
@@ -118,6 +137,8 @@ void add_boxes(CLI::App& parent) {
     CLI::App& kind = add_kind(parent, "boxes", "One room with random boxes on its floor", boxes->seed,
                               [boxes] { return make_boxes(*boxes); });
     add_number(kind, "--boxes", boxes->boxes, BoxesOptions::most_boxes, "How many boxes");
+    kind.add_flag("--texture", boxes->texture,
+                  "With images on the floor, the boxes and the luminaires, written beside the scene (.png)");
 }
 
 void add_two_rooms(CLI::App& parent) {

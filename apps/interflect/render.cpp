@@ -8,6 +8,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/drawing_progress.h"
+#include "apps/interflect/light_group_options.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
@@ -43,6 +44,7 @@ struct RenderArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
+    DimmingOptions dimming;
     SolverOptions solver;
     PathTracerArguments path;
     std::filesystem::path output;
@@ -139,10 +141,14 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
 SolvedScene read(const RenderArguments& options, const CLI::App& command) {
     SolvedScene solved;
     if (!is_solution_file(options.scene.path)) {
+        if (!options.dimming.factors.empty())
+            throw InputError(options.scene.path, 0,
+                             "--dim needs the light of a solution: solve the scene with --light-groups first");
         solved.scene = options.scene.load();
         return solved;
     }
     solved = read_solution(options.scene.path);
+    options.dimming.dim(solved);
     refuse_scene_options(command, options.scene.path, options.shading == PictureShading::path);
     return solved;
 }
@@ -256,6 +262,7 @@ void add_render(CLI::App& app, int& exit_code) {
                         "Curve of .png and .jpg")
         ->default_str("filmic");
     add_show(command, options->shown);
+    options->dimming.add_to(command);
     options->solver.add_to(command);
     options->mesh.add_to(command);
     command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });

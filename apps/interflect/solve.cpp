@@ -8,6 +8,7 @@
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
+#include "apps/interflect/light_group_options.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
@@ -41,6 +42,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         SceneOptions scene;
         MeshOptions mesh;
         ViewOptions view;
+        LightGroupOptions groups;
         SolverOptions solver;
         Checkpoints checkpoints;
         std::filesystem::path output;
@@ -53,6 +55,7 @@ void add_solve(CLI::App& app, int& exit_code) {
     options->checkpoints.add_to(command, "Save the run to this file now and then (.h5); `resume` goes on with it");
     options->mesh.add_to(command);
     options->view.add_to(command);
+    options->groups.add_to(command);
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
         require_solution_name(options->output);
@@ -66,6 +69,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         const std::vector<View> views = options->view.views(scene);
         const SolveOptions solve_options = options->solver.resolved(views);
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
+        options->groups.set_groups(scene);
         // What was asked for comes first: `render` takes the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         StatsFile stats(options->solver.threads, options->solver.stats, scene);

@@ -54,6 +54,7 @@ Scene open_room_with_lights() {
                         {"spot", 0, SpotLight{{1, 1, 2.2f}, {1, 1, -3}, {50, 50, 90}, 10, 40}},
                         {"sun", 0, DirectionalLight{{1, 1, -3}, {80, 70, 60}}},
                         {"sky", 0, UniformSky{{9, 10, 12}}}};
+    scene.light_groups = {{"daylight", "s*"}};
     return scene;
 }
 
@@ -97,7 +98,8 @@ std::vector<Case> cases() {
     add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.complete_passes = false; });
     const std::size_t without_lights = all.size();
     for (std::size_t i = 0; i < without_lights; ++i)
-        if (all[i].options.method.takes_luminaires) all.push_back({all[i].name + "_with_lights", all[i].options, true});
+        if (all[i].options.method.separates_groups && all[i].options.method.takes_luminaires)
+            all.push_back({all[i].name + "_with_lights", all[i].options, true});  // and groups of them
     return all;
 }
 
@@ -123,6 +125,7 @@ void expect_same(const Solution& s, const Solution& expected) {
     }
     ASSERT_EQ(s.forest->subdivided(), expected.forest->subdivided());
     EXPECT_EQ(s.irradiance, expected.irradiance);
+    EXPECT_EQ(s.groups, expected.groups);
     EXPECT_EQ(s.view_importance, expected.view_importance);
     EXPECT_EQ(s.indirect_importance, expected.indirect_importance);
     EXPECT_EQ(s.standard_error, expected.standard_error);

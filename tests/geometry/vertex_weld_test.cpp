@@ -7,7 +7,7 @@ namespace {
 
 TEST(VertexWeld, OneVertexForEachPosition) {
     Scene scene;
-    VertexWeld weld(scene.vertices);
+    VertexWeld weld(scene);
     const std::uint32_t a = weld.vertex({1, 2, 3}), b = weld.vertex({1, 2, 3.0000002f});
     EXPECT_NE(a, b);
     EXPECT_EQ(weld.vertex({1, 2, 3}), a);
@@ -17,13 +17,13 @@ TEST(VertexWeld, OneVertexForEachPosition) {
 
 TEST(VertexWeld, NegativeZeroIsZero) {
     Scene scene;
-    VertexWeld weld(scene.vertices);
+    VertexWeld weld(scene);
     EXPECT_EQ(weld.vertex({0, 0, 0}), weld.vertex({-0.0f, 0, -0.0f}));
 }
 
 TEST(VertexWeld, VerticesThatOthersAddDoNotDisturbIt) {
     Scene scene;
-    VertexWeld weld(scene.vertices);
+    VertexWeld weld(scene);
     weld.vertex({0, 0, 0});
     scene.vertices.emplace_back(5.0f, 5.0f, 5.0f);
     EXPECT_EQ(weld.vertex({1, 0, 0}), 2u);
@@ -32,7 +32,7 @@ TEST(VertexWeld, VerticesThatOthersAddDoNotDisturbIt) {
 
 TEST(VertexWeld, GrowsWithoutLosingAny) {
     Scene scene;
-    VertexWeld weld(scene.vertices);
+    VertexWeld weld(scene);
     const auto position = [](std::uint32_t i) {
         return V3f(static_cast<float>(i % 100), static_cast<float>(i / 100), 7);
     };

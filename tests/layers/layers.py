@@ -5,7 +5,8 @@ from pathlib import Path
 
 # A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
 LAYERS = [
-    "base", "scene", "geometry", "generators", "formats", "raycast", "luminaires", "elements", "solver", "image", "render", "metrics",
+    "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "elements", "solver", "render",
+    "metrics",
     "exports", "cluster",
 ]
 

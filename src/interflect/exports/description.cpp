@@ -4,6 +4,7 @@
 
 #include "interflect/exports/luminaire_records.h"
 #include "interflect/exports/solve_report.h"
+#include "interflect/exports/texture_records.h"
 
 namespace interflect {
 
@@ -14,8 +15,10 @@ constexpr int first_with_options = 4;
 
 Json json_of_materials(const std::vector<Material>& materials) {
     Json json = Json::array();
-    for (const Material& m : materials)
+    for (const Material& m : materials) {
         json.push_back({{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
+        add_textures(m, json.back());
+    }
     return json;
 }
 
@@ -23,11 +26,17 @@ void read_scene(const Json& json, Scene& scene) {
     scene.name = json.at("scene").get<std::string>();
     if (json.contains("origin")) scene.origin = vector_of<Imath::V3d>(json.at("origin"));
     for (const Json& v : json.at("views")) scene.views.push_back(view_of(v));
-    for (const Json& m : json.at("materials"))
+    for (const Json& m : json.at("materials")) {
         scene.materials.push_back(
             {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
+        read_textures(m, scene.materials.back());
+    }
+    if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
     if (json.contains("luminaires"))
         for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l));
+    if (json.contains("light_groups"))
+        for (const Json& g : json.at("light_groups"))
+            scene.light_groups.push_back({g.at("name").get<std::string>(), g.at("pattern").get<std::string>()});
     scene.objects = json.at("objects").get<std::vector<std::string>>();
     if (json.contains("files")) scene.files = json.at("files").get<std::vector<std::string>>();
 }
@@ -51,24 +60,30 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
     Json luminaires = Json::array();
     for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l));
     const IterationReport last = solution.iterations.empty() ? IterationReport() : solution.iterations.back();
-    const Json description{{"format", "interflect solution"},
-                           {"format_version", format_version},
-                           {"version", INTERFLECT_VERSION},
-                           {"scene", scene.name},
-                           {"files", scene.files},
-                           {"method", solution.options.method.name},
-                           {"seed", solution.options.seed},
-                           {"rays", last.rays},
-                           {"options", json_of(solution.options)},
-                           {"result", json_of(last)},
-                           {"emitted_power", json_of(solution.emitted_power)},
-                           {"interrupted", solution.interrupted},
-                           {"has_importance", !solution.view_importance.empty()},
-                           {"origin", json_of(scene.origin)},
-                           {"views", views},
-                           {"materials", json_of_materials(scene.materials)},
-                           {"luminaires", luminaires},
-                           {"objects", scene.objects}};
+    Json groups = Json::array(), dimming = Json::array();
+    for (const LightGroup& g : scene.light_groups) groups.push_back({{"name", g.name}, {"pattern", g.pattern}});
+    for (const float factor : solution.dimming) dimming.push_back(shortest_number(factor));
+    Json description{{"format", "interflect solution"},
+                     {"format_version", format_version},
+                     {"version", INTERFLECT_VERSION},
+                     {"scene", scene.name},
+                     {"files", scene.files},
+                     {"method", solution.options.method.name},
+                     {"seed", solution.options.seed},
+                     {"rays", last.rays},
+                     {"options", json_of(solution.options)},
+                     {"result", json_of(last)},
+                     {"emitted_power", json_of(solution.emitted_power)},
+                     {"interrupted", solution.interrupted},
+                     {"has_importance", !solution.view_importance.empty()},
+                     {"origin", json_of(scene.origin)},
+                     {"views", views},
+                     {"materials", json_of_materials(scene.materials)},
+                     {"luminaires", luminaires},
+                     {"light_groups", groups},
+                     {"dimming", dimming},
+                     {"objects", scene.objects}};
+    if (!scene.textures.empty()) description["textures"] = json_of(scene.textures);
     return json_text(description, 1);
 }
 
@@ -87,6 +102,7 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
     read_result(json, solved.format_version, solution);
     solution.emitted_power = vector_of<RgbD>(json.at("emitted_power"));
     solution.interrupted = json.at("interrupted").get<bool>();
+    if (json.contains("dimming")) solution.dimming = json.at("dimming").get<std::vector<float>>();
     return json.at("has_importance").get<bool>();
 }
 

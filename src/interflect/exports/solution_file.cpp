@@ -17,6 +17,7 @@
 #include "interflect/exports/description.h"
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
+#include "interflect/exports/texture_records.h"
 
 namespace interflect {
 
@@ -136,6 +137,10 @@ void require_valid(const Solution& solution) {
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             require_none(fault_of(solution.*n.values, 1, forest, n.name));
+    for (const std::vector<Rgb>& of_group : solution.groups) {
+        const auto* numbers = reinterpret_cast<const float*>(of_group.data());
+        require_none(fault_of({numbers, 3 * of_group.size()}, 3, forest, "irradiance by a light group"));
+    }
     if (!is_finite(solution.emitted_power)) require_none("the emitted power is not finite");
 }
 
@@ -153,6 +158,26 @@ void read_scene_arrays(const Hdf5Reader& file, int version, Scene& scene) {
     const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
     scene.patches = patches_of(file.read<std::uint32_t>("/scene/patches", each), each);
     if (has_contacts) scene.contacts = contacts_of(grouped<V3f>(file.read<float>("/scene/contacts", 3)));
+    read_textures(file, scene);
+}
+
+std::string group_dataset(std::size_t group) { return fmt::format("/solution/groups/{}", group); }
+
+void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
+    Solution& solution = solved.solution;
+    solution.group_names = source_groups(solved.scene).names;
+    if (solution.dimming.size() != solution.group_names.size())
+        throw std::runtime_error("light groups and their dimming differ in number");
+    for (std::size_t g = 0; g < solution.group_names.size(); ++g)
+        solution.groups.push_back(grouped<Rgb>(file.read<float>(group_dataset(g), 3)));
+}
+
+/// The sources of the scene emit what the solution has scaled them to.
+void apply_dimming(SolvedScene& solved) {
+    std::vector<float>& dimming = solved.solution.dimming;
+    if (std::all_of(dimming.begin(), dimming.end(), [](float factor) { return factor == 1; })) return;
+    solved.scene = dimmed(solved.scene, source_groups(solved.scene), dimming);
+    std::fill(dimming.begin(), dimming.end(), 1.0f);
 }
 
 void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importance, SolvedScene& solved) {
@@ -166,6 +191,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
         else
             solution.*n.values = file.read<float>(n.dataset);
     }
+    read_groups(file, solved);
     IterationReport& last = solution.iterations.back();
     last.elements = solution.forest->size();
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
@@ -213,6 +239,9 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             ranges.push_back(write(n.dataset, solution.*n.values, 1));
+    for (FileRange& range : write_textures(file, scene)) ranges.push_back(std::move(range));
+    for (std::size_t g = 0; g < solution.groups.size(); ++g)
+        ranges.push_back(write(group_dataset(g).c_str(), flattened(solution.groups[g]), 3));
     return ranges;
 }
 
@@ -300,7 +329,11 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 
 SolvedScene read_solution(const std::filesystem::path& path) {
     require_solution_file(path);
-    return read_or_refuse(path, unreadable, [&] { return read_solved_scene(verified(path)); });
+    return read_or_refuse(path, unreadable, [&] {
+        SolvedScene solved = read_solved_scene(verified(path));
+        apply_dimming(solved);
+        return solved;
+    });
 }
 
 SavedRun read_saved_run(const std::filesystem::path& path) {

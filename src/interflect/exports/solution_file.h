@@ -32,7 +32,7 @@ SolvedScene read_solution(const std::filesystem::path& path);
 
 /// A run that can go on.
 struct SavedRun {
-    SolvedScene solved;
+    SolvedScene solved;  ///< The sources of its scene are not dimmed; Solution::dimming says which should be.
     StateArchive state;  ///< For reading.
 };
 

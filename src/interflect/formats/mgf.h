@@ -24,6 +24,8 @@ namespace interflect {
 /// * `o` names objects, nested names with dots; the copies of an array are objects "a0", "a1" ..., or "a0.0" ...
 /// * `xf` and `i`: transforms, arrays and files, which are found relative to the including file and share its contexts.
 ///   What a file leaves open is closed at its end, with a warning; of an array left open only the first copy is read.
+/// * `uv` and `texture` (docs/mgf-extensions.md) are Interflect's own: texture coordinates of a vertex, and an image
+///   that a material's `rd` or `ed` is multiplied by.
 /// * `ies` and unknown entities are skipped with a warning.
 ///
 /// A scene that lies far from the world's origin is read twice, the second time relative to its Scene::origin
@@ -37,12 +39,12 @@ namespace interflect {
 ///
 /// @throws InputError  with file, line and what was expected, where a file cannot be read, an entity lacks arguments,
 /// has a
-///         number that is not finite in single precision or out of its range, names what is not defined, or goes beyond
-///         a limit of `options`, all this in a colour or material only where a face uses it; where a face or an
-///         exitance is beyond what can be computed (limits.h), or a face so far from the others that rounding would
-///         leave nothing of it though it is as large as they are; where a hole names fewer than three different
-///         vertices; where a file includes itself; where arrays and includes go over much more than they make; where no
-///         face with an area is left.
+///         number that is not finite in single precision or out of its range, names what is not defined or an image
+///         that cannot be used, puts a texture on what has no texture coordinates, or goes beyond a limit of `options`,
+///         all this in a colour or material only where a face uses it; where a face or an exitance is beyond what can
+///         be computed (limits.h), or a face so far from the others that rounding would leave nothing of it though it
+///         is as large as they are; where a hole names fewer than three different vertices; where a file includes
+///         itself; where arrays and includes go over much more than they make; where no face with an area is left.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The same from memory. @param path  Name for messages; its folder is where includes are looked for.

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 
@@ -82,21 +84,36 @@ struct MgfColour {
     std::uint32_t fault = none;  ///< In MgfFaults, where what defines it is wrong.
 };
 
+/// The image of a `texture` entity; none where the path is empty.
+struct MgfTexture {
+    std::string path;
+    Location where;
+};
+
 /// MGF's material; black and two-sided by default. Reflectances, transmittances: luminous, 0 to 1.
 struct MgfMaterial {
     bool two_sided = true;
     double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular reflectance and transmittance.
     double ed = 0;                          ///< Exitance [lm/m^2].
     MgfColour rd_colour, ed_colour;
+    MgfTexture rd_texture, ed_texture;
     Location defined;                  ///< The last line that changed it.
     std::uint32_t fault = none;        ///< In MgfFaults: the first thing wrong with what defines it.
     std::uint32_t scene_index = none;  ///< In Scene::materials, once a face has used it as it is.
+
+    bool is_textured() const { return !rd_texture.path.empty() || !ed_texture.path.empty(); }
 };
 
 /// MGF's vertex.
 struct MgfVertex {
     Imath::V3d point{0, 0, 0};
     Imath::V3d normal{0, 0, 0};  ///< Unit length, or zero where none is given.
+    bool has_texture_coordinate = false;
+    V2f texture_coordinate{0, 0};
+
+    std::optional<V2f> coordinate() const {
+        return has_texture_coordinate ? std::optional(texture_coordinate) : std::nullopt;
+    }
 };
 
 }  // namespace interflect

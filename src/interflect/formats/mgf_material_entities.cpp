@@ -93,6 +93,15 @@ void MgfReader::exitance(MgfWords words) {
     material.ed_colour = colours_.current();
 }
 
+/// The image is read when a face uses the material.
+void MgfReader::texture(MgfWords words) {
+    if (words[0] != "rd" && words[0] != "ed")
+        throw MgfFault(fmt::format("a texture is one of rd or ed, not of '{}'", words[0]));
+    const std::filesystem::path path = file_->source.path.parent_path() / words[1];
+    MgfMaterial& material = changed_material();
+    (words[0] == "rd" ? material.rd_texture : material.ed_texture) = {path.string(), here()};
+}
+
 void MgfReader::refraction(MgfWords words) {
     if (!(number_argument(words[0]) > 0)) throw MgfFault("the real part of an index of refraction must be positive");
     number_argument(words[1]);

@@ -28,9 +28,11 @@ const std::unordered_map<std::string_view, MgfReader::Entity>& MgfReader::entiti
         {"ts", {&MgfReader::specular_transmittance, 2, 2, "ts transmittance roughness", Defines::material}},
         {"ed", {&MgfReader::exitance, 1, 1, "ed exitance", Defines::material}},
         {"ir", {&MgfReader::refraction, 2, 2, "ir real imaginary", Defines::material}},
+        {"texture", {&MgfReader::texture, 2, 2, "texture rd|ed image", Defines::material}},  // docs/mgf-extensions.md
         {"v", {&MgfReader::vertex, 0, 3, "v [name [= [template]]]"}},
         {"p", {&MgfReader::point, 3, 3, "p x y z"}},
         {"n", {&MgfReader::normal, 3, 3, "n x y z"}},
+        {"uv", {&MgfReader::texture_coordinate, 2, 2, "uv u v"}},  // docs/mgf-extensions.md
         {"f", {&MgfReader::face, 3, any, "f vertex1 vertex2 vertex3 ..."}},
         {"fh", {&MgfReader::face_with_holes, 3, any, "fh vertex1 vertex2 vertex3 ... - hole1 hole2 hole3 ..."}},
         {"sph", {&MgfReader::sphere, 2, 2, "sph centre radius"}},

@@ -95,9 +95,11 @@ class MgfReader {
     void specular_transmittance(MgfWords words);
     void exitance(MgfWords words);
     void refraction(MgfWords words);
+    void texture(MgfWords words);
     void vertex(MgfWords words) { vertices_.enter(words); }
     void point(MgfWords words) { vertices_.current().point = vector_argument(words); }
     void normal(MgfWords words) { vertices_.current().normal = vector_argument(words).normalized(); }
+    void texture_coordinate(MgfWords words);
     void face(MgfWords words);
     void face_with_holes(MgfWords words);
     void sphere(MgfWords words);

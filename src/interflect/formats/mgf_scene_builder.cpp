@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "interflect/base/error.h"
+#include "interflect/formats/text_file.h"
+#include "interflect/formats/texture_files.h"
 #include "interflect/geometry/polygon.h"
 #include "interflect/scene/limits.h"
 
@@ -27,7 +29,9 @@ constexpr double largest_lost_size = 0x1p-16;
 /// Equal for materials that look the same and are called the same, however often a file defines them.
 std::string identity(const Material& m) {
     std::string key = m.name;
-    for (const Rgb& c : {m.reflectance, m.exitance}) key.append(reinterpret_cast<const char*>(&c), sizeof c);
+    const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    for (const Rgb& c : {m.reflectance, m.exitance}) append(c);
+    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture}) append(texture);
     return key;
 }
 
@@ -35,7 +39,7 @@ std::string identity(const Material& m) {
 
 MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options,
                                  const Imath::V3d& origin)
-    : options_(options), weld_(scene_.vertices) {
+    : options_(options), weld_(scene_) {
     scene_.origin = origin;
     scene_.name = file.string();
     scene_.objects.emplace_back();
@@ -70,6 +74,37 @@ Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double
     return result.rgb;
 }
 
+std::uint32_t MgfSceneBuilder::texture(const MgfTexture& texture) {
+    if (texture.path.empty()) return none;
+    const auto [entry, is_new] =
+        texture_index_.try_emplace(texture.path, static_cast<std::uint32_t>(scene_.textures.size()));
+    if (!is_new) return entry->second;
+    try {
+        require_regular_file(texture.path);
+        scene_.textures.push_back(read_texture(texture.path));
+    } catch (const InputError& unreadable) {
+        throw InputError(*texture.where.file, texture.where.line, fmt::format("the texture {}", unreadable.what()));
+    }
+    texels_ += scene_.textures.back().texels.size();
+    if (texels_ > most_texels)
+        throw InputError(*texture.where.file, texture.where.line,
+                         fmt::format("with this texture there are more than {} texels", most_texels));
+    largest_texels_.push_back(largest_texel(scene_.textures.back()));
+    add_file(texture.path);
+    return entry->second;
+}
+
+void MgfSceneBuilder::require_products(const Material& result, const MgfMaterial& material) const {
+    const Rgb reflectance = textured(result.reflectance, result.reflectance_texture, largest_texels_);
+    if (const Location& where = material.rd_texture.where; !(largest_channel(reflectance) < 1))
+        throw InputError(*where.file, where.line,
+                         fmt::format("reflectance times texture is up to ({}, {}, {}); expected less than 1",
+                                     reflectance.x, reflectance.y, reflectance.z));
+    const std::string fault = exitance_fault(textured(result.exitance, result.exitance_texture, largest_texels_));
+    if (const Location& where = material.ed_texture.where; !fault.empty())
+        throw InputError(*where.file, where.line, "with the texture's largest texel, the " + fault);
+}
+
 Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Location& where) {
     constexpr double unbounded = std::numeric_limits<float>::max();
     return converted(colour, luminance, unbounded, where);
@@ -88,9 +123,11 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     if (material.scene_index != none) return material.scene_index;
     const Material result{std::string(name),
                           converted(material.rd_colour, material.rd, largest_reflectance, material.defined),
-                          emitted(material.ed_colour, material.ed, material.defined)};
+                          emitted(material.ed_colour, material.ed, material.defined), texture(material.rd_texture),
+                          texture(material.ed_texture)};
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
         throw InputError(*material.defined.file, material.defined.line, fault);
+    require_products(result, material);
     const auto [entry, is_new] =
         material_index_.try_emplace(identity(result), static_cast<std::uint32_t>(scene_.materials.size()));
     if (is_new) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -31,8 +32,10 @@ class MgfSceneBuilder {
 
     /// A place in the world [m], relative to the scene's origin.
     V3f position(const Imath::V3d& world) const;
-    /// Index of the vertex at `position` in the world [m].
-    std::uint32_t vertex(const Imath::V3d& world) { return weld_.vertex(position(world)); }
+    /// Index of the vertex at `world` [m] with these texture coordinates, if it has some.
+    std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate) {
+        return weld_.vertex(position(world), texture_coordinate);
+    }
     /// What is emitted in a colour, in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);
     /// Index of the material; remembers it in `material`.
@@ -60,6 +63,10 @@ class MgfSceneBuilder {
   private:
     /// @param largest  Bound of every channel: largest_reflectance, or the largest float for an exitance.
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
+    /// Index of the image, which is read where it is new; none where there is none.
+    std::uint32_t texture(const MgfTexture& texture);
+    /// That a material's reflectance and exitance keep within the limits where they are multiplied by its textures.
+    void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
     /// A face of which rounding leaves nothing.
@@ -85,7 +92,9 @@ class MgfSceneBuilder {
     std::uint64_t left_out_ = 0;
     ReadOptions options_;
     VertexWeld weld_;
-    std::unordered_map<std::string, std::uint32_t> material_index_, object_index_;
+    std::unordered_map<std::string, std::uint32_t> material_index_, object_index_, texture_index_;
+    std::vector<Rgb> largest_texels_;          // of each of scene_.textures
+    std::uint64_t texels_ = 0;                 // of all of them
     std::vector<MgfMaterial> used_materials_;  // one for each of scene_.materials
 };
 

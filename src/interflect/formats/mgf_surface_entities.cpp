@@ -15,6 +15,14 @@ V3d MgfReader::normal_of(std::string_view vertex) {
     return n;
 }
 
+void MgfReader::texture_coordinate(MgfWords words) {
+    const V2f coordinate(static_cast<float>(number_argument(words[0])), static_cast<float>(number_argument(words[1])));
+    if (const std::string fault = texture_coordinate_fault(coordinate); !fault.empty())
+        throw MgfFault("this vertex " + fault);
+    vertices_.current().texture_coordinate = coordinate;
+    vertices_.current().has_texture_coordinate = true;
+}
+
 /// Appends a loop of the face being read.
 void MgfReader::add_loop(MgfWords names) {
     if (names.size() > options_.max_face_vertices)
@@ -25,8 +33,11 @@ void MgfReader::add_loop(MgfWords names) {
     std::vector<std::uint32_t>& loop = loops_.emplace_back();
     outline_.clear();
     for (const std::string_view name : names) {
-        outline_.push_back(vertices_.find(name).point * to_world);
-        loop.push_back(scene_.vertex(outline_.back()));
+        const MgfVertex& vertex = vertices_.find(name);
+        if (materials_.current().is_textured() && !vertex.has_texture_coordinate)
+            throw MgfFault(fmt::format("vertex '{}' needs texture coordinates (uv): the material has a texture", name));
+        outline_.push_back(vertex.point * to_world);
+        loop.push_back(scene_.vertex(outline_.back(), vertex.coordinate()));
     }
     if (loops_.size() == 1) scene_.place_face(outline_);
     // A mirror image turns the other way round.
@@ -72,6 +83,8 @@ void MgfReader::face_with_holes(MgfWords words) {
 
 void MgfReader::add_mesh(const Mesh& mesh) {
     const std::uint32_t material = usable_material();
+    if (materials_.current().is_textured())
+        throw MgfFault("the material has a texture, and only faces (f, fh) have texture coordinates");
     const M44d to_world = total_transform();
     const bool mirrored = to_world.determinant() < 0;
     count_repeated(mesh.faces.size());
@@ -79,7 +92,7 @@ void MgfReader::add_mesh(const Mesh& mesh) {
     std::vector<std::uint32_t> vertex;
     for (const V3d& p : mesh.points) {
         points.push_back(p * to_world);
-        vertex.push_back(scene_.vertex(points.back()));
+        vertex.push_back(scene_.vertex(points.back(), std::nullopt));
     }
     loops_.resize(1);
     for (const auto& face : mesh.faces) {

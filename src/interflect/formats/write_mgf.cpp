@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "interflect/formats/mgf_colour.h"
+#include "interflect/formats/texture_files.h"
 
 namespace interflect {
 
@@ -50,8 +51,8 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
 /// vertices.
 class MgfWriter {
   public:
-    MgfWriter(const Scene& scene, std::ostream& out)
-        : scene_(scene), out_(out), vertex_written_(scene.vertices.size(), false) {
+    MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures)
+        : scene_(scene), out_(out), textures_(textures), vertex_written_(scene.vertices.size(), false) {
         for (const Material& material : scene.materials) names_.push_back(material_name(material));
     }
 
@@ -129,6 +130,12 @@ class MgfWriter {
         for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], largest_reflectance);
         put_colour("rd", reflectance);
         if (channel_sum(material.exitance) > 0) put_colour("ed", RgbD(material.exitance));
+        put_texture("rd", material.reflectance_texture);
+        put_texture("ed", material.exitance_texture);
+    }
+
+    void put_texture(std::string_view entity, std::uint32_t texture) {
+        if (texture != none) put("\ttexture {} {}\n", entity, textures_[texture]);
     }
 
     void put_colour(std::string_view entity, const RgbD& rgb) {
@@ -147,6 +154,8 @@ class MgfWriter {
                 const Imath::V3d world = scene_.origin + Imath::V3d(x);
                 put("v v{} =\n\tp {} {} {}\n", v, world.x, world.y, world.z);
             }
+            if (!scene_.texture_coordinates.empty())
+                put("\tuv {} {}\n", scene_.texture_coordinates[v].x, scene_.texture_coordinates[v].y);
             vertex_written_[v] = true;
         }
         put("f");
@@ -183,6 +192,7 @@ class MgfWriter {
 
     const Scene& scene_;
     std::ostream& out_;
+    std::span<const std::string> textures_;                    // names of their files
     std::vector<std::string> names_;                           // of materials
     std::unordered_map<std::string, Definition> definitions_;  // by name
     std::vector<bool> vertex_written_;
@@ -193,13 +203,26 @@ class MgfWriter {
 
 }  // namespace
 
-void write_mgf(const Scene& scene, std::ostream& out) { MgfWriter(scene, out).write(); }
+void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures) {
+    if (textures.size() != scene.textures.size())
+        throw std::runtime_error(fmt::format("the scene has {} textures, and there are names for {} files",
+                                             scene.textures.size(), textures.size()));
+    MgfWriter(scene, out, textures).write();
+}
 
-void write_mgf(const Scene& scene, const std::filesystem::path& path) {
+void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures) {
     std::ofstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error(path.string() + ": cannot be opened for writing");
-    write_mgf(scene, file);
+    write_mgf(scene, file, textures);
     if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+std::vector<std::string> texture_files(const Scene& scene, const std::filesystem::path& path) {
+    std::vector<std::string> files;
+    for (const Texture& texture : scene.textures)
+        files.push_back(
+            printable(fmt::format("{}.texture-{}{}", path.stem().string(), files.size(), texture_extension(texture))));
+    return files;
 }
 
 }  // namespace interflect

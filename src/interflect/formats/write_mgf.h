@@ -2,6 +2,9 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "interflect/scene/scene.h"
 
@@ -11,16 +14,21 @@ namespace interflect {
 /// order, with materials and objects of the same names and vertices at exactly the same positions in the
 /// world (the shortest decimals that round to them). Reflectance and exitance become a chromaticity (`cxy`) and a
 /// luminous quantity (`rd`, `ed`); their channels come back to within 1e-6 of the largest, reflectances above 0.99 as
-/// 0.99.
+/// 0.99. Texture coordinates and textures come back exactly, but for the textures' names.
 ///
 /// What does not come back: vertices and materials that no patch uses, and vertices that lie at one position apart
 /// from each other; patches that add_polygon() takes for degenerate; views, for which there is write_view_list();
 /// characters that the format has no room for: white space, control characters and '\' in a name become '_', so do a
 /// '-' at the start of a material's and an empty part of an object's.
 ///
-/// @param scene  Without scene_faults(). Time is linear in the patches, memory in the vertices (4 bytes each).
+/// @param scene     Without scene_faults(). Time is linear in the patches, memory in the vertices (4 bytes each).
+/// @param textures  Names of the files of the scene's textures, relative to that of the scene: texture_files().
 /// @throws std::runtime_error where the stream fails, or the file cannot be written.
-void write_mgf(const Scene& scene, std::ostream& out);
-void write_mgf(const Scene& scene, const std::filesystem::path& path);
+void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures = {});
+void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures = {});
+
+/// Names for the files of a scene's textures, beside that of the scene: "room.texture-0.png" beside "room.mgf", or .exr
+/// (texture_extension). write_texture() writes them.
+std::vector<std::string> texture_files(const Scene& scene, const std::filesystem::path& path);
 
 }  // namespace interflect

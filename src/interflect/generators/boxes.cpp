@@ -10,6 +10,7 @@
 #include "interflect/generators/building/furnish.h"
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"
+#include "interflect/generators/patterns.h"
 
 namespace interflect {
 
@@ -31,6 +32,18 @@ void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const P
     Solids(scene, Placement::turned(place, turn), object)
         .box({-x, -y, gap}, {x, y, random.between(box_height.low, box_height.high)},
              random.pick(std::span(palette.papers)));
+}
+
+/// Puts images on the floor, the boxes and the luminaires.
+void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
+    constexpr float tiles = 1.2f;  // side of the image on the floor [m]
+    scene.materials[floor].reflectance_texture = add_texture(scene, make_tiles());
+    const std::uint32_t label = add_texture(scene, make_label()), louvres = add_texture(scene, make_louvres());
+    for (const std::uint32_t paper : palette.papers) scene.materials[paper].reflectance_texture = label;
+    for (const std::uint32_t lamp : palette.lamps) scene.materials[lamp].exitance_texture = louvres;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (scene.materials[scene.patches[i].material].is_textured())
+            lay_image(scene, i, scene.patches[i].material == floor ? tiles : 0);
 }
 
 }  // namespace
@@ -60,6 +73,7 @@ Scene make_boxes(const BoxesOptions& options) {
         const V3f centre(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f, 0);
         add_box(scene, V3f(-half, -half, 0) + centre * cell, object, palette, random);
     }
+    if (options.texture) add_textures(scene, palette, finish.floor);
     scene.views = {look_out(plan, 0).view, bird_view(plan)};
     return scene;
 }

@@ -14,6 +14,7 @@
 #include "interflect/geometry/face_cutter.h"
 #include "interflect/geometry/facet.h"
 #include "interflect/geometry/flat_surfaces.h"
+#include "interflect/geometry/texture_mapping.h"
 #include "interflect/geometry/vertex_weld.h"
 
 namespace interflect {
@@ -75,17 +76,22 @@ class PieceWriter {
   public:
     /// @param surfaces  The number of each patch's flat surface, or none.
     PieceWriter(const Scene& scene, std::span<const std::uint32_t> surfaces, Scene& result)
-        : scene_(scene), surfaces_(surfaces), result_(result), weld_(result.vertices) {}
+        : scene_(scene), surfaces_(surfaces), result_(result), weld_(result) {}
 
     void add_whole(std::uint32_t face) { add_patch(face, scene_.patches[face].vertices); }
 
     void add_pieces(const Facet& facet, const CutFacet& cut) {
         const PlaneFrame frame(facet);
+        const Patch& patch = scene_.patches[facet.face];
+        const PatchGeometry geometry(scene_, patch);
+        const auto new_vertex = [&](const Imath::V2d& position) {
+            const V3f x = frame.in_space(position);
+            return weld_.vertex(x, coordinate_at(scene_, patch, geometry.parameters_of(x)));
+        };
         for (const PlanarPolygon& piece : cut.patches) {
             std::array<std::uint32_t, 4> vertices{none, none, none, none};
             for (std::size_t i = 0; i < piece.size(); ++i)
-                vertices[i] =
-                    piece[i].vertex != none ? piece[i].vertex : weld_.vertex(frame.in_space(piece[i].position));
+                vertices[i] = piece[i].vertex != none ? piece[i].vertex : new_vertex(piece[i].position);
             add_patch(facet.face, vertices);
         }
         if (cut.patches.empty()) add_patch(facet.face, facet.vertices);

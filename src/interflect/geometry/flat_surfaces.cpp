@@ -10,6 +10,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/geometry/disjoint_sets.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/vertex_weld.h"
 
 namespace interflect {
 
@@ -38,15 +39,27 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
 
 bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
 
+/// For each vertex one at the same position, the same for all that differ only in texture coordinates.
+std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
+    std::vector<std::uint32_t> joined(scene.vertices.size());
+    std::iota(joined.begin(), joined.end(), 0u);
+    if (scene.texture_coordinates.empty()) return joined;
+    Scene positions;
+    VertexWeld weld(positions);
+    for (std::size_t i = 0; i < joined.size(); ++i) joined[i] = weld.vertex(scene.vertices[i]);
+    return joined;
+}
+
 /// The edges of all faces, those of the same two vertices together, in order of their patches.
 std::vector<Edge> sorted_edges(const Scene& scene) {
+    const std::vector<std::uint32_t> joined = joined_vertices(scene);
     std::vector<Edge> edges;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         if (is_back(scene, i)) continue;
         const Patch& patch = scene.patches[i];
         const auto count = static_cast<std::size_t>(patch.vertex_count());
         for (std::size_t v = 0; v < count; ++v)
-            edges.push_back({edge_key(patch.vertices[v], patch.vertices[(v + 1) % count]), i});
+            edges.push_back({edge_key(joined[patch.vertices[v]], joined[patch.vertices[(v + 1) % count]]), i});
     }
     parallel_sort(edges, [](const Edge& a, const Edge& b) {
         return std::tie(a.vertices, a.patch) < std::tie(b.vertices, b.patch);

@@ -145,14 +145,15 @@ class Triangulation {
     V3d local(const V3d& x) const { return (x - origin_) / frame_.size; }
     V3d global(const V3d& x) const { return origin_ + x * frame_.size; }
 
-    std::uint32_t combined(const V3d& x, void* const* neighbours);
+    std::uint32_t combined(const V3d& x, void* const* neighbours, const GLfloat* weights);
 
     static void emit(void* vertex, void* self) {
         static_cast<Triangulation*>(self)->corners_.push_back(*static_cast<std::uint32_t*>(vertex));
     }
-    static void combine(const GLdouble* x, void* const* neighbours, const GLfloat*, void** out, void* self_pointer) {
+    static void combine(const GLdouble* x, void* const* neighbours, const GLfloat* weights, void** out,
+                        void* self_pointer) {
         auto* self = static_cast<Triangulation*>(self_pointer);
-        self->handles_.push_back(self->combined(self->global(V3d(x[0], x[1], x[2])), neighbours));
+        self->handles_.push_back(self->combined(self->global(V3d(x[0], x[1], x[2])), neighbours, weights));
         *out = &self->handles_.back();
     }
     static void fail(GLenum, void* self) { static_cast<Triangulation*>(self)->failed_ = true; }
@@ -167,13 +168,16 @@ class Triangulation {
 };
 
 /// The vertex for a point where loops meet: one of those that meet there if it is at that place, else a new one.
-std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours) {
+std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours, const GLfloat* weights) {
+    V2f coordinate(0);
     for (int i = 0; i < 4; ++i) {
         if (!neighbours[i]) continue;
         const std::uint32_t v = *static_cast<std::uint32_t*>(neighbours[i]);
         if ((position(scene_, v) - x).length() <= frame_.rounding) return v;
+        if (!scene_.texture_coordinates.empty()) coordinate += scene_.texture_coordinates[v] * weights[i];
     }
     scene_.vertices.emplace_back(x);
+    if (!scene_.texture_coordinates.empty()) scene_.texture_coordinates.push_back(coordinate);
     return static_cast<std::uint32_t>(scene_.vertices.size() - 1);
 }
 

@@ -8,6 +8,7 @@
 
 #include "interflect/base/error.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/texture_mapping.h"
 #include "interflect/geometry/vertex_weld.h"
 #include "interflect/scene/core.h"
 
@@ -50,21 +51,16 @@ void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> ve
     split.patches.push_back(back);
 }
 
-void split_quadrilateral(Scene& split, VertexWeld& weld, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
-    const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
-        return weld.vertex(geometry.point(
-            {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.v)}));
-    };
+/// @param vertex  Of the piece that is the i-th along the first edge, the j-th along the last.
+template <class Vertex>
+void split_quadrilateral(Scene& split, const Patch& patch, Pieces n, const Vertex& vertex) {
     for (std::uint64_t j = 0; j < n.v; ++j)
         for (std::uint64_t i = 0; i < n.u; ++i)
             add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
 }
 
-void split_triangle(Scene& split, VertexWeld& weld, const Patch& patch, const PatchGeometry& geometry, Pieces n) {
-    const auto vertex = [&](std::uint64_t i, std::uint64_t j) {
-        return weld.vertex(geometry.point(
-            {static_cast<float>(i) / static_cast<float>(n.u), static_cast<float>(j) / static_cast<float>(n.u)}));
-    };
+template <class Vertex>
+void split_triangle(Scene& split, const Patch& patch, Pieces n, const Vertex& vertex) {
     for (std::uint64_t j = 0; j < n.u; ++j)
         for (std::uint64_t i = 0; i + j < n.u; ++i) {
             add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), none});
@@ -90,18 +86,24 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
                         scene.name, largest_edge, count, most_patches));
     Scene split = scene;
     split.vertices.clear();
+    split.texture_coordinates.clear();
     split.patches.clear();
     split.patches.reserve(static_cast<std::size_t>(count));
-    VertexWeld weld(split.vertices);
+    VertexWeld weld(split);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side != none && patch.other_side < i) continue;  // went in with its front
         const PatchGeometry geometry(scene, patch);
         const Pieces n = pieces_of(scene, patch, largest_edge);
+        const auto vertex = [&](std::uint64_t along_first, std::uint64_t along_last) {
+            const Parameters p{static_cast<float>(along_first) / static_cast<float>(n.u),
+                               static_cast<float>(along_last) / static_cast<float>(n.v)};
+            return weld.vertex(geometry.point(p), coordinate_at(scene, patch, p));
+        };
         if (patch.is_triangle())
-            split_triangle(split, weld, patch, geometry, n);
+            split_triangle(split, patch, n, vertex);
         else
-            split_quadrilateral(split, weld, patch, geometry, n);
+            split_quadrilateral(split, patch, n, vertex);
     }
     return split;
 }

@@ -6,7 +6,8 @@ namespace interflect {
 
 /// The scene with every patch divided into a grid of patches whose edges are at most `largest_edge` long: the fixed
 /// mesh of a method that does not refine by itself. Quadrilaterals become grids, triangles become n^2 triangles;
-/// patches that share an edge divide it alike. Sides stay neighbours, other_side included.
+/// patches that share an edge divide it alike. Sides stay neighbours, other_side included. Texture
+/// coordinates are interpolated.
 /// @param largest_edge  [m], > 0.
 /// @throws InputError where more than `most_patches` would result, for another edge, and for a scene with faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches);

@@ -1,28 +1,33 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "interflect/scene/scene.h"
 
 namespace interflect {
 
-/// Gives one vertex to each distinct position: what meets in a point shares a vertex there. Positions are compared as
-/// they are, in single precision; -0 counts as 0. Holds at most 16 bytes a vertex: a hash table with linear probing, of
-/// indices into the vertices.
+/// Gives one vertex to each distinct position with its texture coordinates: what meets in a point shares a vertex
+/// there. Numbers are compared as they are, in single precision; -0 counts as 0. Holds at most 16 bytes a vertex: a
+/// hash table with linear probing, of indices into the vertices.
 class VertexWeld {
   public:
-    /// @param vertices  New ones go at the end; those that others add are not found.
-    explicit VertexWeld(std::vector<V3f>& vertices) : vertices_(vertices), slots_(16, none) {}
+    /// @param scene  New vertices go at the end; those that others add are not found.
+    explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// The index of the vertex at `position`, which is added where it is new. @param position  Finite.
-    std::uint32_t vertex(const V3f& position);
+    /// The index of the vertex at `position`, which is added where it is new. @param position, coordinate  Finite.
+    /// @param coordinate  Scene::texture_coordinates are kept from the first one on; a vertex without has (0, 0).
+    std::uint32_t vertex(const V3f& position, const std::optional<V2f>& coordinate = std::nullopt);
 
   private:
-    std::uint32_t& slot_of(const V3f& position);
+    V2f coordinate_of(std::uint32_t vertex) const {
+        return scene_.texture_coordinates.empty() ? V2f(0) : scene_.texture_coordinates[vertex];
+    }
+    std::uint32_t& slot_of(const V3f& position, const V2f& coordinate);
     void grow();
 
-    std::vector<V3f>& vertices_;
+    Scene& scene_;
     std::vector<std::uint32_t> slots_;  // a power of two, never more than half full
     std::size_t used_ = 0;
 };

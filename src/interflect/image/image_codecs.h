@@ -12,18 +12,18 @@
 /// only; whoever knows the file's name adds it.
 namespace interflect::codecs {
 
-/// @throws std::runtime_error unless 1 <= width * height <= most_image_pixels.
-void require_allowed_size(std::int64_t width, std::int64_t height);
+/// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
+void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
 
 std::string encode_png(const Image& image);
 std::string encode_jpeg(const Image& image);
-Image decode_png(std::string_view bytes);
+Image decode_png(std::string_view bytes, std::int64_t most_pixels);
 
 std::string encode_radiance(const Image& image);
-Image decode_radiance(std::string_view bytes);
+Image decode_radiance(std::string_view bytes, std::int64_t most_pixels);
 
 std::string encode_exr(const Image& image, const ImageMetadata& metadata);
-Image read_exr(const std::filesystem::path& path);
+Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);
 
 }  // namespace interflect::codecs

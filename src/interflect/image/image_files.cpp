@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "interflect/base/error.h"
-#include "interflect/base/image_size.h"
 #include "interflect/image/image_codecs.h"
 
 namespace interflect {
@@ -63,18 +62,18 @@ std::string encode(ImageFormat format, const Image& image, const ImageMetadata& 
     return codecs::encode_exr(image, metadata);
 }
 
-Image read_as(ImageFormat format, const fs::path& path) {
+Image read_as(ImageFormat format, const fs::path& path, std::int64_t most_pixels) {
     switch (format) {
         case ImageFormat::png:
-            return codecs::decode_png(read_bytes(path));
+            return codecs::decode_png(read_bytes(path), most_pixels);
         case ImageFormat::jpeg:
             throw std::runtime_error("JPEG loses detail and is only written, expected .png .exr .hdr");
         case ImageFormat::hdr:
-            return codecs::decode_radiance(read_bytes(path));
+            return codecs::decode_radiance(read_bytes(path), most_pixels);
         case ImageFormat::exr:
             break;
     }
-    return codecs::read_exr(path);
+    return codecs::read_exr(path, most_pixels);
 }
 
 /// What `read(format, path)` gives, or an error that names the file.
@@ -92,10 +91,10 @@ auto read_with(const fs::path& path, const Read& read) {
 
 }  // namespace
 
-void codecs::require_allowed_size(std::int64_t width, std::int64_t height) {
-    if (width < 1 || height < 1 || width > most_image_pixels / height)
+void codecs::require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels) {
+    if (width < 1 || height < 1 || width > most_pixels / height)
         throw std::runtime_error(
-            fmt::format("claims to have {} x {} pixels, expected 1 to {} in all", width, height, most_image_pixels));
+            fmt::format("claims to have {} x {} pixels, expected 1 to {} in all", width, height, most_pixels));
 }
 
 ImageFormat require_image_format(const fs::path& path) {
@@ -124,7 +123,10 @@ void write_image(PendingFile& file, const Image& image, const ImageMetadata& met
     file.commit();
 }
 
-Image read_image(const fs::path& path) { return read_with(path, read_as); }
+Image read_image(const fs::path& path, std::int64_t most_pixels) {
+    return read_with(path,
+                     [=](ImageFormat format, const fs::path& file) { return read_as(format, file, most_pixels); });
+}
 
 std::optional<float> read_field_of_view(const fs::path& path) {
     return read_with(path, [](ImageFormat format, const fs::path& file) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "interflect/base/image_size.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/image/image.h"
 #include "interflect/scene/scene.h"
@@ -56,8 +57,8 @@ void write_image(PendingFile& file, const Image& image, const ImageMetadata& met
 /// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.
 /// @throws InputError with the path and the reason for a file that is missing, is no such image, is a JPEG, is cut
 /// short
-///         or damaged, or claims more than most_image_pixels.
-Image read_image(const std::filesystem::path& path);
+///         or damaged, or claims more than `most_pixels`.
+Image read_image(const std::filesystem::path& path, std::int64_t most_pixels = most_image_pixels);
 
 /// The vertical field of view [degrees] that write_image() noted in an .exr file; none where there is no such note, as
 /// in all other formats.

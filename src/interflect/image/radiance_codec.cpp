@@ -128,7 +128,6 @@ Size parse_resolution(std::string_view line) {
     const char* middle = number("-Y ", line.data(), size.height);
     if (middle > end || number(" +X ", middle, size.width) != end)
         throw std::runtime_error(fmt::format("its resolution is '{}', expected '-Y height +X width'", line));
-    require_allowed_size(size.width, size.height);
     return size;
 }
 
@@ -172,10 +171,11 @@ std::string encode_radiance(const Image& image) {
     return file;
 }
 
-Image decode_radiance(std::string_view bytes) {
+Image decode_radiance(std::string_view bytes, std::int64_t most_pixels) {
     RadianceReader reader(bytes);
     read_header(reader);
     const Size size = parse_resolution(reader.line());
+    require_allowed_size(size.width, size.height, most_pixels);
     // The densest encoding takes four times two bytes for 127 pixels: make no room for pixels that cannot be there.
     const std::int64_t least_bytes = std::int64_t{size.width} * size.height / 16;
     if (static_cast<std::int64_t>(reader.bytes_left()) < least_bytes) throw std::runtime_error("it ends too early");

@@ -90,12 +90,12 @@ std::string encode_jpeg(const Image& image) {
     return file;
 }
 
-Image decode_png(std::string_view bytes) {
+Image decode_png(std::string_view bytes, std::int64_t most_pixels) {
     int width = 0, height = 0, file_channels = 0;
     ByteSource header{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &header, &width, &height, &file_channels))
         throw std::runtime_error(std::string("it is no PNG of a usable size (") + stbi_failure_reason() + ")");
-    require_allowed_size(width, height);
+    require_allowed_size(width, height, most_pixels);
 
     // 8 bit files come as exact multiples of 65535 / 255.
     ByteSource source{bytes};

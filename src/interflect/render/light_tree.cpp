@@ -5,6 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+
+#include "interflect/elements/texture_means.h"
+#include "interflect/scene/limits.h"
 
 namespace interflect {
 
@@ -60,11 +64,40 @@ LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
     return {axis, std::cos(joint)};
 }
 
+namespace {
+
+/// Exitance, all channels together, by which patches are sampled [lm/m^2 or W/m^2].
+class SampledExitance {
+  public:
+    explicit SampledExitance(const Scene& scene) : scene_(scene), largest_(largest_texels(scene)) {
+        const bool any = std::any_of(scene.materials.begin(), scene.materials.end(), has_texture);
+        if (any) means_.emplace(scene);
+    }
+
+    float of(const Patch& patch, const PatchGeometry& geometry) const {
+        constexpr float share_of_largest = 0.01f;
+        const Material& material = scene_.materials[patch.material];
+        if (!has_texture(material)) return channel_sum(material.exitance);
+        const Rgb mean = means_->mean(material.exitance_texture, patch, geometry, Cell());
+        return channel_sum(Rgb(material.exitance * (mean + largest_[material.exitance_texture] * share_of_largest)));
+    }
+
+  private:
+    static bool has_texture(const Material& m) { return m.exitance_texture != none && channel_sum(m.exitance) > 0; }
+
+    const Scene& scene_;
+    std::vector<Rgb> largest_;
+    std::optional<TextureMeans> means_;
+};
+
+}  // namespace
+
 LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry) : leaf_(scene.patches.size(), none) {
     std::vector<Emitter> emitters;
+    const SampledExitance exitance(scene);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
-        const float power = channel_sum(scene.materials[patch.material].exitance) * geometry[i].area();
+        const float power = exitance.of(patch, geometry[i]) * geometry[i].area();
         if (!(power > 0)) continue;
         Emitter emitter{
             i, power, {scene.vertices[patch.vertices[0]], scene.vertices[patch.vertices[0]]}, geometry[i].normal()};

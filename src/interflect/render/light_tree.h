@@ -16,7 +16,8 @@ namespace interflect {
 /// receiving surface and of the emitting ones, are the largest that the box and the cone allow. The distance is that to
 /// the box's centre, at least half its diagonal. A node that lies behind the surface, or faces away from the point as a
 /// whole, is never taken. After Conty and Kulla 2018. Occlusion is ignored. Immutable, shared by all threads; 64
-/// bytes a node, two nodes an emitting patch, and 4 bytes a patch.
+/// bytes a node, two nodes an emitting patch, and 4 bytes a patch. A patch with an exitance texture has the mean power
+/// of it; a share goes by the texture's largest texel, so that none that may emit is left out.
 class LightTree {
   public:
     struct Choice {

@@ -6,6 +6,7 @@
 
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 
 namespace interflect {
@@ -82,9 +83,16 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
         return false;
     }
     const Material& material = s_.material(hit.patch);
-    if (channel_sum(material.exitance) > 0) add_emission(hit, ray, path, material.exitance);
+    Rgb exitance = material.exitance, reflectance = material.reflectance;
+    if (material.is_textured()) {
+        const Patch& patch = s_.scene.patches[hit.patch];
+        const Parameters p = s_.geometry[hit.patch].parameters_of(ray.origin + hit.distance * ray.direction);
+        exitance = exitance_at(s_.scene, patch, p);
+        reflectance = reflectance_at(s_.scene, patch, p);
+    }
+    if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
-    path.throughput *= material.reflectance;
+    path.throughput *= reflectance;
     if (largest_channel(path.throughput) <= 0) return false;
     const std::uint32_t size = static_cast<std::uint32_t>(s_.batch_size);
     const VertexSample sample = vertex_sample(keys_[path.index / size], vertex_, path.index % size);
@@ -121,7 +129,8 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
     const LightTree::Choice choice = s_.lights.choose(x, path.normal, sample.light);
     if (choice.patch == none) return;
     const PatchGeometry& lamp = s_.geometry[choice.patch];
-    const V3f to_light = lamp.point(lamp.uniform_parameters(sample.light_u, sample.light_v)) - x;
+    const Parameters on_lamp = lamp.uniform_parameters(sample.light_u, sample.light_v);
+    const V3f to_light = lamp.point(on_lamp) - x;
     const float distance2 = to_light.length2();
     if (!(distance2 > 0)) return;
     const V3f direction = to_light / std::sqrt(distance2);
@@ -130,7 +139,7 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
     if (!(of_direction > 0 && of_light > 0)) return;
     const float weight = s_.sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
     // The integral over the hemisphere of (rho / pi) (M / pi) cosine.
-    const Rgb radiance = s_.material(choice.patch).exitance / pi;
+    const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.patch], on_lamp) / pi;
     shadow_rays_.push_back({x, direction});
     connections_.push_back(
         {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0});

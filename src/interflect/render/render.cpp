@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
@@ -26,10 +27,17 @@ class Shader {
     Shader(const Shader&) = delete;  // smooth_ refers to vertices_
     Shader& operator=(const Shader&) = delete;
 
-    /// L = B / pi with B = M + rho H, where `ray` hit.
+    /// L = B / pi with B = M + rho H, where `ray` hit; M and rho are those of the texels there.
     Rgb luminance_at(const Ray& ray, const Hit& hit) const {
-        const Material& material = scene_.materials[scene_.patches[hit.patch].material];
-        const Rgb radiosity = material.exitance + material.reflectance * irradiance_at(ray, hit);
+        const Patch& patch = scene_.patches[hit.patch];
+        const Material& material = scene_.materials[patch.material];
+        Rgb exitance = material.exitance, reflectance = material.reflectance;
+        if (material.is_textured()) {
+            const Parameters p = parameters_of_hit(forest_, ray, hit);
+            exitance = exitance_at(scene_, patch, p);
+            reflectance = reflectance_at(scene_, patch, p);
+        }
+        const Rgb radiosity = exitance + reflectance * irradiance_at(ray, hit);
         return radiosity / std::numbers::pi_v<float>;
     }
 

@@ -66,9 +66,17 @@ std::string brightness_fault(float strongest) {
                        weakest_exitance);
 }
 
+std::vector<Rgb> largest_texels(const Scene& scene) {
+    std::vector<Rgb> largest;
+    for (const Texture& texture : scene.textures) largest.push_back(largest_texel(texture));
+    return largest;
+}
+
 float brightest_source(const Scene& scene) {
+    const std::vector<Rgb> largest = largest_texels(scene);
     float strongest = 0;
-    for (const Material& m : scene.materials) strongest = std::max(strongest, largest_channel(m.exitance));
+    for (const Material& m : scene.materials)
+        strongest = std::max(strongest, largest_channel(textured(m.exitance, m.exitance_texture, largest)));
     for (const Luminaire& l : scene.luminaires) strongest = std::max(strongest, largest_channel(rating(l)));
     return strongest;
 }

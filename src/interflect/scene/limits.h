@@ -41,7 +41,17 @@ std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// Largest channel of what materials and luminaires are rated by, each in its unit; 0 where none emits.
+/// The largest texel of every texture. O(texels).
+std::vector<Rgb> largest_texels(const Scene& scene);
+
+/// A material's reflectance or exitance times the largest texel of its texture, if it has one.
+/// @param texture  Index into Scene::textures, or none. @param largest  largest_texels().
+inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<Rgb>& largest) {
+    return texture == none ? factor : factor * largest[texture];
+}
+
+/// Largest channel of what materials, times their textures, and luminaires are rated by, each in its unit; 0 where none
+/// emits. @param scene  Its materials' textures exist. O(texels).
 float brightest_source(const Scene& scene);
 
 }  // namespace interflect

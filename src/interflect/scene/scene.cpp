@@ -28,6 +28,7 @@ class Faults {
     void add(const std::string& fault, const Name& name) {
         check(fault.empty(), [&] { return name() + fault; });
     }
+    bool empty() const { return list_.empty(); }
     std::vector<std::string> take() { return std::move(list_); }
 
   private:
@@ -55,12 +56,54 @@ void check_points(const Scene& scene, Faults& faults) {
             check(Imath::V3d(end), [&] { return fmt::format("contact {}", i); });
 }
 
-void check_material(const Material& m, Faults& faults) {
+void check_material(const Scene& scene, const Material& m, Faults& faults) {
+    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture})
+        faults.check(texture == none || texture < scene.textures.size(),
+                     [&] { return fmt::format("material '{}': there is no texture {}", m.name, texture); });
     const Rgb& r = m.reflectance;
     faults.check(is_reflectance(r), [&] {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     faults.add(exitance_fault(m.exitance), [&] { return fmt::format("material '{}': ", m.name); });
+}
+
+/// @param largest  Of all textures, as largest_texels().
+void check_products(const Material& m, const std::vector<Rgb>& largest, Faults& faults) {
+    const Rgb r = textured(m.reflectance, m.reflectance_texture, largest);
+    faults.check(is_reflectance(r), [&] {
+        return fmt::format("material '{}': reflectance times its texture is up to ({}, {}, {}), not in [0, 1)", m.name,
+                           r.x, r.y, r.z);
+    });
+    faults.add(exitance_fault(textured(m.exitance, m.exitance_texture, largest)),
+               [&] { return fmt::format("material '{}' times its texture: ", m.name); });
+}
+
+void check_textures(const Scene& scene, Faults& faults) {
+    std::uint64_t texels = 0;
+    for (const Texture& texture : scene.textures) {
+        faults.add(texture_fault(texture), [&] { return fmt::format("texture '{}' ", texture.name); });
+        texels += texture.texels.size();
+    }
+    faults.check(texels <= most_texels, [&] {
+        return fmt::format("the textures have {} texels together; at most {} can be computed", texels, most_texels);
+    });
+    if (scene.texture_coordinates.empty()) return;
+    faults.check(scene.texture_coordinates.size() == scene.vertices.size(), [&] {
+        return fmt::format("there are {} vertices and {} texture coordinates", scene.vertices.size(),
+                           scene.texture_coordinates.size());
+    });
+    for (std::size_t i = 0; i < scene.texture_coordinates.size(); ++i)
+        faults.add(texture_coordinate_fault(scene.texture_coordinates[i]),
+                   [&] { return fmt::format("vertex {} ", i); });
+}
+
+void check_materials(const Scene& scene, Faults& faults) {
+    for (const Material& m : scene.materials) check_material(scene, m, faults);
+    if (!faults.empty()) return;
+    const std::vector<Rgb> largest = largest_texels(scene);
+    for (const Material& m : scene.materials)
+        if (m.is_textured()) check_products(m, largest, faults);
+    faults.add(brightness_fault(brightest_source(scene)), [] { return std::string("the scene "); });
 }
 
 void check_luminaire(const Scene& scene, const Luminaire& l, Faults& faults) {
@@ -77,6 +120,9 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
         faults.check(false, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
     faults.check(p.material < scene.materials.size(),
                  [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
+    faults.check(p.material >= scene.materials.size() || !scene.materials[p.material].is_textured() ||
+                     !scene.texture_coordinates.empty(),
+                 [&] { return fmt::format("patch {} has a texture, but no texture coordinates", i); });
     faults.check(p.object < scene.objects.size(),
                  [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
     const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
@@ -91,11 +137,11 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
 std::vector<std::string> scene_faults(const Scene& scene) {
     Faults faults;
     check_points(scene, faults);
-    for (const Material& m : scene.materials) check_material(m, faults);
+    check_textures(scene, faults);
+    check_materials(scene, faults);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
     const auto the_scene = [] { return std::string("the scene "); };
     if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), the_scene);
-    faults.add(brightness_fault(brightest_source(scene)), the_scene);
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     for (const View& v : scene.views) faults.add(view_fault(v), [&] { return fmt::format("view '{}': ", v.name); });
     return faults.take();

@@ -10,6 +10,7 @@
 #include "interflect/base/warnings.h"
 #include "interflect/scene/light_groups.h"
 #include "interflect/scene/luminaire.h"
+#include "interflect/scene/texture.h"
 
 namespace interflect {
 
@@ -21,6 +22,11 @@ struct Material {
     std::string name;
     Rgb reflectance{0, 0, 0};  ///< Diffuse reflectance rho, each channel in [0, 1).
     Rgb exitance{0, 0, 0};     ///< Self-emitted exitance M [lm/m^2 or W/m^2], >= 0.
+    /// Indices into Scene::textures, or none: what the reflectance and the exitance are multiplied by. The products
+    /// keep within the limits above.
+    std::uint32_t reflectance_texture = none, exitance_texture = none;
+
+    bool is_textured() const { return reflectance_texture != none || exitance_texture != none; }
 };
 
 /// One side of an input polygon: a triangle or a convex, (nearly) planar quadrilateral.
@@ -58,9 +64,12 @@ struct Scene {
     /// core.h), so that a scene keeps its precision wherever in the world it lies.
     Imath::V3d origin{0, 0, 0};
     std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Those that no patch uses count for nothing.
+    /// (u, v) of every vertex, or empty where no patch is textured.
+    std::vector<V2f> texture_coordinates;
     std::vector<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().
     std::vector<Material> materials;
+    std::vector<Texture> textures;
     std::vector<Luminaire> luminaires;     ///< Sources of light beside the patches that emit.
     std::vector<LightGroup> light_groups;  ///< Whose light is kept apart; see source_groups().
     std::vector<std::string> objects;      ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
@@ -70,8 +79,8 @@ struct Scene {
 };
 
 /// Every fault of `scene` that would break an invariant above (index out of range, non-finite number, reflectance
-/// outside [0, 1), negative exitance, degenerate patch, a view that shows nothing) or is beyond what can be computed
-/// (limits.h), a sentence each; empty for a valid scene. Lists at most 20.
+/// outside [0, 1), negative exitance, textured patch without coordinates, degenerate patch, a view that shows nothing)
+/// or is beyond what can be computed (limits.h), a sentence each; empty for a valid scene. Lists at most 20.
 std::vector<std::string> scene_faults(const Scene& scene);
 
 /// @param purpose  What the scene cannot be used for then: "cannot solve".

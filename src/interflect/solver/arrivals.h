@@ -69,6 +69,7 @@ class Arrivals {
         std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
             contributions_.push_back(contribution);
             group_contributions_.insert(group_contributions_.end(), of_groups.begin(), of_groups.end());
+            group_contributions_.resize(contributions_.size() * arrivals_->group_terms_);  // rays may carry none
             return static_cast<std::uint32_t>(contributions_.size() - 1);
         }
         const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }

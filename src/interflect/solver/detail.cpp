@@ -277,7 +277,7 @@ double error_reference(const SolverState& state) {
 
 double error_weight(const SolverState& state, std::uint32_t element) {
     if (state.view.empty()) return 1;
-    const Rgb& rho = state.materials.reflectance(state.forest->patch(element));
+    const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
     Rgb h = state.solution.irradiance[element];
     for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences may be less than none
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));

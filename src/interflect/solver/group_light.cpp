@@ -18,7 +18,7 @@ void accumulate(GroupLight& sum, const GroupLight& more) {
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming) {
     std::vector<Rgb> sum(light.front().size(), Rgb(0));
     for (std::size_t g = 0; g < light.size(); ++g)
-        for (std::size_t e = 0; e < sum.size() && dimming[g] > 0; ++e) sum[e] += light[g][e];
+        for (std::size_t e = 0; e < sum.size() && (dimming.empty() || dimming[g] > 0); ++e) sum[e] += light[g][e];
     return sum;
 }
 

@@ -26,8 +26,8 @@ void accumulate(GroupLight& sum, const GroupLight& more);
 /// Multiplies all of it.
 void scale(GroupLight& light, float factor);
 
-/// All groups together, but for those that are dimmed to nothing.
-std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming);
+/// All groups together. @param dimming  Solution::dimming: those that are dimmed to nothing are left out.
+std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
 /// The groups' shares of what leaves elements and luminaires; the shares of one source sum to what it radiates. Refers
 /// to what it is made of.
@@ -41,10 +41,10 @@ struct GroupRadiosity {
     /// B of a leaf by one group [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
-        const Material& material = materials.material(forest.patch(leaf));
-        const Rgb reflected = material.reflectance * (*irradiance)[group][leaf];
+        const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);
+        const Rgb reflected = surface.reflectance * (*irradiance)[group][leaf];
         const bool is_own = emits && groups->of_patch[forest.patch(leaf)] == group;
-        return is_own ? material.exitance + reflected : reflected;
+        return is_own ? surface.exitance + reflected : reflected;
     }
     bool has_part(const Emission& emission, std::size_t part, std::size_t group) const {
         return groups->of_luminaire[emission.luminaire(part)] == group;

@@ -4,6 +4,7 @@
 
 #include "interflect/base/error.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/solver/textured_elements.h"
 
 namespace interflect {
 
@@ -12,9 +13,18 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     MemoryNeed need;
     need.scene = scene.vertices.size() * sizeof(V3f) + scene.patches.size() * sizeof(Patch) +
                  scene.materials.size() * sizeof(Material) + scene.objects.size() * sizeof(std::string);
+    for (const Texture& texture : scene.textures) {
+        constexpr std::size_t per_texel = sizeof(Rgb) + sizeof(RgbD) / 8;  // the latter for TextureIntegral
+        need.scene += texture.texels.size() * per_texel;
+    }
+    if (!scene.texture_coordinates.empty()) {
+        need.scene += scene.texture_coordinates.size() * sizeof(V2f);
+        need.per_element += sizeof(MeanSurface) + 1;
+    }
     need.ray_tracer = ray_caster.memory();
     need.patches = scene.patches.size() * sizeof(PatchGeometry);
     need.rest = program;
+    need.per_element += source_groups(scene).size() * MemoryNeed::per_element_and_group;
     return need;
 }
 
@@ -24,7 +34,7 @@ std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Sce
         throw InputError(scene.name, 0,
                          fmt::format("{} patches need {} MiB of memory, the limit is {} MiB", patches,
                                      (least >> 20) + 1, bytes >> 20));
-    return (bytes - need.without_elements()) / MemoryNeed::per_element;
+    return (bytes - need.without_elements()) / need.per_element;
 }
 
 }  // namespace interflect

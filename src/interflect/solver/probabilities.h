@@ -33,7 +33,7 @@ struct SamplingWeights {
     double weighted_power(std::uint32_t s) const { return power(s) * importance_weight[s]; }
     /// Eq. 8: rho_s I_s.
     double importance(std::uint32_t s) const {
-        return static_cast<double>(materials.mean_reflectance(forest.patch(s))) * reflected_importance[s] *
+        return static_cast<double>(materials.mean_reflectance(forest.patch(s), s)) * reflected_importance[s] *
                static_cast<double>(forest.area(s));
     }
 };

@@ -25,20 +25,23 @@ class Radiosity {
     bool emits() const { return emits_; }
 
     /// B, or 0 where it is not finite.
-    Rgb of(const ElementForest& forest, std::uint32_t e) const { return of(materials_->material(forest.patch(e)), e); }
-    /// The same, of an element whose material is known.
-    Rgb of(const Material& material, std::uint32_t e) const {
-        const Rgb b = as_it_is(material, e);
+    Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
+    /// The same, of an element whose patch is known.
+    Rgb of_element(std::uint32_t patch, std::uint32_t e) const {
+        const Rgb b = as_it_is(patch, e);
         return is_finite(b) ? b : Rgb(0);
     }
     bool is_lost(const ElementForest& forest, std::uint32_t e) const {
-        return !is_finite(as_it_is(materials_->material(forest.patch(e)), e));
+        return !is_finite(as_it_is(forest.patch(e), e));
     }
+    /// Whether the radiosity of an inner element may differ from the mean of its children's, for their reflectances do.
+    bool has_textures() const { return materials_->has_textures(); }
 
   private:
-    Rgb as_it_is(const Material& material, std::uint32_t e) const {
-        const Rgb reflected = material.reflectance * irradiance_[e];
-        return emits_ ? material.exitance + reflected : reflected;
+    Rgb as_it_is(std::uint32_t patch, std::uint32_t e) const {
+        const MeanSurface surface = materials_->surface(patch, e);
+        const Rgb reflected = surface.reflectance * irradiance_[e];
+        return emits_ ? surface.exitance + reflected : reflected;
     }
 
     const Materials* materials_ = nullptr;
@@ -46,12 +49,20 @@ class Radiosity {
     bool emits_ = false;
 };
 
+/// What leaves an element [lm or W]: where there are textures, the sum over its leaves.
+inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
+    const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
+    if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
+    RgbD sum(0);
+    for (std::uint32_t k = 0; k < 4; ++k) sum += power_of(forest, light, first_child + k);
+    return sum;
+}
+
 /// What leaves all patches together [lm or W], in double precision and always in the same order.
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
     return parallel_sum(forest.patch_count(), elements_at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
-        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-            sum += RgbD(light.of(forest, i)) * static_cast<double>(forest.area(i));
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) sum += power_of(forest, light, i);
         return sum;
     });
 }

@@ -60,14 +60,13 @@ Escaped Receiver::finish() {
 void Receiver::append_ancestors(std::uint32_t leaf) {
     const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
     const PatchGeometry& geometry = forest_.geometry(patch);
-    const Material& material = materials_.material(patch);
     std::uint32_t element = patch;
     Cell cell;
     root_ancestor_ = static_cast<std::uint32_t>(ancestors_.size());
     for (int digit = std::bit_width(path) - 1;;) {
         const V3f centre = geometry.point(cell.centre(geometry.is_triangle()));
         ancestors_.push_back(
-            {element, cell, centre, forest_.area(element), step_.light_for_oracle().of(material, element)});
+            {element, cell, centre, forest_.area(element), step_.light_for_oracle().of_element(patch, element)});
         if (digit == 0) break;
         digit -= 2;
         const unsigned k = path >> digit & 3u;
@@ -293,7 +292,7 @@ void Receiver::send(std::size_t i) {
 }
 
 inline void Receiver::gather(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {
-    left_[left].found += static_cast<double>(materials_.mean_reflectance(patch) * step_.importance[leaf]);
+    left_[left].found += static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
 }
 
 }  // namespace interflect

@@ -76,6 +76,7 @@ void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
 
 void set_sources(SolverState& state, const Scene& lit) {
     state.materials = Materials(lit, state.ray_caster);
+    state.materials.grow(*state.forest);
     state.emission = Emission(lit);
     state.solution.emitted_power =
         radiated_power(*state.forest, Radiosity(state.materials, std::vector<Rgb>(state.forest->size(), Rgb(0))));
@@ -174,6 +175,7 @@ void SolverState::archive(StateArchive& archive) {
     solution.iterations.clear();
     for (const ReportNumbers& numbers : reports) solution.iterations.push_back(report_of(numbers));
     forest->rebuild(parents);
+    materials.grow(*forest);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
     for (const std::vector<Rgb>& of_group : solution.groups)
@@ -229,6 +231,7 @@ void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(*state.forest, first, state.solution.irradiance);
     inherit(*state.forest, first, state.solution.groups);
     state.noise.grow(*state.forest, first);
+    state.materials.grow(*state.forest);
     inherit(*state.forest, first, state.history);
     if (state.view.empty()) return;
     inherit(*state.forest, first, state.solution.indirect_importance);

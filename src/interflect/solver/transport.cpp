@@ -140,7 +140,7 @@ class Carried {
         return sum > 0 ? light / sum : RgbD(0);
     }
     double importance_of_leaf(std::uint32_t leaf) const {
-        return materials_.mean_reflectance(forest_.patch(leaf)) * step_.importance[leaf] * area_per_ray(leaf);
+        return materials_.mean_reflectance(forest_.patch(leaf), leaf) * step_.importance[leaf] * area_per_ray(leaf);
     }
     double per_ray(std::uint32_t source) const { return q_sum_over_rays_ / step_.q[source]; }
     double area_per_ray(std::uint32_t leaf) const { return forest_.area(leaf) * per_ray(leaf); }
@@ -297,7 +297,7 @@ std::optional<GatheredImportance> gathered_by(const TransportStep& step, const M
     parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         double& most = largest[begin / elements_at_once];
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            most = std::max<double>(most, materials.mean_reflectance(forest.patch(e)) * step.importance[e]);
+            most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
     return std::optional<GatheredImportance>(std::in_place, *std::max_element(largest.begin(), largest.end()),
                                              step.rays, forest.size() + step.part_count());

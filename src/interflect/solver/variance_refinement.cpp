@@ -60,7 +60,7 @@ class VarianceOracle {
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, leaf);
         if (!state_.solution.indirect_importance.empty()) {
-            const double rho = luminance(state_.materials.reflectance(forest_.patch(leaf)));
+            const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
             w += unseen_shape * rho * rho * static_cast<double>(state_.solution.indirect_importance[leaf]);
         }
         return w * forest_.area(leaf);
@@ -68,7 +68,7 @@ class VarianceOracle {
     /// Power that leaves the leaf from other places than it should, times what power from there matters to the view.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const std::vector<float>& psi = state_.solution.indirect_importance;
-        const double rho = luminance(state_.materials.reflectance(forest_.patch(leaf)));
+        const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi.empty() ? 1.0 : psi[leaf]);
     }
     double weighted_mean_square() const {

@@ -77,6 +77,7 @@ std::vector<Rgb> present_radiosity(SolverState& state) {
         b.push_back(light.of(*state.forest, e));
         state.solution.non_finite += light.is_lost(*state.forest, e);
     }
+    if (state.materials.has_textures()) pull(*state.forest, b);
     return b;
 }
 
@@ -182,7 +183,8 @@ void LinkedElements::gather_importance() {
     const std::vector<float> psi = total_importance(state_.solution);
     std::vector<double> reflected(psi.size());
     for (std::uint32_t e = 0; e < forest_.size(); ++e)
-        reflected[e] = static_cast<double>(state_.materials.mean_reflectance(forest_.patch(e))) * psi[e];
+        reflected[e] = static_cast<double>(state_.materials.mean_reflectance(forest_.patch(e), e)) * psi[e];
+    if (state_.materials.has_textures()) pull(forest_, reflected);
     const std::vector<double> received = gather(forest_, links_, reflected);
     RelativeChange change;
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
@@ -234,8 +236,8 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     std::vector<RefinementCandidate> candidates;
     if (!(threshold > 0)) return candidates;
     const auto weight = [&](std::uint32_t divided, std::uint32_t other) {
-        const Rgb &rho = state_.materials.reflectance(forest_.patch(divided)),
-                  &rho_other = state_.materials.reflectance(forest_.patch(other));
+        const Rgb rho = state_.materials.surface(forest_.patch(divided), divided).reflectance,
+                  rho_other = state_.materials.surface(forest_.patch(other), other).reflectance;
         const double as_receiver = largest_channel(rho * b[other]) * psi[divided];
         const double as_source = largest_channel(rho_other * (range.most[divided] - range.least[divided])) * psi[other];
         return may_divide(divided) ? std::max(as_receiver, as_source) : 0.0;
@@ -270,6 +272,7 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
 void LinkedElements::describe_new_elements(std::uint32_t first) {
     Solution& solution = state_.solution;
     inherit(forest_, first, solution.irradiance);
+    state_.materials.grow(forest_);
     if (state_.view.empty()) return;
     inherit(forest_, first, solution.indirect_importance);
     solution.view_importance = state_.view.per_area(forest_, !state_.options.importance_at_elements);

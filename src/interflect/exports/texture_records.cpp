@@ -1,0 +1,73 @@
+#include "interflect/exports/texture_records.h"
+
+#include <string>
+
+namespace interflect {
+
+namespace {
+
+constexpr const char *reflectance_texture = "reflectance_texture", *exitance_texture = "exitance_texture";
+constexpr const char* coordinates_dataset = "/scene/texture_coordinates";
+
+std::string texels_dataset(std::size_t texture) { return "/scene/textures/" + std::to_string(texture); }
+
+template <class Vector>
+std::span<const float> numbers_of(const std::vector<Vector>& vectors) {
+    return {reinterpret_cast<const float*>(vectors.data()), vectors.size() * sizeof(Vector) / sizeof(float)};
+}
+
+template <class Vector>
+std::vector<Vector> read_vectors(const Hdf5Reader& file, const std::string& name) {
+    constexpr std::size_t columns = sizeof(Vector) / sizeof(float);
+    const std::vector<float> numbers = file.read<float>(name, columns);
+    std::vector<Vector> vectors(numbers.size() / columns);
+    for (std::size_t i = 0; i < numbers.size(); ++i) vectors[i / columns][static_cast<int>(i % columns)] = numbers[i];
+    return vectors;
+}
+
+}  // namespace
+
+Json json_of(const std::vector<Texture>& textures) {
+    Json json = Json::array();
+    for (const Texture& t : textures) json.push_back({{"name", t.name}, {"width", t.width}, {"height", t.height}});
+    return json;
+}
+
+std::vector<Texture> textures_of(const Json& json) {
+    std::vector<Texture> textures;
+    for (const Json& t : json)
+        textures.push_back({t.at("name").get<std::string>(),
+                            t.at("width").get<std::uint32_t>(),
+                            t.at("height").get<std::uint32_t>(),
+                            {}});
+    return textures;
+}
+
+void add_textures(const Material& material, Json& json) {
+    if (material.reflectance_texture != none) json[reflectance_texture] = material.reflectance_texture;
+    if (material.exitance_texture != none) json[exitance_texture] = material.exitance_texture;
+}
+
+void read_textures(const Json& json, Material& material) {
+    material.reflectance_texture = json.value(reflectance_texture, none);
+    material.exitance_texture = json.value(exitance_texture, none);
+}
+
+std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {
+    std::vector<FileRange> ranges;
+    for (std::size_t i = 0; i < scene.textures.size(); ++i)
+        ranges.push_back(
+            file.write(texels_dataset(i), numbers_of(scene.textures[i].texels), sizeof(Rgb) / sizeof(float)));
+    if (!scene.texture_coordinates.empty())
+        ranges.push_back(
+            file.write(coordinates_dataset, numbers_of(scene.texture_coordinates), sizeof(V2f) / sizeof(float)));
+    return ranges;
+}
+
+void read_textures(const Hdf5Reader& file, Scene& scene) {
+    for (std::size_t i = 0; i < scene.textures.size(); ++i)
+        scene.textures[i].texels = read_vectors<Rgb>(file, texels_dataset(i));
+    if (file.has(coordinates_dataset)) scene.texture_coordinates = read_vectors<V2f>(file, coordinates_dataset);
+}
+
+}  // namespace interflect

@@ -1,0 +1,37 @@
+#include "interflect/formats/texture_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "interflect/base/error.h"
+#include "interflect/image/image_files.h"
+#include "interflect/image/srgb.h"
+
+namespace interflect {
+
+Texture read_texture(const std::filesystem::path& path) {
+    Image image = read_image(path, static_cast<std::int64_t>(most_texels));
+    Texture texture{path.string(), static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height),
+                    std::move(image.pixels)};
+    if (const std::string fault = texture_fault(texture); !fault.empty()) throw InputError(path, 0, fault);
+    return texture;
+}
+
+std::string texture_extension(const Texture& texture) {
+    const auto is_srgb = [](const Rgb& texel) {
+        for (int c = 0; c < 3; ++c)
+            if (srgb_decode(static_cast<float>(srgb_byte(texel[c])) / 255) != texel[c]) return false;
+        return true;
+    };
+    return std::all_of(texture.texels.begin(), texture.texels.end(), is_srgb) ? ".png" : ".exr";
+}
+
+void write_texture(const std::filesystem::path& path, const Texture& texture) {
+    Image image;
+    image.width = static_cast<int>(texture.width);
+    image.height = static_cast<int>(texture.height);
+    image.pixels = texture.texels;
+    write_image(path, image);
+}
+
+}  // namespace interflect

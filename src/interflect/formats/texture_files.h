@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "interflect/scene/texture.h"
+
+namespace interflect {
+
+/// Reads an image as a texture: .png (sRGB), .exr or .hdr (linear).
+/// @throws InputError with the path and the reason, as read_image() does, and for a texture with a fault.
+Texture read_texture(const std::filesystem::path& path);
+
+/// The extension of the file that keeps every texel as it is: ".png" where all are what 8 bit sRGB has, else ".exr".
+std::string texture_extension(const Texture& texture);
+
+/// Writes a texture in the format of the path's extension.
+/// @throws InputError, std::runtime_error as write_image() does.
+void write_texture(const std::filesystem::path& path, const Texture& texture);
+
+}  // namespace interflect

@@ -1,0 +1,30 @@
+#include "interflect/geometry/texture_mapping.h"
+
+namespace interflect {
+
+namespace {
+
+Rgb times_texel(const Scene& scene, const Patch& patch, Parameters p, const Rgb& factor, std::uint32_t texture) {
+    if (texture == none) return factor;
+    return factor * texel_at(scene.textures[texture], texture_coordinate(scene, patch, p));
+}
+
+}  // namespace
+
+V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p) {
+    const auto at = [&](std::size_t k) { return scene.texture_coordinates[patch.vertices[k]]; };
+    if (patch.is_triangle()) return at(0) * (1 - p.u - p.v) + at(1) * p.u + at(2) * p.v;
+    return (at(0) * (1 - p.u) + at(1) * p.u) * (1 - p.v) + (at(3) * (1 - p.u) + at(2) * p.u) * p.v;
+}
+
+Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p) {
+    const Material& material = scene.materials[patch.material];
+    return times_texel(scene, patch, p, material.reflectance, material.reflectance_texture);
+}
+
+Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p) {
+    const Material& material = scene.materials[patch.material];
+    return times_texel(scene, patch, p, material.exitance, material.exitance_texture);
+}
+
+}  // namespace interflect

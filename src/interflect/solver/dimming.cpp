@@ -1,0 +1,27 @@
+#include "interflect/solver/dimming.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "interflect/base/error.h"
+#include "interflect/solver/group_light.h"
+#include "interflect/solver/materials.h"
+
+namespace interflect {
+
+void dim(Scene& scene, Solution& solution, const std::string& group, float factor) {
+    SourceGroups groups = source_groups(scene);
+    if (solution.groups.empty()) groups.names.clear();
+    const std::size_t g = groups.index_of(group);
+    if (!(factor >= 0 && std::isfinite(factor)))
+        throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));
+    std::vector<float> factors(groups.size(), 1);
+    factors[g] = factor;
+    scene = dimmed(scene, groups, factors);
+    for (Rgb& h : solution.groups[g]) h *= factor;
+    solution.irradiance = sum_of(solution.groups);
+}
+
+}  // namespace interflect

@@ -1,0 +1,156 @@
+// Textures in pictures: texels where they belong, and light that is unbiased.
+//
+// Seen to fail when shading or the path tracer takes the patch's mean or another point's texel, when rows are upside
+// down, and when a lamp's texel is that of another point than the one that is sampled.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "interflect/generators/boxes.h"
+#include "interflect/metrics/metrics.h"
+#include "interflect/render/path_tracer.h"
+#include "interflect/render/render.h"
+#include "interflect/solver/solve.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+#include "tests/support/textured_scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr double pi = std::numbers::pi;
+
+/// A picture's mean over pixels and channels, for several seeds.
+std::vector<double> means(const Scene& scene, const View& view, PathOptions options, int runs) {
+    const RayCaster ray_caster(scene);
+    std::vector<double> result;
+    for (int i = 1; i <= runs; ++i) {
+        options.seed = static_cast<std::uint64_t>(i);
+        double sum = 0;
+        const Image image = trace_paths(scene, ray_caster, view, options).image;
+        for (const Rgb& pixel : image.pixels) sum += static_cast<double>(channel_sum(pixel)) / 3;
+        result.push_back(sum / static_cast<double>(image.pixels.size()));
+    }
+    return result;
+}
+
+class PathTracedTextures : public testing::TestWithParam<EmitterSampling> {};
+INSTANTIATE_TEST_SUITE_P(Sampling, PathTracedTextures,
+                         testing::Values(EmitterSampling::combined, EmitterSampling::directions));
+
+TEST_P(PathTracedTextures, FurnaceIsAsBrightEverywhere) {
+    const Scene scene = textured_furnace(Rgb(2, 2, 2));
+    const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
+    const PathOptions options{.width = 6, .height = 4, .samples = 64, .emitter_sampling = GetParam()};
+    const std::vector<double> seen = means(scene, view, options, 24);
+    EXPECT_GT(t_test(seen, 2 / pi), false_alarm);
+    EXPECT_LT(t_test(seen, 2.02 / pi), false_alarm);
+}
+
+/// A ramp over a wall of 1 x 1 m, in all of which the texture is linear: brighter to the right and, more so, upwards.
+Scene ramp(bool emits) {
+    Scene scene;
+    scene.objects = {""};
+    scene.materials = {{"wall", Rgb(emits ? 0 : 0.01f), Rgb(emits ? 1 : 0)}};
+    (emits ? scene.materials[0].exitance_texture : scene.materials[0].reflectance_texture) = 0;
+    scene.textures = {{"ramp", 4, 4, {}}};
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            scene.textures[0].texels.emplace_back(static_cast<float>(1 + column + 10 * (3 - row)));
+    add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0);  // seen from y < 0
+    for (const V3f& x : scene.vertices)
+        scene.texture_coordinates.emplace_back(0.125f + 0.75f * x.x, 0.125f + 0.75f * x.z);
+    return scene;
+}
+
+/// A pixel's mean is the value at its middle.
+double ramp_at(int column, int row, int side) { return 1 + 3 * (column + 0.5) / side + 30 * (side - row - 0.5) / side; }
+
+const View in_front{"front", V3f(0.5f, -10, 0.5f), V3f(0.5f, 0, 0.5f), V3f(0, 0, 1),
+                    static_cast<float>(2 * std::atan(0.5 / 10) * 180 / pi)};
+
+class Ramp : public testing::TestWithParam<Shading> {};
+INSTANTIATE_TEST_SUITE_P(Shadings, Ramp, testing::Values(Shading::flat, Shading::smooth));
+
+TEST_P(Ramp, TexelsAreWhereTheyBelong) {
+    constexpr int side = 8;
+    for (const bool emits : {true, false}) {
+        const Scene scene = ramp(emits);
+        const ElementForest forest(scene, 1);
+        const std::vector<Rgb> irradiance(1, Rgb(emits ? 0 : 100));  // times 0.01
+        const RenderOptions options{.width = side, .height = side, .samples = 64, .shading = GetParam()};
+        const Rendering picture = render(scene, forest, RayCaster(scene), in_front, irradiance, options);
+        for (int row = 0; row < side; ++row)
+            for (int column = 0; column < side; ++column)
+                EXPECT_NEAR(pi * static_cast<double>(picture.image.at(column, row).x), ramp_at(column, row, side),
+                            0.05);
+    }
+}
+
+TEST(PathTracedRamp, TexelsAreWhereTheyBelong) {
+    constexpr int side = 8;
+    const Scene scene = ramp(true);
+    const PathTracing picture =
+        trace_paths(scene, RayCaster(scene), in_front, {.width = side, .height = side, .samples = 64});
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column)
+            EXPECT_NEAR(pi * static_cast<double>(picture.image.at(column, row).x), ramp_at(column, row, side), 0.05);
+}
+
+/// A bright and a dark half of one lamp, close to the floor: which half a sampled point is on matters.
+TEST(PathTracedLamp, HasOneAnswerHoweverItIsSampled) {
+    const Scene scene = half_dark_floor(Halves::emit);
+    const View view{"ceiling", V3f(3, 1, 0.5f), V3f(3.5f, 1, 2), V3f(1, 0, 0), 40};
+    PathOptions options{.width = 8, .height = 8, .samples = 256, .emitter_sampling = EmitterSampling::directions};
+    const std::vector<double> expected = means(scene, view, options, 32);
+    const double mean = std::accumulate(expected.begin(), expected.end(), 0.0) / 32;
+    double squares = 0;
+    for (const double x : expected) squares += (x - mean) * (x - mean);
+    const double error = std::sqrt(squares / 31 / 32);
+    for (const EmitterSampling sampling : {EmitterSampling::lights, EmitterSampling::combined}) {
+        options.emitter_sampling = sampling;
+        const std::vector<double> seen = means(scene, view, options, 32);
+        EXPECT_GT(t_test(seen, mean, error), false_alarm);
+        EXPECT_LT(t_test(seen, 1.03 * mean, error), false_alarm);
+    }
+}
+
+/// Blocks of 8 x 8 pixels of two pictures: the root mean square of their differences, relative to the mean.
+double block_difference(const Image& a, const Image& b) {
+    const Image blocks_a = box_downsample(a, 8), blocks_b = box_downsample(b, 8);
+    double squares = 0, sum = 0;
+    for (std::size_t i = 0; i < blocks_a.pixels.size(); ++i) {
+        const double x = luminance(RgbD(blocks_a.pixels[i])), y = luminance(RgbD(blocks_b.pixels[i]));
+        squares += (x - y) * (x - y);
+        sum += y;
+    }
+    const auto count = static_cast<double>(blocks_a.pixels.size());
+    return std::sqrt(squares / count) / (sum / count);
+}
+
+/// In a room that neither was made for. The difference is noise and the mesh's; other texels would make more of it.
+TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
+    Scene scene = make_boxes({.boxes = 6, .seed = 3, .texture = true});
+    const RayCaster ray_caster(scene);
+    const View view = scene.views[0];
+    SolveOptions options;
+    options.method = find_method("hsrr");
+    options.rays = 4'000'000;
+    const Solution solution = solve(scene, ray_caster, options);
+    const RenderOptions size{.width = 96, .height = 64, .samples = 64};
+    const Image reference = trace_paths(scene, ray_caster, view, {.width = 96, .height = 64, .samples = 128}).image;
+    const auto picture = [&] {
+        return render(scene, *solution.forest, ray_caster, view, solution.irradiance, size).image;
+    };
+    constexpr double tolerance = 0.02;
+    EXPECT_LT(block_difference(picture(), reference), tolerance);
+    for (V2f& coordinate : scene.texture_coordinates) coordinate += V2f(0.3f, 0.5f);
+    EXPECT_GT(block_difference(picture(), reference), 2 * tolerance);
+}
+
+}  // namespace
+}  // namespace interflect

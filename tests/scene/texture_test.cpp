@@ -1,0 +1,101 @@
+// Textures: where texels lie, and what a scene must not have.
+//
+// Seen to fail when rows are taken from below, texels are not filtered or not repeated, centres are shifted by half a
+// texel, and when any of the faults is not looked for.
+#include "interflect/scene/texture.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "interflect/scene/scene.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using testing::HasSubstr;
+
+/// Three columns and two rows, the upper one 1 2 3, the lower 4 5 6.
+Texture numbered() {
+    Texture texture{"numbers.png", 3, 2, {}};
+    for (int i = 1; i <= 6; ++i) texture.texels.emplace_back(static_cast<float>(i));
+    return texture;
+}
+
+TEST(Texture, IsItsTexelAtTheCentreOfEach) {
+    const Texture texture = numbered();
+    for (std::uint32_t row = 0; row < 2; ++row)
+        for (std::uint32_t column = 0; column < 3; ++column) {
+            const V2f centre((static_cast<float>(column) + 0.5f) / 3, 1 - (static_cast<float>(row) + 0.5f) / 2);
+            const float expected = static_cast<float>(3 * row + column + 1);
+            EXPECT_NEAR(texel_at(texture, centre).y, expected, 1e-5f);
+            EXPECT_NEAR(texel_at(texture, centre + V2f(2, -3)).y, expected, 1e-4f) << "repeated";
+        }
+}
+
+TEST(Texture, IsLinearBetweenCentresAcrossItsBordersToo) {
+    const Texture texture = numbered();
+    EXPECT_NEAR(texel_at(texture, {1 / 3.0f, 0.75f}).x, 1.5f, 1e-5f);
+    EXPECT_NEAR(texel_at(texture, {1 / 6.0f, 0.5f}).x, 2.5f, 1e-5f);
+    EXPECT_NEAR(texel_at(texture, {0, 0.75f}).x, 2, 1e-5f) << "between 3 and 1";
+    EXPECT_NEAR(texel_at(texture, {0.5f, 1}).x, 3.5f, 1e-5f) << "between 5 and 2";
+}
+
+Scene textured_scene() {
+    Scene scene;
+    testing_support::add_material(scene, Rgb(0.1f), Rgb(1));
+    testing_support::add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    scene.textures = {numbered()};
+    scene.materials[0].reflectance_texture = scene.materials[0].exitance_texture = 0;
+    scene.texture_coordinates.assign(scene.vertices.size(), V2f(0.5f, 0.5f));
+    return scene;
+}
+
+TEST(TexturedScene, HasNoFaults) { EXPECT_THAT(scene_faults(textured_scene()), testing::IsEmpty()); }
+
+struct Fault {
+    const char* name;
+    std::function<void(Scene&)> make;
+    const char* message;
+};
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
+
+class TextureFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(TextureFaults, AreFoundAndNamed) {
+    Scene scene = textured_scene();
+    GetParam().make(scene);
+    const std::vector<std::string> faults = scene_faults(scene);
+    ASSERT_FALSE(faults.empty());
+    EXPECT_THAT(faults[0], HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, TextureFaults,
+    testing::Values(
+        Fault{"NoSize", [](Scene& s) { s.textures[0].width = 0; }, "texture 'numbers.png' has 0 x 2 texels"},
+        Fault{"TooWide", [](Scene& s) { s.textures[0].width = most_texels_of_side + 1; }, "expected 1 to 16384 a side"},
+        Fault{"TexelsMissing", [](Scene& s) { s.textures[0].texels.pop_back(); }, "of 3 x 2 texels holds 5"},
+        Fault{"NegativeTexel", [](Scene& s) { s.textures[0].texels[4].z = -1; }, "1 from the left and 1 from the top"},
+        Fault{"InfiniteTexel", [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },
+              "not finite"},
+        Fault{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "there is no texture 1"},
+        Fault{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
+              "reflectance times its texture is up to (1.2"},
+        Fault{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
+        Fault{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
+        Fault{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
+              "patch 0 has a texture, but no texture coordinates"},
+        Fault{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
+              "there are 4 vertices and 3 texture coordinates"},
+        Fault{"CoordinateNotANumber",
+              [](Scene& s) { s.texture_coordinates[2].x = std::numeric_limits<float>::quiet_NaN(); },
+              "vertex 2 has the texture coordinates (nan"},
+        Fault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; }, "expected numbers up to 4096"}),
+    testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace interflect
