@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -36,6 +37,12 @@ VIEWS = {
 }
 SMALL = ("--size", "32x18", "--samples", "4")
 LARGE = ("--size", "96x54", "--samples", "4")
+
+
+def methods():
+    """All that `--method` takes."""
+    text = subprocess.run([COMMAND, "solve", "--help"], capture_output=True, text=True, check=True).stdout
+    return re.search(r"--method (\S+)", text)[1].split("|")
 
 
 class CommandTest(unittest.TestCase):

@@ -14,7 +14,7 @@ from command import COMMAND, DONE, INTERRUPTED, SMALL, VIEW, CommandTest, room
 ENDLESS = ("--rays", "10T", "--mesh-size", "0.5")
 SHORT_ITERATIONS = ("--rays-per-iteration", "20k")
 ONE_LONG_ITERATION = ("--rays-per-iteration", "100G")
-METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk")
+METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk", "global-lines", "pr")
 SOON = 30  # [s]
 A_MOMENT = 10  # [s], on a machine that is busy and under a sanitizer
 

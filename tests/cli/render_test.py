@@ -5,7 +5,7 @@ import re
 import struct
 import unittest
 
-from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, CommandTest, room
+from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, CommandTest, methods, room
 
 SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
@@ -140,7 +140,7 @@ class Methods(RenderTest):
         """Flat ones on a mesh: what it smooths away is the difference, which noise adds to."""
         render = ("render", "room.mgf", *SMALL, "--view", "door", "--mesh-size", "0.5", "-o")
         self.interflect(*render, "reference.exr", "--rays", "2M", "--seed", "9")
-        for method in ("srr", "isrr", "wdrs", "hwdrs", "hsrr", "random-walk", "hr"):
+        for method in methods():
             self.interflect(*render, "out.exr", "--rays", "500k", "--method", method)
             difference = self.json("compare", "out.exr", "reference.exr")
             self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.05, msg=method)

@@ -98,7 +98,7 @@ std::vector<Case> cases() {
     add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.complete_passes = false; });
     const std::size_t without_lights = all.size();
     for (std::size_t i = 0; i < without_lights; ++i)
-        if (all[i].options.method.scheme != Scheme::links && all[i].options.method.scheme != Scheme::random_walk)
+        if (all[i].options.method.separates_groups && all[i].options.method.takes_luminaires)
             all.push_back({all[i].name + "_with_lights", all[i].options, true});  // and groups of them
     return all;
 }

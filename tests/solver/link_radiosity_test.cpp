@@ -33,8 +33,12 @@ namespace {
 
 using namespace testing_support;
 
-const Method without_importance{"hr", Scheme::links, true, ImportanceUse::off, ""};
-const Method with_importance{"hr", Scheme::links, true, ImportanceUse::full, ""};
+const Method without_importance = find_method("hr");
+const Method with_importance = [] {
+    Method method = find_method("hr");
+    method.importance = ImportanceUse::full;
+    return method;
+}();
 
 SolveOptions refined_to(double epsilon) {
     SolveOptions options;

@@ -66,6 +66,23 @@ TEST_P(Reproducible, SameSeedSameBitsForAnyNumberOfThreads) {
         EXPECT_EQ(solved_on_threads(threads, scene, options).irradiance, irradiance) << threads;
 }
 
+TEST(ReproducibleMethod, SameSeedSameBitsForAnyNumberOfThreads) {
+    const Scene scene = furnished_room();
+    for (const Method& method : methods)
+        for (const bool has_view : {false, true}) {
+            SolveOptions options = with_rays(60'000);
+            options.method = method;
+            if (has_view) options.views = {{into_the_corner}};
+            const Solution expected = solved_on_threads(1, scene, options);
+            for (const int threads : {2, 3}) {
+                const Solution s = solved_on_threads(threads, scene, options);
+                EXPECT_EQ(s.irradiance, expected.irradiance) << method.name << ' ' << threads;
+                EXPECT_EQ(s.indirect_importance, expected.indirect_importance) << method.name << ' ' << threads;
+                EXPECT_EQ(s.rays, expected.rays) << method.name << ' ' << threads;
+            }
+        }
+}
+
 TEST_P(Reproducible, AnotherSeedGivesOtherBits) {
     const Scene scene = furnished_room();
     SolveOptions options = with_rays(100'000);
@@ -158,7 +175,7 @@ TEST(Solve, ReportsEveryIterationInOrder) {
 // before it. Seen to fail when the elements that a step made are kept, and when no batch looks at the request.
 TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
     const Scene scene = furnished_room();
-    for (const char* name : {"ihsrr", "hwdrs", "random-walk"})
+    for (const char* name : {"ihsrr", "hwdrs", "random-walk", "global-lines", "pr"})
         for (const bool complete_passes : {true, false}) {
             SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
             options.method = find_method(name);

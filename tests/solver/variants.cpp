@@ -32,6 +32,8 @@ Variant hierarchical(bool separate, bool deferred, bool at_elements) {
     return variant;
 }
 
+bool keeps_every_ray(const Variant& variant) { return variant.options.method.make == find_method("wdrs").make; }
+
 template <class Condition>
 std::vector<Variant> those(const Condition& condition) {
     const std::vector<Variant> all = stochastic_variants();
@@ -54,6 +56,19 @@ std::vector<Variant> stochastic_variants() {
             for (const bool at_elements : {false, true})
                 variants.push_back(hierarchical(separate, deferred, at_elements));
     return variants;
+}
+
+std::vector<Variant> variants_of_other_methods() {
+    std::vector<Variant> named = stochastic_variants(), others;
+    const std::vector<Variant> kept = variants_that_keep_every_ray();
+    named.insert(named.end(), kept.begin(), kept.end());
+    for (const Method& method : methods) {
+        const auto is_of_it = [&](const Variant& v) { return v.options.method.make == method.make; };
+        if (!method.is_stochastic || std::any_of(named.begin(), named.end(), is_of_it)) continue;
+        others.push_back(plain(method.name));
+        std::replace(others.back().name.begin(), others.back().name.end(), '-', '_');
+    }
+    return others;
 }
 
 std::vector<Variant> variants_that_keep_every_ray() { return {plain("wdrs"), plain("hwdrs")}; }
@@ -98,7 +113,7 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     options.views = {{into_the_corner}};
     options.seed = seed;
     // A kept ray has the colour that it was shot with, before any warm-up.
-    options.complete_passes = options.method.scheme == Scheme::well_distributed;
+    options.complete_passes = keeps_every_ray(variant);
     options.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
     options.iterations = 4;
     options.rays_per_iteration = 10'000;

@@ -20,6 +20,8 @@ std::ostream& operator<<(std::ostream& out, const Variant& variant);
 std::vector<Variant> variants_that_keep_every_ray();
 /// Every method that averages iterations and all its variants: what is said of the mean over many seeds holds for each.
 std::vector<Variant> stochastic_variants();
+/// The stochastic methods of neither kind, as they are: each follows light to its end.
+std::vector<Variant> variants_of_other_methods();
 /// Those that importance drives.
 std::vector<Variant> variants_with_importance();
 /// Those that refine the mesh.

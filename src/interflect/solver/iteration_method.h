@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include "interflect/solver/solver_state.h"
 #include "interflect/solver/state_archive.h"
 
@@ -34,8 +32,5 @@ class IterationMethod {
     /// Whether what archive() has read can belong to this run.
     virtual bool fits(const SolverState&) const { return true; }
 };
-
-/// The one that the options ask for. The state must outlive it.
-std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state);
 
 }  // namespace interflect

@@ -27,7 +27,7 @@ struct MemoryNeed {
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
 };
 
-/// What solving this scene needs. Methods that link elements (Scheme::links) need 24 bytes a link besides.
+/// What solving this scene needs. Methods that link elements (hr) need 24 bytes a link besides.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
 
 /// The elements that fit into so much memory.

@@ -58,7 +58,7 @@ void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightS
         sums.power += power;
         if (shares.weighted_power > 0 && !s.part_importance.empty())
             sums.weighted_power += power * s.part_importance[i];
-        if (shares.power_nearby > 0 && !s.part_nearby.empty()) sums.power_nearby += power * s.part_nearby[i];
+        if (shares.power_nearby > 0 && !s.part_importance.empty()) sums.power_nearby += power * s.part_nearby[i];
     }
 }
 
@@ -95,8 +95,10 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (!sampled.part_importance.empty()) by_power += for_driven * sampled.part_importance[i];
-        if (!sampled.part_nearby.empty()) by_power += for_nearby * sampled.part_nearby[i];
+        if (sampled.part_importance.empty())  // not known yet: as if it were the mean
+            by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
+        else
+            by_power += for_driven * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];
         q[forest.size() + i] = static_cast<float>(by_power * channel_sum(sampled.emission->power(i)));
     }
     return {std::move(q), sums.lost, sums.power, sums.weighted_power};

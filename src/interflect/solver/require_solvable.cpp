@@ -38,12 +38,14 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     for (const WeightedView& v : o.views)
         require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");
-    require(o.method.scheme != Scheme::well_distributed || o.method.importance == ImportanceUse::off,
-            "importance: a method that keeps every ray needs rays of equal power, which importance does not give");
-    require(o.method.scheme != Scheme::links || scene.luminaires.empty(),
-            "lights that are no surfaces: this method knows only surfaces that emit; choose another one");
-    require(scene.light_groups.empty() || (o.method.scheme != Scheme::links && o.method.scheme != Scheme::random_walk),
-            "light groups: this method keeps all light together; choose another one");
+    require(!o.method.no_importance || o.method.importance == ImportanceUse::off,
+            fmt::format("importance: {} cannot be steered by it, since {}", o.method.name,
+                        o.method.no_importance ? o.method.no_importance : ""));
+    require(o.method.takes_luminaires || scene.luminaires.empty(),
+            fmt::format("lights that are no surfaces: {} knows only surfaces that emit; choose another method",
+                        o.method.name));
+    require(o.method.separates_groups || scene.light_groups.empty(),
+            fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
     require_no_faults(faults, "cannot solve", scene);
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,38 +25,35 @@ enum class ImportanceUse {
     full,    ///< What the view shows and what lights that: V and all its bounces (Eq. 7).
 };
 
-/// What becomes of the rays.
-enum class Scheme {
-    averaged,          ///< Each iteration estimates all irradiance anew; their mean is kept (Eq. 6).
-    well_distributed,  ///< Every ray is kept: all carry one quantum, and an iteration shoots what the leaves lack.
-    random_walk,       ///< Particles start at the lights and are scored wherever they hit, until they are absorbed.
-    links,             ///< Deterministic: elements are linked, and gather over their links.
-};
-
-/// What decides where the mesh is refined, between the passes of Scheme::averaged. See refine_by_variance() and Oracle.
+/// What decides where the mesh is refined. See refine_by_variance() and Oracle.
 enum class Refinement {
     variance,  ///< Elements are split where their children are expected to differ by more than their noise.
     power,     ///< Pairs of elements are split by the power that passes between them (Eq. 14, 15), as in the paper.
 };
 
-/// A method is data: how rays are used, what steers them, whether the mesh is refined.
+class IterationMethod;
+struct SolverState;
+/// Makes what does a method's iterations. The state must outlive it.
+using MakeIterationMethod = std::unique_ptr<IterationMethod>(SolverState& state);
+
+/// A method is data: what does its iterations, what steers them, and what others need to know of it. They are listed in
+/// methods/table.cpp.
 struct Method {
     const char* name;
-    Scheme scheme;
-    bool refines;              ///< Hierarchical: the oracle decides (Eq. 14, or Eq. 15 with importance).
-    ImportanceUse importance;  ///< Taken as `off` where there is no view.
-    const char* source;
+    const char* source;             ///< Author and year.
+    MakeIterationMethod* make;      ///< Never null.
+    bool refines = false;           ///< Hierarchical: makes elements below the patches.
+    bool follows_variance = false;  ///< Refines between complete passes as Refinement says; others by power.
+    ImportanceUse importance = ImportanceUse::off;  ///< Taken as `off` where there is no view.
+    const char* no_importance = nullptr;            ///< Why importance cannot steer it; null: it can.
+    bool is_stochastic = true;                      ///< Its noise is measured, and falls with the rays.
+    bool takes_luminaires = true;                   ///< Light sources that are no surfaces shine.
+    bool separates_groups = false;                  ///< Keeps what each light group brings apart.
+    bool follows_dimming = false;  ///< Can go on with groups that shine otherwise, see Solver::set_exitance().
 };
 
-inline constexpr std::array<Method, 8> methods = {
-    {{"srr", Scheme::averaged, false, ImportanceUse::off, "Neumann et al. 1995"},
-     {"isrr", Scheme::averaged, false, ImportanceUse::full, "Neumann et al. 1996"},
-     {"wdrs", Scheme::well_distributed, false, ImportanceUse::off, "Neumann, Neumann and Bekaert 1997"},
-     {"hwdrs", Scheme::well_distributed, true, ImportanceUse::off, "Bekaert et al. 1998"},
-     {"hsrr", Scheme::averaged, true, ImportanceUse::off, "srr on the hierarchy of Bekaert et al. 1998"},
-     {"ihsrr", Scheme::averaged, true, ImportanceUse::full, "Prikryl et al. 2000"},
-     {"random-walk", Scheme::random_walk, false, ImportanceUse::off, "Pattanaik and Mudur 1992, 1995"},
-     {"hr", Scheme::links, true, ImportanceUse::off, "Hanrahan et al. 1991, Smits et al. 1992"}}};
+/// All there are.
+extern const std::span<const Method> methods;
 
 /// The method of that name. @throws InputError that lists the methods there are.
 const Method& find_method(const std::string& name);
@@ -79,7 +76,7 @@ struct SolveOptions {
 
     /// True: each iteration is a pass of its own, which follows light from the emitters bounce by bounce until little
     /// is left; passes are independent, and their mean is kept. False: the paper's, from darkness through warm_up
-    /// iterations, each of which is one bounce of the running mean. Scheme::well_distributed begins with a pass.
+    /// iterations, each of which is one bounce of the running mean; methods that keep every ray only begin with a pass.
     bool complete_passes = true;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Averaged iterations; 0: as many as the limits allow. >= 0.
@@ -87,12 +84,12 @@ struct SolveOptions {
     /// most_rays_per_iteration.
     std::int64_t rays_per_iteration = 0;
 
-    /// Of Scheme::averaged with complete passes; all others refine by power.
+    /// Of methods that follow variance (Method::follows_variance), with complete passes; all others refine by power.
     Refinement refinement = Refinement::variance;
     bool shrinkage = true;  ///< With Refinement::variance, differences that are mostly noise are reduced (shrinkage.h).
 
     /// Threshold of Eq. 14 and 15 once 20 million rays are averaged, relative to the reference power (see
-    /// reference_power); > 0. Scheme::links takes it as it is.
+    /// reference_power); > 0. Method hr takes it as it is.
     double epsilon = 4e-8;
     /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
     /// 1]. At 0 it is the same for all iterations, as in the paper.

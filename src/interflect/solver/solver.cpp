@@ -22,7 +22,7 @@ struct Solver::Run {
         : undimmed_scene(std::move(s)),
           ray_caster(std::move(caster)),
           state(*undimmed_scene, *ray_caster, options),
-          method(make_iteration_method(state)),
+          method(state.options.method.make(state)),
           known_dimming(state.groups.size(), 1) {}
 
     const std::shared_ptr<const Scene> undimmed_scene;
@@ -82,7 +82,7 @@ IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
 void Solver::Run::iterate_until(const Limits& limits) {
     const std::int64_t all = std::numeric_limits<std::int64_t>::max(), before = state.schedule.rays();
     const std::int64_t rays_asked_for = limits.rays < all - before ? before + limits.rays : all;
-    if (state.options.method.scheme == Scheme::links) limit_time();  // others find a first estimate at any price
+    if (!state.options.method.is_stochastic) limit_time();  // others find a first estimate at any price
     if (!is_prepared) method->prepare(state);
     is_prepared = true;
     limit_time();
@@ -177,7 +177,7 @@ void Solver::set_exitance(const std::string& group, float factor) {
     const std::size_t g = run.state.groups.index_of(group);
     if (!(factor >= 0 && std::isfinite(factor)))
         throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));
-    if (run.state.options.method.scheme != Scheme::averaged)
+    if (!run.state.options.method.follows_dimming)
         throw InputError(fmt::format("{} cannot go on with other light: choose a method that averages iterations",
                                      run.state.options.method.name));
     run.finished.reset();

@@ -63,7 +63,7 @@ class Solver {
     /// Scales the sources of a light group of the scene: 1 is what the scene says they emit. The light of the group is
     /// scaled with them at once.
     /// @throws InputError for a group that there is not, for a factor that is negative or not finite, and unless the
-    /// method averages iterations (Scheme::averaged).
+    /// method averages iterations (Method::follows_dimming).
     void set_exitance(const std::string& group, float factor);
     /// Replaces the limits of the plan: rays in all, time in all [s], error.
     void set_plan(std::int64_t rays, double seconds, double until);

@@ -25,7 +25,7 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     const std::size_t per_element =
         ElementForest::reserved_per_element + Arrivals::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
-    if (options.method.scheme == Scheme::links) return options.max_elements;
+    if (!options.method.is_stochastic) return options.max_elements;  // it knows what it makes
     const std::size_t fitting = free_address_space() / 2 / per_element;
     return std::min(largest,
                     options.max_elements + std::min(excess, fitting - std::min(fitting, options.max_elements)));
@@ -179,8 +179,7 @@ void SolverState::archive(StateArchive& archive) {
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
     for (const std::vector<Rgb>& of_group : solution.groups)
         require(of_group.size() == elements, "expected the irradiance of every element by every light group");
-    const bool has_noise = options.method.scheme != Scheme::links;
-    require(!has_noise || (history.size() == elements && noise.elements() == elements),
+    require(!options.method.is_stochastic || (history.size() == elements && noise.elements() == elements),
             "expected the noise of every element");
     require(streams.used.size() <= elements, "expected points of elements that there are");
     require(streams.used_by_parts.size() <= emission.part_count() && part_importance.size() == emission.part_count(),

@@ -31,8 +31,7 @@ MixtureWeights power_step_shares(const Solution& so_far, bool combined, bool nea
 }  // namespace
 
 bool refines_by_variance(const SolveOptions& o) {
-    return o.method.refines && o.method.scheme == Scheme::averaged && o.complete_passes &&
-           o.refinement == Refinement::variance;
+    return o.method.refines && o.method.follows_variance && o.complete_passes && o.refinement == Refinement::variance;
 }
 
 ImportanceUse importance_use(const Solution& so_far) {

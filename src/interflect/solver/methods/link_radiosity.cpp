@@ -358,4 +358,8 @@ void LinkedElements::archive(StateArchive& archive) {
     archive("links/is_settled", is_settled_);
 }
 
+std::unique_ptr<IterationMethod> make_linked_elements(SolverState& state) {
+    return std::make_unique<LinkedElements>(state);
+}
+
 }  // namespace interflect

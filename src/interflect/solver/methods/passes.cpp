@@ -7,6 +7,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/merge.h"
+#include "interflect/solver/methods/one_bounce.h"
 #include "interflect/solver/variance_refinement.h"
 
 namespace interflect {
@@ -111,7 +112,7 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     step.spent = &pass_.unshot;
     const std::uint32_t before = state.forest->size();
     Received received;
-    if (traced > 0) received = run_step(state, std::move(step));
+    if (traced > 0) received = trace(state, std::move(step));
 
     pass_.budget = budget;
     pass_.emits = false;
@@ -367,6 +368,11 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
     }
     importance_step_is_done_ = false;
     return escaped_power_;
+}
+
+std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {
+    if (state.options.complete_passes) return std::make_unique<Passes>();
+    return std::make_unique<OneBounce>();
 }
 
 }  // namespace interflect

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "interflect/solver/iteration_method.h"
@@ -48,6 +49,10 @@ class Passes : public IterationMethod {
 
     /// A first estimate for iterations of another kind: prepare(), then a pass if that traced no power.
     void make_first_estimate(SolverState& state);
+
+  protected:
+    /// Traces the rays of one bounce. @throws Interrupted
+    virtual Received trace(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
 
   private:
     void start_importance(SolverState& state, std::int64_t rays);

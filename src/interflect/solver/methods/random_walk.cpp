@@ -403,4 +403,6 @@ RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
     return escaped_;
 }
 
+std::unique_ptr<IterationMethod> make_random_walks(SolverState& state) { return std::make_unique<RandomWalks>(state); }
+
 }  // namespace interflect

@@ -93,4 +93,8 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     return escaped_ * (all_power / static_cast<double>(total_));
 }
 
+std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state) {
+    return std::make_unique<WellDistributedRays>(state);
+}
+
 }  // namespace interflect

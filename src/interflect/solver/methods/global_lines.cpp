@@ -1,0 +1,241 @@
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/parallel.h"
+#include "interflect/base/random.h"
+#include "interflect/geometry/tangent_frame.h"
+#include "interflect/solver/methods/passes.h"
+
+namespace interflect {
+
+namespace {
+
+/// Lines of one task, whose crossings are found one after the other, all lines at a time.
+constexpr std::size_t lines_per_task = PointBlock::capacity;
+
+/// How many times a patch may receive from a line, on average over all lines, before its sums overflow. It is crossed
+/// once; more looks back through it where it is one-sided.
+constexpr double lines_headroom = 0x1p8;
+
+/// A sphere that holds the scene.
+struct LineDomain {
+    V3f centre;
+    float radius;
+
+    explicit LineDomain(const Scene& scene) {
+        Imath::Box3f box;
+        for (const V3f& v : scene.vertices) box.extendBy(v);
+        centre = box.center();
+        float square = 0;
+        for (const V3f& v : scene.vertices) square = std::max(square, (v - centre).length2());
+        constexpr float margin = 1.0001f;  // over what rounding takes away
+        radius = margin * std::sqrt(square);
+    }
+    /// Area of the disk that the lines of one direction cross [m^2].
+    double cross_section() const {
+        return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
+    }
+};
+
+/// A patch that faces a line, and what it sees when it looks back along it; none where that is nothing.
+struct LineSegment {
+    std::uint32_t front, back;
+    bool is_mutual;  ///< What is seen sees it too. Not through the back of a one-sided face.
+};
+
+/// The lines of one task that may still cross something; reused by its thread.
+struct LineBundle {
+    PointBlock points;
+    std::vector<Ray> lines, looking_back;
+    /// Of each line, how much farther than the patch that it crossed last something may be and still coincide with it
+    /// [m]; infinite before the first.
+    std::vector<float> slack;
+    std::vector<Hit> hits, seen;
+    std::vector<LineSegment> segments;
+};
+
+/// Uniform lines: the direction is uniform on the sphere, the line crosses the disk through the centre uniformly.
+void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
+    fill_points(set, key, first, bundle.lines.size(), bundle.points);
+    bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
+    const auto& [a, b, c, d] = bundle.points.coordinate;
+    constexpr float turn = 2 * std::numbers::pi_v<float>;
+    for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
+        const float z = 1 - 2 * a[i], across = std::sqrt(std::max(0.0f, 1 - z * z));
+        const V3f direction(across * std::cos(turn * b[i]), across * std::sin(turn * b[i]), z);
+        const TangentFrame frame(direction);
+        const float r = std::sqrt(c[i]);
+        const V3f offset = frame.s * (r * std::cos(turn * d[i])) + frame.t * (r * std::sin(turn * d[i]));
+        bundle.lines[i] = {domain.centre + domain.radius * (offset - direction), direction};
+    }
+}
+
+/// Finds the next patch that faces each line, and what that sees when it looks back along the line. Lines that meet
+/// none are dropped, the others go on behind the patch.
+void find_segments(const ElementForest& forest, const RayCaster& ray_caster, LineBundle& bundle) {
+    constexpr float offsets_apart = 4;  // at most, what coincides; as RayCaster::ray_offset()
+    bundle.segments.clear();
+    bundle.looking_back.clear();
+    bundle.hits.resize(bundle.lines.size());
+    ray_caster.trace(bundle.lines, bundle.hits);
+    for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
+        const auto [patch, distance] = bundle.hits[i];
+        if (patch == none) continue;
+        const V3f direction = bundle.lines[i].direction;
+        const PatchGeometry& geometry = forest.geometry(patch);
+        // On the patch, as where rays start elsewhere: what the hit is off by may be more than the ray offset.
+        const V3f x = geometry.point(geometry.parameters_of(bundle.lines[i].origin + distance * direction));
+        const V3f offset = ray_caster.ray_offset(patch) * geometry.normal();
+        const std::size_t kept = bundle.segments.size();
+        bundle.looking_back.push_back({x + offset, -direction});
+        bundle.lines[kept] = {x - offset, direction};
+        bundle.hits[kept].distance = distance + bundle.slack[i];
+        bundle.slack[kept] = offsets_apart * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
+        bundle.segments.push_back({patch, none, true});
+    }
+    bundle.lines.resize(bundle.segments.size());
+    bundle.seen.resize(bundle.segments.size());
+    ray_caster.trace(bundle.looking_back, bundle.seen);
+    for (std::size_t i = 0; i < bundle.segments.size(); ++i) {
+        bundle.segments[i].back = bundle.seen[i].patch;
+        bundle.segments[i].is_mutual = bundle.seen[i].distance <= bundle.hits[i].distance;
+    }
+}
+
+/// What the lines of a step brought, as integers, so that the order of arrival does not matter.
+class LineSums {
+  public:
+    /// @param quantum  Power per unit of radiosity that a line carries along a segment, either way [m^2].
+    LineSums(const ElementForest& forest, const Radiosity& light, double quantum, std::int64_t lines)
+        : quantum_(quantum), power_(0), square_(0) {
+        double brightest = 0;
+        for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+            radiosity_.push_back(light.of(forest, i));
+            brightest = std::max(brightest, static_cast<double>(largest_channel(radiosity_[i])));
+        }
+        const double most = lines_headroom * static_cast<double>(lines) * quantum * brightest;
+        power_ = FixedPoint(most);
+        square_ = FixedPoint(most * quantum * brightest);
+        received_.resize(radiosity_.size());
+        squares_.resize(radiosity_.size(), 0);
+        started_.resize(radiosity_.size(), 0);
+        escaped_.resize(radiosity_.size(), 0);
+    }
+
+    void add(const LineSegment& segment) {
+        add_concurrently(started_[segment.front], 1);
+        if (segment.back == none) {
+            add_concurrently(escaped_[segment.front], 1);
+            return;
+        }
+        carry(segment.front, segment.back, segment.is_mutual ? 1 : 2);
+        if (!segment.is_mutual) return;
+        add_concurrently(started_[segment.back], 1);
+        carry(segment.back, segment.front, 1);
+    }
+
+    Received received(const ElementForest& forest) const {
+        Received r;
+        for (std::uint32_t i = 0; i < received_.size(); ++i) {
+            const double area = forest.area(i);
+            const RgbD arrived = power_.to_colour(received_[i]);
+            // Only lines that come from one side tell that nothing is in sight: each counts for two.
+            const RgbD lost = RgbD(radiosity_[i]) * (2 * quantum_ * static_cast<double>(escaped_[i]));
+            r.irradiance.emplace_back(arrived / area);
+            r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
+            r.escaped_power += lost;
+            r.shot_power += arrived + lost;
+            r.escaped_rays += escaped_[i];
+        }
+        return r;
+    }
+    /// How often light left each patch along a line.
+    const std::vector<std::int64_t>& started() const { return started_; }
+
+  private:
+    /// @param quanta  2 where no line that comes from the other side carries the same.
+    void carry(std::uint32_t from, std::uint32_t to, int quanta) {
+        const RgbD power = RgbD(radiosity_[from]) * (quanta * quantum_);
+        const double y = luminance(power);
+        add_concurrently(received_[to], power_.from(power));
+        add_concurrently(squares_[to], square_.from(y * y));
+    }
+
+    double quantum_;
+    std::vector<Rgb> radiosity_;
+    FixedPoint power_, square_;
+    std::vector<FixedPoint::Value> received_;
+    std::vector<std::int64_t> squares_, started_, escaped_;
+};
+
+/// Passes whose bounces are carried by global lines (Sbert 1993, 1997): lines of uniform density through a sphere
+/// around the scene, whatever shines. A line crosses each patch with a probability in proportion to its area
+/// (Cauchy and Crofton), at an angle that is cosine-distributed there, and every pair of patches that see each other
+/// along it exchange light both ways. So a line's segments stand for all of the scene at once, but few of them meet
+/// what is small: where the light comes from small emitters the noise is large.
+///
+/// N lines through a sphere of radius R: with B_a 4 pi R^2 / (2 N) along each segment, an expected A_a F_ab B_a goes
+/// from a to b. A line costs 1 + 2 h rays, of which h = sum A / (4 pi R^2) is the expected number of patches that face
+/// it; a step takes as many lines as its rays allow by that mean. Constant on patches: no refinement. Cost: O(N h
+/// log(patches)) time.
+class GlobalLines final : public Passes {
+  public:
+    explicit GlobalLines(const SolverState& state) : domain_(state.scene) {
+        for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i)
+            area_ += state.forest->area(i) * state.ray_caster.uncovered_share(i);
+    }
+
+    void archive(StateArchive& archive) override {
+        Passes::archive(archive);
+        archive("global_lines/steps", steps_);
+    }
+
+  protected:
+    Received trace(SolverState& state, TransportStep step) override {
+        if (!state.may_begin_step()) throw Interrupted();
+        const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
+        const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
+        const ElementForest& forest = *state.forest;
+        LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
+        // Lines of their own for each bounce: the product of bounces is unbiased where they are independent.
+        const std::uint64_t key = mix(mix(state.options.seed, line_purpose), steps_);
+        PerThread<LineBundle> bundles;
+        const auto trace_some = [&](std::size_t begin, std::size_t end) {
+            LineBundle& bundle = bundles.local();
+            bundle.lines.resize(end - begin);
+            make_lines(domain_, state.options.points, key, begin, bundle);
+            while (!bundle.lines.empty()) {
+                find_segments(forest, state.ray_caster, bundle);
+                for (const LineSegment& segment : bundle.segments) sums.add(segment);
+            }
+        };
+        parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop, trace_some);
+        ++steps_;
+        state.has_traced_step = true;
+        Received received = sums.received(forest);
+        state.escaped_rays += received.escaped_rays;
+        state.streams.used.resize(forest.size(), 0);
+        for (std::uint32_t i = 0; i < forest.size(); ++i)
+            state.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
+        return received;
+    }
+
+  private:
+    static constexpr std::uint64_t line_purpose = 0x6c696e6573;
+    const LineDomain domain_;
+    double area_ = 0;          // of the patches that lines can meet [m^2]
+    std::uint64_t steps_ = 0;  // bounces that had lines of their own
+};
+
+}  // namespace
+
+std::unique_ptr<IterationMethod> make_global_lines(SolverState& state) { return std::make_unique<GlobalLines>(state); }
+
+}  // namespace interflect
