@@ -1,7 +1,6 @@
 // Textures in solution files: a textured scene comes back as it was, and a run in it goes on with the same bits.
 //
-// Seen to fail when texels, coordinates or indices are left out, and when the means of elements are not found again
-// after a file is opened.
+// Seen to fail when coordinates are left out, and when the means of elements are not found again after a file is opened.
 #include <gtest/gtest.h>
 
 #include "interflect/base/error.h"

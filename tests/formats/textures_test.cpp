@@ -1,7 +1,7 @@
 // Interflect's own entities of MGF, `uv` and `texture`: docs/mgf-extensions.md.
 //
 // Seen to fail when images are not found relative to the file that names them, when a material's textures are not part
-// of its identity, when vertices of different coordinates are merged, and when texels are not written exactly.
+// of its identity, and when texels that 8 bits cannot hold are written as PNG.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Means of textures over triangles, against sums over many points, and against each other.
 //
-// Seen to fail when the trapezoidal rule is the rectangle rule, whole repeats are not counted, the middle of Simpson's
-// rule counts once, rows are not wrapped, or thin triangles are not widened.
+// Seen to fail when the trapezoidal rule is the rectangle rule, whole repeats are not counted, or triangles without an
+// area are not widened.
 #include "interflect/geometry/texture_integral.h"
 
 #include <gtest/gtest.h>
@@ -93,6 +93,9 @@ TEST(TextureIntegral, OfATriangleWithoutAreaIsThatOfALine) {
     const Rgb expected = mean_of_points(texture, {start, end, between}, 2'000);
     expect_near(integral.mean({start, end, between}), expected, 1e-3f);
     expect_near(integral.mean({end, start, between}), expected, 1e-3f);
+    const V2f along_row(2.3f, 0.4f), halfway((start.x + along_row.x) / 2, start.y);  // no area even after rounding
+    expect_near(integral.mean({start, along_row, halfway}), mean_of_points(texture, {start, along_row, halfway}, 2'000),
+                1e-3f);
     expect_near(integral.mean({start, start, start}), texel_at(texture, start), 1e-6f);
 }
 

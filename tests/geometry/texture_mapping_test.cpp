@@ -1,6 +1,6 @@
 // Texture coordinates through all that makes new vertices: a coordinate that is linear in space stays so.
 //
-// Seen to fail when cuts, splits or crossings of outlines make vertices without coordinates or with another's, when
+// Seen to fail when cuts or crossings of outlines make vertices without coordinates, splits with those of a corner, when
 // vertices that differ in coordinates alone are merged, and when a seam between images divides a flat surface.
 #include "interflect/geometry/texture_mapping.h"
 

@@ -1,7 +1,7 @@
 // Textures in pictures: texels where they belong, and light that is unbiased.
 //
-// Seen to fail when shading or the path tracer takes the patch's mean or another point's texel, when rows are upside
-// down, and when a lamp's texel is that of another point than the one that is sampled.
+// Seen to fail when shading or the path tracer takes the texel in the middle of the patch, and when a lamp's texel is
+// that of another point than the one that is sampled.
 #include <gtest/gtest.h>
 
 #include <cmath>

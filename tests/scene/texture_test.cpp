@@ -1,7 +1,6 @@
 // Textures: where texels lie, and what a scene must not have.
 //
-// Seen to fail when rows are taken from below, texels are not filtered or not repeated, centres are shifted by half a
-// texel, and when any of the faults is not looked for.
+// Seen to fail when rows are taken from below, and when centres are shifted by half a texel.
 #include "interflect/scene/texture.h"
 
 #include <gmock/gmock.h>

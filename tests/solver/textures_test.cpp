@@ -1,7 +1,7 @@
 // Textures in the solver: scenes with an exact answer, and scenes that can be had without a texture.
 //
-// Seen to fail when elements have their patch's means, when exitance or reflectance ignores its texture, when what is
-// emitted is not the integral, and when new elements are not told of.
+// Seen to fail when elements have their patch's means, when exitance ignores its texture, and when the means of new
+// elements are not found.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -175,7 +175,6 @@ void SolverState::archive(StateArchive& archive) {
     solution.iterations.clear();
     for (const ReportNumbers& numbers : reports) solution.iterations.push_back(report_of(numbers));
     forest->rebuild(parents);
-    materials.grow(*forest);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
     for (const std::vector<Rgb>& of_group : solution.groups)
