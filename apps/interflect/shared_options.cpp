@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/contacts.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/geometry/contacts.h"
 #include "interflect/geometry/split.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/scene/view.h"

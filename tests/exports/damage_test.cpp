@@ -7,9 +7,9 @@
 #include <iterator>
 #include <random>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
-#include "interflect/exports/solution_file.h"
+#include "interflect/solution_file.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

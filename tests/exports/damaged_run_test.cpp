@@ -11,9 +11,9 @@
 #include <random>
 #include <string>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
-#include "interflect/solver/solver.h"
+#include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

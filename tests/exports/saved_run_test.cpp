@@ -16,10 +16,12 @@
 #include <string>
 #include <thread>
 
-#include "interflect/base/error.h"
 #include "interflect/base/random.h"
-#include "interflect/exports/solution_file.h"
-#include "interflect/solver/solver.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/exports/saved_run.h"
+#include "interflect/solution_file.h"
+#include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

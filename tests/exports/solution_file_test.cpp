@@ -1,4 +1,4 @@
-#include "interflect/exports/solution_file.h"
+#include "interflect/solution_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 #include <limits>
 #include <random>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
 #include "tests/support/scenes.h"
 

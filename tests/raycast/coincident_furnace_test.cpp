@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 

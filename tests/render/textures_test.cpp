@@ -8,11 +8,12 @@
 #include <numbers>
 #include <numeric>
 
+#include "interflect/elements/forest.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/metrics/metrics.h"
-#include "interflect/render/path_tracer.h"
-#include "interflect/render/render.h"
-#include "interflect/solver/solve.h"
+#include "interflect/path_tracer.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <random>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/variance_refinement.h"
 #include "tests/support/scenes.h"

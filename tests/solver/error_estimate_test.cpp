@@ -10,8 +10,9 @@
 #include <tuple>
 #include <vector>
 
-#include "interflect/render/render.h"
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

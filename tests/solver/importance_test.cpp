@@ -5,8 +5,9 @@
 
 #include <cmath>
 
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"

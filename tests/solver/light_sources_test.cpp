@@ -12,10 +12,10 @@
 #include <numbers>
 
 #include "interflect/luminaires/emission.h"
-#include "interflect/render/path_tracer.h"
-#include "interflect/render/render.h"
+#include "interflect/path_tracer.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"

@@ -20,7 +20,8 @@
 #include <numbers>
 #include <ostream>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/methods/exchange.h"
 #include "tests/solver/reference_rooms.h"

@@ -9,7 +9,8 @@
 
 #include <cmath>
 
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 

@@ -14,8 +14,9 @@
 #include <numeric>
 #include <ostream>
 
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/form_factors.h"

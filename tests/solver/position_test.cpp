@@ -13,11 +13,12 @@
 #include <ostream>
 #include <random>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/render/render.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {

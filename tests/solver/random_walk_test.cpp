@@ -18,10 +18,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "interflect/elements/forest.h"
 #include "interflect/generators/maze.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"

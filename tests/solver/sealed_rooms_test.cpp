@@ -8,10 +8,11 @@
 #include <numbers>
 #include <ostream>
 
+#include "interflect/contacts.h"
+#include "interflect/elements/forest.h"
 #include "interflect/generators/two_rooms.h"
-#include "interflect/geometry/contacts.h"
 #include "interflect/geometry/split.h"
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect {
 namespace {

@@ -1,7 +1,7 @@
 // What a caller of solve() relies on, apart from the numbers being right: limits, interruption, reproducibility,
 // errors.
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@
 #include <cmath>
 #include <thread>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/solver/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"

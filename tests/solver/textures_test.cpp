@@ -6,9 +6,10 @@
 
 #include <vector>
 
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/radiosity.h"
-#include "interflect/solver/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"

@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect::testing_support {
 

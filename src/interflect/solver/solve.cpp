@@ -1,10 +1,10 @@
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 #include <memory>
 #include <utility>
 
-#include "interflect/base/error.h"
-#include "interflect/solver/solver.h"
+#include "interflect/error.h"
+#include "interflect/solver.h"
 
 namespace interflect {
 

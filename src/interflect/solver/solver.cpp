@@ -1,4 +1,4 @@
-#include "interflect/solver/solver.h"
+#include "interflect/solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,13 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/require_solvable.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

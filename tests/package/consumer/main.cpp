@@ -1,12 +1,12 @@
 // The whole way through the library, as someone outside uses it: a scene, a ray, a solution, a file, a picture.
 
-#include <interflect/exports/solution_file.h>
-#include <interflect/image/image_files.h>
-#include <interflect/raycast/ray_caster.h>
-#include <interflect/render/render.h>
-#include <interflect/scene/scene.h>
-#include <interflect/solver/solve.h>
-#include <interflect/solver/solver.h>
+#include <interflect/image_files.h>
+#include <interflect/ray_caster.h>
+#include <interflect/render.h>
+#include <interflect/scene.h>
+#include <interflect/solution_file.h>
+#include <interflect/solve.h>
+#include <interflect/solver.h>
 
 #include <array>
 #include <cmath>

@@ -9,9 +9,12 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/solver/methods/passes.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

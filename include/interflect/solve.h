@@ -9,14 +9,22 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/colour.h"
-#include "interflect/base/points.h"
-#include "interflect/elements/forest.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
-#include "interflect/solver/view_importance.h"
+#include "interflect/colour.h"
+#include "interflect/point_set.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 
 namespace interflect {
+
+class ElementForest;
+
+/// A view and how much it counts beside others.
+struct WeightedView {
+    View view = {};
+    double weight = 1;         ///< > 0; what counts is its share of the sum of all.
+    float aspect = 16.0f / 9;  ///< Width over height of the picture.
+    int pixel_rows = 720;      ///< Of the picture, > 0: elements need be no smaller than what a pixel shows.
+};
 
 /// What importance steers.
 enum class ImportanceUse {
