@@ -38,7 +38,7 @@ struct SolvedMaze {
     ElementForest& forest = const_cast<ElementForest&>(*solution.forest);  // it does not grow any further, see step()
 
     SolveOptions options() const {
-        SolveOptions o;
+        SolveOptions o{.method = find_method("srr")};
         o.method = find_method("ihsrr");
         o.rays = 2'000'000;
         o.views.push_back({scene.views.at(4)});

@@ -196,7 +196,7 @@ void run(const BenchArguments& options) {
     SolveOptions solve_options;
     solve_options.rays = options.rays;
     for (const View& view : options.view.views(scene)) solve_options.views.push_back({view});
-    solve_options.method = options.method.value_or(find_method(solve_options.views.empty() ? "hsrr" : "ihsrr"));
+    solve_options.method = options.method.value_or(default_method(!solve_options.views.empty()));
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
     const Workload work(scene, ray_caster, solve_options);

@@ -41,7 +41,7 @@ SolvedScene example() {
     scene.views = {{"door", {0.1f, 0.2f, 0.3f}, {1, 2, 3}, {0, 1, 0}, 60},
                    {"corner", {1, 1, 1}, {0, 0, 0}, {0, 0, 1}, 45}};
 
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 10'000;
     options.seed = 0xfedcba9876543210;
     solved.solution = solve(scene, RayCaster(scene), options);

@@ -17,7 +17,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions refining() {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 200'000;
     return options;

@@ -21,7 +21,7 @@ constexpr float exitance = 2, rho = 0.5f;
 const Material wall{"wall", Rgb(rho), Rgb(exitance)};
 
 SolveOptions furnace_options(std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 200'000;
     options.seed = seed;
     return options;

@@ -138,7 +138,7 @@ TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
     Scene scene = make_boxes({.boxes = 6, .seed = 3, .texture = true});
     const RayCaster ray_caster(scene);
     const View view = scene.views[0];
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 4'000'000;
     const Solution solution = solve(scene, ray_caster, options);

@@ -44,7 +44,7 @@ struct Setting {
         for (int level = 0; level < levels; ++level) divide();
     }
     static SolveOptions hierarchical() {
-        SolveOptions options;
+        SolveOptions options{.method = find_method("srr")};
         options.method = find_method("hsrr");
         return options;
     }

@@ -18,7 +18,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions options_of(const char* method) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.rays = 80'000;
     options.views = {{into_the_corner}};

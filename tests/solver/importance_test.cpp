@@ -26,7 +26,7 @@ Scene grey_box() {
 }
 
 SolveOptions options_for(const char* method, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {{into_the_corner}};
     options.rays = 200'000;

@@ -45,7 +45,7 @@ Scene lit_room() {
 }
 
 SolveOptions options_of(const std::string& method, std::int64_t rays = 400'000) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.rays = rays;
     options.camera_rays = 1 << 13;

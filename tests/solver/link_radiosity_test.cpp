@@ -42,7 +42,7 @@ const Method with_importance = [] {
 }();
 
 SolveOptions refined_to(double epsilon) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = without_importance;
     options.epsilon = epsilon;
     return options;

@@ -84,7 +84,7 @@ struct Measured {
 Measured measure(const Placement& place, std::uint64_t seed) {
     const Scene scene = read_mgf_text(room(place), "room.mgf");
     const RayCaster ray_caster(scene);
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 150'000;
     options.seed = seed;

@@ -31,7 +31,7 @@ Solution solve(const Scene& scene, const SolveOptions& options, const Monitor& m
 }
 
 SolveOptions with_rays(std::int64_t rays) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = rays;
     return options;
 }
@@ -120,7 +120,7 @@ TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
 
 TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     const Scene scene = furnished_room();
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 60'000;
     options.max_elements = 3 * scene.patches.size();
@@ -276,7 +276,7 @@ TEST(Solve, RefusesLightsBeyondSinglePrecision) {
 }
 
 TEST(Solve, ListsAllOptionsOutOfRange) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 0;
     options.seconds = std::nan("");
     options.until = 1;

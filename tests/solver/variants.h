@@ -13,7 +13,7 @@ namespace interflect::testing_support {
 /// A method with options that make a variant of it.
 struct Variant {
     std::string name;  ///< Letters, digits and underscores.
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
 };
 std::ostream& operator<<(std::ostream& out, const Variant& variant);
 

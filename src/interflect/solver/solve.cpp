@@ -17,6 +17,8 @@ const Method& find_method(const std::string& name) {
     throw InputError("there is no method '" + name + "'; there are: " + known);
 }
 
+const Method& default_method(bool has_views) { return find_method(has_views ? "ihsrr" : "hsrr"); }
+
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     // They outlive the solver.
     const std::shared_ptr<const Scene> shared_scene(std::shared_ptr<void>(), &scene);

@@ -116,8 +116,13 @@ Solution Solver::Run::snapshot() {
 
 namespace {
 
+SolveOptions with_method(SolveOptions options) {
+    if (!options.method.make) options.method = default_method(!options.views.empty());
+    return options;
+}
+
 std::shared_ptr<const RayCaster> caster_of(const Scene& scene, const SolveOptions& options) {
-    require_solvable(scene, options);
+    require_solvable(scene, with_method(options));
     return std::make_shared<RayCaster>(scene);
 }
 
@@ -130,7 +135,8 @@ Solver::Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& op
     : Solver(scene, caster_of(*scene, options), options) {}
 
 Solver::Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
-               const SolveOptions& options) {
+               const SolveOptions& asked_for) {
+    const SolveOptions options = with_method(asked_for);
     require_solvable(*scene, options);
     ray_caster->require_made_for(*scene);
     run_ = std::make_unique<Run>(std::move(scene), std::move(ray_caster), options);
