@@ -50,11 +50,11 @@ Texture make_label() {
 }
 
 Texture make_louvres() {
-    constexpr std::uint32_t side = 96, cell = side / 6, bar = 2;
+    constexpr std::uint32_t side = 96, pitch = side / 6, bar = 2;
     return draw("louvres", side, [](std::uint32_t x, std::uint32_t y) -> std::array<int, 3> {
-        if (x % cell < bar || y % cell < bar) return {40, 40, 40};
+        if (x % pitch < bar || y % pitch < bar) return {40, 40, 40};
         const auto hump = [](std::uint32_t i) {
-            return std::sin(std::numbers::pi_v<float> * (static_cast<float>(i % cell) + 0.5f) / cell);
+            return std::sin(std::numbers::pi_v<float> * (static_cast<float>(i % pitch) + 0.5f) / pitch);
         };
         constexpr float dimmest = 150, rise = 105;
         const int shade = static_cast<int>(dimmest + rise * hump(x) * hump(y));

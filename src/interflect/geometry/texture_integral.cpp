@@ -67,7 +67,8 @@ RgbD TextureIntegral::row_integral(std::int64_t column, std::size_t row) const {
     const std::int64_t width = texture_.width, within = wrapped(column, width);
     const RgbD* sums = &sums_[row * sums_per_row_];
     const Rgb* texels = texels_of(row);
-    RgbD sum = sums[within / texels_per_sum] + sums[sums_per_row_ - 1] * static_cast<double>((column - within) / width);
+    const std::int64_t repeats = (column - within) / width;
+    RgbD sum = sums[within / texels_per_sum] + sums[sums_per_row_ - 1] * static_cast<double>(repeats);
     for (std::int64_t i = within / texels_per_sum * texels_per_sum; i < within; ++i) sum += RgbD(texels[i]);
     return sum + (RgbD(texels[within]) - RgbD(texels[0])) * 0.5;  // the trapezoidal rule
 }

@@ -111,8 +111,8 @@ void Emission::add_window(Window window, const Rgb& exitance) {
 void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                      std::span<Ray> rays) const {
     const Emitter& emitter = emitters_[part / parts_per_emitter];
-    const std::size_t cell = part % parts_per_emitter;
-    const auto column = static_cast<float>(cell % cells_per_side), row = static_cast<float>(cell / cells_per_side);
+    const std::size_t cell = part % parts_per_emitter, cell_row = cell / cells_per_side;
+    const auto column = static_cast<float>(cell % cells_per_side), row = static_cast<float>(cell_row);
     const auto turned = [](const V3f& axis, const V3f& s, const V3f& t, float cosine, float turn) {
         const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), angle = 2 * pi * turn;
         return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;

@@ -110,14 +110,14 @@ float signal_beside(const SolverState& state, std::uint32_t e) {
 }
 
 /// What is added up over the leaves, weighted by what counts.
-struct Sums {
+struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
     double noise_of_patches = 0;              // as a whole; part of the noise
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
     double assumed = 0;                       // within leaves without siblings
     double within = 0;                        // of the leaves' siblings, where pixels resolve what is within a leaf
 
-    Sums& operator+=(const Sums& o) {
+    ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
         signal += o.signal, signal_of_parent += o.signal_of_parent;
         assumed += o.assumed, within += o.within;
@@ -158,15 +158,15 @@ RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
         });
 }
 
-double decay_of(const Sums& sums) {
+double decay_of(const ErrorSums& sums) {
     if (!(sums.signal > 0) || !(sums.signal_of_parent > 0)) return least_decay;
     return std::clamp(sums.signal / sums.signal_of_parent, least_decay, most_decay);
 }
 
-Sums sum_errors(const SolverState& state, const ElementErrors& errors) {
+ErrorSums sum_errors(const SolverState& state, const ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
-    return parallel_sum(forest.size(), elements_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
-        Sums sums;
+    return parallel_sum(forest.size(), elements_at_once, ErrorSums(), [&](std::size_t begin, std::size_t end) {
+        ErrorSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
             const double w = error_weight(state, e) * forest.area(e);
@@ -252,7 +252,7 @@ SolutionError solution_error(const SolverState& state) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double mean = error_reference(state);
     if (!state.noise.is_known() || !(mean > 0)) return {infinity, infinity};
-    const Sums sums = sum_errors(state, element_errors(state, !state.view.empty()));
+    const ErrorSums sums = sum_errors(state, element_errors(state, !state.view.empty()));
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = state.view.empty() ? sums.weight : 1;
     const double decay = decay_of(sums);

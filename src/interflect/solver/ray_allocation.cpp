@@ -19,7 +19,7 @@ RayAllocation::RayAllocation(std::span<const float> q, std::int64_t rays, double
             blocks_[b].q_before = sum;
         }
     });
-    for (Block& block : blocks_) {
+    for (SourceBlock& block : blocks_) {
         const double sum = block.q_before;
         block.q_before = q_sum_;
         q_sum_ += sum;
@@ -29,7 +29,7 @@ RayAllocation::RayAllocation(std::span<const float> q, std::int64_t rays, double
         blocks_.clear();
         return;
     }
-    for (Block& block : blocks_) block.first_ray = rays_before(block.q_before);
+    for (SourceBlock& block : blocks_) block.first_ray = rays_before(block.q_before);
 }
 
 }  // namespace interflect

@@ -23,8 +23,9 @@ class RayAllocation {
     /// begin with `first`, and of those asked for it has [from, to).
     template <class Body>
     void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
-        const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), begin,
-                                            [](std::int64_t ray, const Block& block) { return ray < block.first_ray; });
+        const auto after =
+            std::upper_bound(blocks_.begin(), blocks_.end(), begin,
+                             [](std::int64_t ray, const SourceBlock& block) { return ray < block.first_ray; });
         for (auto block = static_cast<std::size_t>(after - blocks_.begin()) - 1; block < blocks_.size(); ++block) {
             const bool goes_on = for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
                 if (next > begin) body(s, first, std::max(first, begin), std::min(next, end));
@@ -55,7 +56,7 @@ class RayAllocation {
 
   private:
     static constexpr std::size_t block_sources = 256;
-    struct Block {
+    struct SourceBlock {
         double q_before;         // sum of the weights of all blocks before it
         std::int64_t first_ray;  // rays of all blocks before it
     };
@@ -69,7 +70,7 @@ class RayAllocation {
     std::span<const float> q_;
     std::int64_t rays_;
     double offset_, q_sum_ = 0;
-    std::vector<Block> blocks_;
+    std::vector<SourceBlock> blocks_;
 };
 
 }  // namespace interflect

@@ -20,6 +20,12 @@ namespace interflect {
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
+
+    Escaped& operator+=(const Escaped& other) {
+        for (std::size_t c = 0; c < 3; ++c) power[c] += other.power[c];
+        rays += other.rays;
+        return *this;
+    }
 };
 
 /// The receiving end of a step, for one thread: finds the elements at which the payload of each ray arrives. A

@@ -135,11 +135,11 @@ Solver::Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& op
     : Solver(scene, caster_of(*scene, options), options) {}
 
 Solver::Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
-               const SolveOptions& asked_for) {
-    const SolveOptions options = with_method(asked_for);
-    require_solvable(*scene, options);
+               const SolveOptions& options) {
+    const SolveOptions resolved = with_method(options);
+    require_solvable(*scene, resolved);
     ray_caster->require_made_for(*scene);
-    run_ = std::make_unique<Run>(std::move(scene), std::move(ray_caster), options);
+    run_ = std::make_unique<Run>(std::move(scene), std::move(ray_caster), resolved);
 }
 
 Solver::~Solver() = default;

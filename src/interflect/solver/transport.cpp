@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/arrivals.h"
+#include "interflect/solver/carried.h"
 #include "interflect/solver/gathering.h"
 #include "interflect/solver/ray_allocation.h"
-#include "interflect/solver/ray_source.h"
+#include "interflect/solver/ray_maker.h"
 #include "interflect/solver/receiving.h"
 
 namespace interflect {
@@ -26,206 +24,6 @@ namespace {
 constexpr std::size_t batch_rays = 1024;
 /// How far ahead of the rays under way the patches that others hit are asked for.
 constexpr std::size_t rays_ahead = 32;
-
-/// Keys of the random numbers, so that no two purposes share one.
-enum class Purpose : std::uint64_t { allocation = 1, sampling = 2, emission = 3 };
-
-std::uint64_t stream_key(const SampleStreams& streams, Purpose purpose, std::uint64_t index) {
-    return mix(mix(streams.seed, static_cast<std::uint64_t>(purpose)), index);
-}
-
-/// The rays of one task that start on the same leaf or part of a luminaire: batch.rays[begin ... end - 1].
-struct SourceRays {
-    std::uint32_t source;  // the leaf, or elements of the forest + the part
-    std::uint32_t begin, end;
-};
-
-/// The rays of one task; one a thread, reused.
-struct RayBatch {
-    std::vector<SourceRays> sources;
-    std::vector<Ray> rays;
-    std::vector<Parameters> origins;
-    PointBlock points;
-};
-
-/// Makes the rays of a step.
-class RayMaker {
-  public:
-    RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
-             const SampleStreams& streams)
-        : forest_(forest),
-          elements_(forest.size()),
-          emission_(step.emission),
-          streams_(streams),
-          ray_caster_(ray_caster),
-          allocation_(step.q, step.rays,
-                      random_double(stream_key(streams, Purpose::allocation, 0), streams.allocations)) {}
-
-    const RayAllocation& allocation() const { return allocation_; }
-
-    /// Makes the rays begin ... end - 1.
-    void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const {
-        const auto count = static_cast<std::size_t>(end - begin);
-        batch.rays.resize(count);
-        batch.origins.resize(count);
-        batch.sources.clear();
-        const auto make_some = [&](std::size_t s, std::int64_t first, std::int64_t from, std::int64_t to) {
-            const auto source = static_cast<std::uint32_t>(s);
-            const auto offset = static_cast<std::size_t>(from - begin), length = static_cast<std::size_t>(to - from);
-            const auto skipped = static_cast<std::uint64_t>(from - first);
-            if (source < elements_)
-                shoot_from_leaf(source, skipped, offset, length, batch);
-            else
-                shoot_from_part(source - elements_, skipped, offset, length, batch);
-            batch.sources.push_back(
-                {source, static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(offset + length)});
-        };
-        allocation_.for_each_source(begin, end, make_some);
-    }
-
-  private:
-    void shoot_from_leaf(std::uint32_t leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
-                         RayBatch& batch) const {
-        const std::uint32_t patch = forest_.patch(leaf);
-        const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
-        const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
-        shoot_rays(forest_.geometry(patch), forest_.cell(leaf), ray_caster_.ray_offset(patch), streams_.points,
-                   stream_key(streams_, Purpose::sampling, place), used + skipped, batch.points,
-                   std::span(batch.rays).subspan(offset, length), std::span(batch.origins).subspan(offset, length));
-    }
-
-    void shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::size_t offset, std::size_t length,
-                         RayBatch& batch) const {
-        const std::uint64_t used = part < streams_.used_by_parts.size() ? streams_.used_by_parts[part] : 0;
-        emission_->shoot(part, streams_.points, stream_key(streams_, Purpose::emission, part), used + skipped,
-                         batch.points, std::span(batch.rays).subspan(offset, length));
-    }
-
-    const ElementForest& forest_;
-    const std::uint32_t elements_;  // when the step began
-    const Emission* emission_;
-    const SampleStreams& streams_;
-    const RayCaster& ray_caster_;
-    RayAllocation allocation_;
-};
-
-/// What one ray of each source carries: A_s / (N q_s) of a leaf's radiosity and of its reflected importance, 1 / (N
-/// q_s) of what a part of a luminaire emits.
-class Carried {
-  public:
-    Carried(const Materials& materials, const ElementForest& forest, const TransportStep& step, double q_sum)
-        : materials_(materials),
-          forest_(forest),
-          step_(step),
-          elements_(forest.size()),
-          q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
-
-    RgbD power(std::uint32_t source) const { return per_ray(source, radiated(source)); }
-    /// Of that, what a light group brings.
-    RgbD power(std::uint32_t source, std::size_t group) const {
-        if (source < elements_) {
-            const Rgb share = step_.groups.of(materials_, forest_, source, group);
-            return is_finite(share) ? per_ray(source, RgbD(share)) : RgbD(0);
-        }
-        return step_.groups.has_part(*step_.emission, source - elements_, group) ? power(source) : RgbD(0);
-    }
-    double importance(std::uint32_t source) const { return source < elements_ ? importance_of_leaf(source) : 0; }
-
-  private:
-    RgbD radiated(std::uint32_t source) const {
-        return source < elements_ ? RgbD(step_.light.of(forest_, source)) : step_.emission->power(source - elements_);
-    }
-    /// What each ray has of something that a source radiates.
-    RgbD per_ray(std::uint32_t source, const RgbD& light) const {
-        if (!step_.equal_quanta) return light * (source < elements_ ? area_per_ray(source) : per_ray(source));
-        const double sum = channel_sum(radiated(source));
-        return sum > 0 ? light / sum : RgbD(0);
-    }
-    double importance_of_leaf(std::uint32_t leaf) const {
-        return materials_.mean_reflectance(forest_.patch(leaf), leaf) * step_.importance[leaf] * area_per_ray(leaf);
-    }
-    double per_ray(std::uint32_t source) const { return q_sum_over_rays_ / step_.q[source]; }
-    double area_per_ray(std::uint32_t leaf) const { return forest_.area(leaf) * per_ray(leaf); }
-
-    const Materials& materials_;
-    const ElementForest& forest_;
-    const TransportStep& step_;
-    std::uint32_t elements_;  // when the step began
-    double q_sum_over_rays_;
-};
-
-/// What all rays of a step carry together.
-struct Totals {
-    RgbD power{0, 0, 0};  ///< [lm or W]
-    double square = 0;    ///< Of the luminance of each ray's power, summed.
-    double importance = 0;
-    double importance_square = 0;  ///< Of each ray's importance, summed.
-    Quanta quanta;
-
-    Totals& operator+=(const Totals& other) {
-        power += other.power;
-        square += other.square;
-        importance += other.importance;
-        importance_square += other.importance_square;
-        quanta += other.quanta;
-        return *this;
-    }
-};
-
-Totals all_carried(const TransportStep& step, const RayAllocation& allocation, const Carried& carried) {
-    constexpr std::size_t blocks_at_once = 16;
-    return parallel_sum(allocation.block_count(), blocks_at_once, Totals(), [&](std::size_t begin, std::size_t end) {
-        Totals sum;
-        for (std::size_t block = begin; block < end; ++block)
-            allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
-                const auto source = static_cast<std::uint32_t>(s);
-                const auto count = static_cast<double>(next - first);
-                if (step.carries_power()) {
-                    const RgbD power = carried.power(source);
-                    sum.power += power * count;
-                    sum.square += std::pow(luminance(power), 2) * count;
-                    sum.quanta.add(channel_sum(power), next - first);
-                }
-                if (step.carries_importance()) {
-                    const double importance = carried.importance(source);
-                    sum.importance += importance * count;
-                    sum.importance_square += importance * importance * count;
-                }
-                return true;
-            });
-        return sum;
-    });
-}
-
-/// The units in which arrivals are counted: what all rays carry fits.
-struct Units {
-    FixedPoint power, square, importance;
-
-    explicit Units(const Totals& all) : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
-
-    Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source) const {
-        Arrivals::Contribution contribution{};
-        if (step.carries_power()) {
-            const RgbD carried_power = carried.power(source);
-            const FixedPoint::Value of_power = power.from(carried_power);
-            std::copy(of_power.begin(), of_power.end(), contribution.begin());
-            contribution[3] = square.from(std::pow(luminance(carried_power), 2));
-        }
-        if (step.carries_importance())
-            contribution[Arrivals::importance_term] = importance.from(carried.importance(source));
-        return contribution;
-    }
-
-    /// Of that the power of each light group.
-    void add_groups(const TransportStep& step, const Carried& carried, std::uint32_t source,
-                    std::vector<std::int64_t>& terms) const {
-        terms.clear();
-        for (std::size_t g = 0; g < step.groups.size(); ++g) {
-            const FixedPoint::Value of_group = power.from(carried.power(source, g));
-            terms.insert(terms.end(), of_group.begin(), of_group.end());
-        }
-    }
-};
 
 /// Notes how many points every leaf, and every part of the luminaires, has consumed.
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
@@ -242,6 +40,21 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     });
     ++streams.allocations;
 }
+
+/// The rays of a step and what they carry. Refers to the step.
+struct Shooting {
+    Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
+             const TransportStep& step, const SampleStreams& streams)
+        : rays(forest, ray_caster, step, streams),
+          carried(materials, forest, step, rays.allocation().q_sum()),
+          all(all_carried(step, rays.allocation(), carried)),
+          units(all) {}
+
+    RayMaker rays;
+    Carried carried;
+    Totals all;
+    Units units;
+};
 
 /// What becomes of one task's rays; one a thread, reused.
 struct Batch {
@@ -373,77 +186,93 @@ void balance(const ElementForest& forest, const TransportStep& step, Received& r
     if (step.carries_importance()) push(forest, received.importance), pull(forest, received.importance);
 }
 
+Received nothing_received(const TransportStep& step, std::size_t elements) {
+    Received received;
+    received.irradiance.assign(step.carries_power() ? elements : 0, Rgb(0));
+    received.variance.assign(received.irradiance.size(), 0.0f);
+    received.importance.assign(step.carries_importance() ? elements : 0, 0.0f);
+    received.groups.assign(step.groups.size(), std::vector<Rgb>(elements, Rgb(0)));
+    return received;
+}
+
+// The three parts of a step. Between the second and the third all that has happened is in Arrivals, as integers: those
+// of several machines could be added up there.
+
+/// Makes the rays begin ... end - 1 and finds what they hit.
+void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
+    shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
+    batch.hits.resize(batch.shot.rays.size());
+    ray_caster.trace(batch.shot.rays, batch.hits);
+}
+
+/// What the rays of a batch carry arrives at elements, which may be made for that.
+void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) {
+    auto& [shot, hits, group_terms, receiver] = batch;
+    std::size_t fetched = 0;
+    for (const auto& [source, first, last] : shot.sources) {
+        const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size()), count = last - first;
+        for (; fetched < fetch; ++fetched) receiver.prefetch(hits[fetched]);
+        shooting.units.add_groups(step, shooting.carried, source, group_terms);
+        receiver.take(source, shooting.units.contribution(step, shooting.carried, source), group_terms,
+                      std::span(shot.rays).subspan(first, count), std::span(shot.origins).subspan(first, count),
+                      std::span(hits).subspan(first, count));
+    }
+    receiver.finish_batch();
+}
+
+/// Turns arrivals into what elements receive. @param step  What has served makes room for what is received.
+Received commit(TransportStep& step, const Shooting& shooting, ElementForest& forest, SampleStreams& streams,
+                Arrivals& arrivals, const std::optional<GatheredImportance>& gathered, const Escaped& escaped) {
+    const RayAllocation& allocation = shooting.rays.allocation();
+    const std::uint32_t old_size = shooting.rays.elements();
+    advance(streams, allocation, old_size, step.part_count());
+    Arrived arrived(arrivals, old_size, forest.put_in_order(old_size));
+    drop_excess(forest, arrived, step.oracle.max_elements, old_size);
+    Received received;
+    step.oracle.importance = std::vector<float>();
+    if (!gathered) step.q = std::vector<float>();
+    if (step.spent) received.irradiance = std::move(*step.spent);
+    collect(forest, step, shooting.units, arrived, received);
+    if (gathered && !step.importance_at_patches)
+        blend(forest, step, allocation, *gathered, shooting.all, old_size, received.importance);
+    if (gathered) received.part_importance = found_by_parts(step, allocation, *gathered, old_size);
+    balance(forest, step, received);
+    received.shot_power = shooting.all.power;
+    received.quanta = shooting.all.quanta;
+    received.escaped_rays = escaped.rays;
+    received.escaped_power = shooting.units.power.to_colour(escaped.power);
+    return received;
+}
+
 }  // namespace
 
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop) {
     assert(step.q.size() == forest.size() + step.part_count() && step.rays > 0);
-    Received received;
-    const RayMaker maker(forest, ray_caster, step, streams);
-    const RayAllocation& allocation = maker.allocation();
-    if (!(allocation.q_sum() > 0)) {
-        received.irradiance.assign(step.carries_power() ? forest.size() : 0, Rgb(0));
-        received.variance.assign(received.irradiance.size(), 0.0f);
-        received.importance.assign(step.carries_importance() ? forest.size() : 0, 0.0f);
-        received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size(), Rgb(0)));
-        return received;
-    }
-
-    const Carried carried(materials, forest, step, allocation.q_sum());
-    const Totals all = all_carried(step, allocation, carried);
-    const Units units(all);
-    arrivals.begin(forest.size());
+    const Shooting shooting(materials, forest, ray_caster, step, streams);
     const std::uint32_t old_size = forest.size();
+    if (!(shooting.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
+
+    arrivals.begin(old_size);
     std::optional<GatheredImportance> gathered = gathered_by(step, materials, forest);
     PerThread<Batch> batches([&] {
         return Batch({materials, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
     });
-    const auto trace_batch = [&](std::size_t begin, std::size_t end) {
-        auto& [shot, hits, group_terms, receiver] = batches.local();
-        maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), shot);
-        hits.resize(shot.rays.size());
-        ray_caster.trace(shot.rays, hits);
-        std::size_t fetched = 0;
-        for (const auto& [source, first, last] : shot.sources) {
-            const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size());
-            for (; fetched < fetch; ++fetched) receiver.prefetch(hits[fetched]);
-            units.add_groups(step, carried, source, group_terms);
-            receiver.take(source, units.contribution(step, carried, source), group_terms,
-                          std::span(shot.rays).subspan(first, last - first),
-                          std::span(shot.origins).subspan(first, last - first),
-                          std::span(hits).subspan(first, last - first));
-        }
-        receiver.finish_batch();
-    };
     try {
-        parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop, trace_batch);
+        parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop,
+                            [&](std::size_t begin, std::size_t end) {
+                                Batch& batch = batches.local();
+                                trace(shooting, ray_caster, begin, end, batch);
+                                receive(step, shooting, batch);
+                            });
     } catch (const Interrupted&) {
-        arrivals.clear(forest.size());
+        arrivals.clear(old_size);
         forget_new_elements(forest, old_size);
         throw;
     }
-    FixedPoint::Value escaped{};
-    for (Batch& batch : batches) {
-        const Escaped e = batch.receiver.finish();
-        for (std::size_t c = 0; c < 3; ++c) escaped[c] += e.power[c];
-        received.escaped_rays += e.rays;
-    }
-
-    advance(streams, allocation, old_size, step.part_count());
-    Arrived arrived(arrivals, old_size, forest.put_in_order(old_size));
-    drop_excess(forest, arrived, step.oracle.max_elements, old_size);
-    step.oracle.importance = std::vector<float>();  // what has served makes room for what is received
-    if (!gathered) step.q = std::vector<float>();
-    if (step.spent) received.irradiance = std::move(*step.spent);
-    collect(forest, step, units, arrived, received);
-    if (gathered && !step.importance_at_patches)
-        blend(forest, step, allocation, *gathered, all, old_size, received.importance);
-    if (gathered) received.part_importance = found_by_parts(step, allocation, *gathered, old_size);
-    balance(forest, step, received);
-    received.shot_power = all.power;
-    received.quanta = all.quanta;
-    received.escaped_power = units.power.to_colour(escaped);
-    return received;
+    Escaped escaped;
+    for (Batch& batch : batches) escaped += batch.receiver.finish();
+    return commit(step, shooting, forest, streams, arrivals, gathered, escaped);
 }
 
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,

@@ -54,14 +54,14 @@ struct Payload {
 };
 
 /// What a batch of paths brought, as integers, so that the order of arrival does not matter.
-struct Sums {
+struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;  ///< By every patch.
     FixedPoint::Value escaped{};
     std::vector<std::int64_t> started;  ///< Rays that left every patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    explicit Sums(const Payload& payload)
+    explicit PathSums(const Payload& payload)
         : unit(sum_headroom * most_expected(payload)),
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
@@ -121,7 +121,7 @@ class PathBatch {
         allocation_.emplace(q_, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
     }
 
-    const Sums& follow() {
+    const PathSums& follow() {
         if (!(quantum_ > 0)) return sums_;
         PerThread<Wavefront> wavefronts;
         const auto follow_some = [&](std::size_t begin, std::size_t end) {
@@ -220,28 +220,28 @@ class PathBatch {
     const Payload& payload_;
     std::int64_t paths_;
     std::uint64_t key_;
-    Sums sums_;
+    PathSums sums_;
     double quantum_ = 0;    // sum of the channels of a particle where the density is 1
     std::vector<float> q_;  // share of the paths that starts on each patch
     std::optional<RayAllocation> allocation_;
 };
 
 /// What one batch brought.
-struct Arrived {
+struct BatchResult {
     std::vector<Rgb> irradiance;  ///< Of every patch; of importance likewise per area.
     RgbD escaped{0, 0, 0};
     std::int64_t rays = 0;
 };
 
 /// Follows so many paths, and enters their rays.
-Arrived follow_paths(SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key) {
+BatchResult follow_paths(SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key) {
     if (!state.may_begin_step()) throw Interrupted();
     PathBatch batch(state, payload, paths, key);
-    const Sums& sums = batch.follow();
+    const PathSums& sums = batch.follow();
     state.has_traced_step = true;
     state.escaped_rays += sums.escaped_rays;
     state.streams.used.resize(sums.started.size(), 0);
-    Arrived arrived;
+    BatchResult arrived;
     for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
         arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.forest->area(i));
         state.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
@@ -252,7 +252,7 @@ Arrived follow_paths(SolverState& state, const Payload& payload, std::int64_t pa
 }
 
 /// What noise it has if all of it arrives in equal quanta, independently.
-FreshEstimate independent_arrivals(const SolverState& state, const Arrived& arrived) {
+FreshEstimate independent_arrivals(const SolverState& state, const BatchResult& arrived) {
     const double power = luminance(integral(*state.forest, arrived.irradiance));
     FreshEstimate fresh{arrived.irradiance, {}, {}};
     for (std::uint32_t i = 0; i < arrived.irradiance.size(); ++i)
@@ -262,7 +262,7 @@ FreshEstimate independent_arrivals(const SolverState& state, const Arrived& arri
 }
 
 /// Follows as many paths as take about this many rays.
-Arrived walk(SolverState& state, const Payload& payload, std::int64_t rays, PathSeries& series) {
+BatchResult walk(SolverState& state, const Payload& payload, std::int64_t rays, PathSeries& series) {
     if (series.pilot_rays == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
         series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
@@ -270,7 +270,7 @@ Arrived walk(SolverState& state, const Payload& payload, std::int64_t rays, Path
     }
     const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
     const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
-    Arrived arrived =
+    BatchResult arrived =
         follow_paths(state, payload, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches));
     series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
     if (series.batches++ == 0) arrived.rays += series.pilot_rays;
@@ -352,7 +352,7 @@ std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int6
 
 void RandomWalks::walk_importance(SolverState& state, std::int64_t rays) {
     if (rays <= 0) return;
-    const Arrived arrived = walk(state, importance_from_cameras(state), rays, importance_);
+    const BatchResult arrived = walk(state, importance_from_cameras(state), rays, importance_);
     state.importance_rays += arrived.rays;
     importance_history_ += rays;
     const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(importance_history_));
@@ -362,7 +362,7 @@ void RandomWalks::walk_importance(SolverState& state, std::int64_t rays) {
 
 void RandomWalks::walk_light(SolverState& state, std::int64_t rays, const IterationPlan& plan) {
     if (rays <= 0) return;
-    const Arrived arrived = walk(state, light(state), rays, light_);
+    const BatchResult arrived = walk(state, light(state), rays, light_);
     state.power_rays += arrived.rays;
     const bool tells_of_error = plan.rays >= state.schedule.start_rays();  // a remainder of the rays tells too little
     if (tells_of_error) estimate_noise(state, independent_arrivals(state, arrived), plan.rays);

@@ -32,6 +32,22 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
+/// Lets every source shoot what it lacks of its share of `all` rays. @param step  Its weights are the shares.
+void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const {
+    double lacking = 0;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        const double lacks = static_cast<double>(all) * step.q[e] - shot_[e];
+        step.q[e] = forest.is_leaf(e) ? static_cast<float>(std::max(0.0, lacks)) : 0.0f;
+        lacking += step.q[e];
+    }
+    for (std::size_t i = 0; i < step.part_count(); ++i) {
+        float& q = step.q[forest.size() + i];
+        q = static_cast<float>(std::max(0.0, static_cast<double>(all) * q - shot_by_parts_[i]));
+        lacking += q;
+    }
+    step.rays = std::max<std::int64_t>(1, std::llround(lacking));
+}
+
 RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
@@ -41,18 +57,7 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
     step.groups = group_radiosity(state, state.solution.groups);
     // These methods know no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(state));
-    double lacking = 0;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const double lacks = static_cast<double>(total_ + plan.rays) * step.q[e] - shot_[e];
-        step.q[e] = forest.is_leaf(e) ? static_cast<float>(std::max(0.0, lacks)) : 0.0f;
-        lacking += step.q[e];
-    }
-    for (std::size_t i = 0; i < step.part_count(); ++i) {
-        float& q = step.q[forest.size() + i];
-        q = static_cast<float>(std::max(0.0, static_cast<double>(total_ + plan.rays) * q - shot_by_parts_[i]));
-        lacking += q;
-    }
-    step.rays = std::max<std::int64_t>(1, std::llround(lacking));
+    keep_lacking_rays(forest, total_ + plan.rays, step);
     const std::int64_t rays = step.rays;
     if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_ + rays, state.floor.unseen());
 

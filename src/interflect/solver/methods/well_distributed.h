@@ -35,6 +35,8 @@ class WellDistributedRays : public IterationMethod {
     }
 
   private:
+    void keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const;
+
     Passes passes_;                      // before the first iteration
     std::vector<double> shot_;           // rays of each leaf
     std::vector<double> shot_by_parts_;  // rays of each part of the luminaires

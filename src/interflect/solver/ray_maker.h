@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "interflect/base/points.h"
+#include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solver/ray_allocation.h"
+#include "interflect/solver/transport.h"
+
+namespace interflect {
+
+/// The rays of one task that start on the same leaf or part of a luminaire: batch.rays[begin ... end - 1].
+struct SourceRays {
+    std::uint32_t source;  ///< The leaf, or elements of the forest + the part.
+    std::uint32_t begin, end;
+};
+
+/// The rays of one task; one a thread, reused.
+struct RayBatch {
+    std::vector<SourceRays> sources;
+    std::vector<Ray> rays;
+    std::vector<Parameters> origins;
+    PointBlock points;
+};
+
+/// Makes the rays of a step. Refers to what it is made of.
+class RayMaker {
+  public:
+    RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
+             const SampleStreams& streams);
+
+    const RayAllocation& allocation() const { return allocation_; }
+    std::uint32_t elements() const { return elements_; }  ///< Of the forest when the step began.
+
+    /// Makes the rays begin ... end - 1.
+    void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
+
+  private:
+    void shoot_from_leaf(std::uint32_t leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
+                         RayBatch& batch) const;
+    void shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::size_t offset, std::size_t length,
+                         RayBatch& batch) const;
+
+    const ElementForest& forest_;
+    const std::uint32_t elements_;
+    const Emission* emission_;
+    const SampleStreams& streams_;
+    const RayCaster& ray_caster_;
+    RayAllocation allocation_;
+};
+
+}  // namespace interflect
