@@ -10,13 +10,13 @@
 #include "interflect/base/points.h"
 #include "interflect/elements/forest.h"
 #include "interflect/generators/maze.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solve.h"
 #include "interflect/solver/arrivals.h"
 #include "interflect/solver/probabilities.h"
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
-#include "interflect/solver/solve.h"
 #include "interflect/solver/steps.h"
 #include "interflect/solver/transport.h"
 
@@ -38,7 +38,7 @@ struct SolvedMaze {
     ElementForest& forest = const_cast<ElementForest&>(*solution.forest);  // it does not grow any further, see step()
 
     SolveOptions options() const {
-        SolveOptions o;
+        SolveOptions o{.method = find_method("srr")};
         o.method = find_method("ihsrr");
         o.rays = 2'000'000;
         o.views.push_back({scene.views.at(4)});

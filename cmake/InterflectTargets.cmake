@@ -1,5 +1,5 @@
 # interflect_folder(NAME SOURCES ... USES other folders ... LINKS libraries ... [PRIVATE_LINKS libraries ...]):
-# one static library for a folder of src/interflect. USES names only folders above it in docs/design.md's list.
+# the objects of a folder of src/interflect. USES names only folders above it in docs/design.md's list.
 
 set(interflect_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
@@ -25,19 +25,17 @@ endif()
 function(interflect_folder name)
   cmake_parse_arguments(arg "" "" "SOURCES;USES;LINKS;PRIVATE_LINKS" ${ARGN})
   set(target interflect_${name})
-  add_library(${target} STATIC ${arg_SOURCES})
-  add_library(interflect::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  add_library(${target} OBJECT ${arg_SOURCES})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD ${INTERFLECT_UNITY})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
-                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM arg_USES PREPEND interflect_)
-  target_link_libraries(${target} PUBLIC ${arg_USES} ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:interflect_options>
-                                         ${arg_PRIVATE_LINKS})
+  target_link_libraries(${target} PUBLIC ${arg_USES} ${arg_LINKS} PRIVATE interflect_options ${arg_PRIVATE_LINKS})
   if(CMAKE_CXX_COMPILER_ID MATCHES Clang)  # GCC 12 has false alarms in what is precompiled
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <memory> <span>
                               <string> <vector> <ImathVec.h>)
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${INTERFLECT_UNITY})
-  set_property(GLOBAL APPEND PROPERTY interflect_targets ${target})
+  set_property(GLOBAL APPEND PROPERTY interflect_folders ${target})
+  set_property(GLOBAL APPEND PROPERTY interflect_public_links ${arg_LINKS})
+  set_property(GLOBAL APPEND PROPERTY interflect_links ${arg_LINKS} ${arg_PRIVATE_LINKS})
 endfunction()

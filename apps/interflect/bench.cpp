@@ -15,11 +15,12 @@
 #include "apps/interflect/parse.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/exports/json_text.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/solver/solve.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solve.h"
 #include "interflect/solver/steps.h"
 #include "interflect/solver/transport.h"
 
@@ -195,7 +196,7 @@ void run(const BenchArguments& options) {
     SolveOptions solve_options;
     solve_options.rays = options.rays;
     for (const View& view : options.view.views(scene)) solve_options.views.push_back({view});
-    solve_options.method = options.method.value_or(find_method(solve_options.views.empty() ? "hsrr" : "ihsrr"));
+    solve_options.method = options.method.value_or(default_method(!solve_options.views.empty()));
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
     const Workload work(scene, ray_caster, solve_options);

@@ -4,8 +4,8 @@
 
 #include "apps/interflect/messages.h"
 #include "apps/interflect/parse.h"
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
+#include "interflect/error.h"
 
 namespace interflect::command {
 

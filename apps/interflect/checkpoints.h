@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "interflect/solver/solver.h"
+#include "interflect/solver.h"
 
 namespace interflect::command {
 

@@ -11,9 +11,10 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/image/image_files.h"
+#include "interflect/error.h"
+#include "interflect/image/pending_image.h"
+#include "interflect/image_files.h"
 #include "interflect/metrics/flip.h"
 #include "interflect/metrics/metrics.h"
 

@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect::command {
 

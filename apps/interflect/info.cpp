@@ -15,10 +15,10 @@
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/solution_info.h"
 #include "apps/interflect/up_axis.h"
-#include "interflect/exports/solution_file.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
+#include "interflect/solution_file.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
 

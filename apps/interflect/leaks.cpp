@@ -8,6 +8,7 @@
 
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 #include "interflect/solver/materials.h"

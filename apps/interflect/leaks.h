@@ -1,8 +1,8 @@
 #pragma once
 
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect::command {
 

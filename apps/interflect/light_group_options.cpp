@@ -6,8 +6,8 @@
 #include <charconv>
 #include <utility>
 
-#include "interflect/base/error.h"
-#include "interflect/solver/dimming.h"
+#include "interflect/dimming.h"
+#include "interflect/error.h"
 
 namespace interflect::command {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "interflect/exports/solution_file.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
+#include "interflect/solution_file.h"
 
 namespace interflect::command {
 

@@ -8,7 +8,7 @@
 #include "apps/interflect/messages.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/standard_streams.h"
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
+#include "interflect/error.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/formats/write_mgf.h"

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect::command {
 

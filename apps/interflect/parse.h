@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect::command {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect::command {
 

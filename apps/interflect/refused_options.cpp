@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "apps/interflect/run_path_tracer.h"
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect::command {
 

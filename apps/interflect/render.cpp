@@ -18,16 +18,18 @@
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
 #include "apps/interflect/view_check.h"
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/exports/solution_file.h"
-#include "interflect/image/image_files.h"
+#include "interflect/error.h"
 #include "interflect/image/legend.h"
-#include "interflect/image/tone_map.h"
+#include "interflect/image/pending_image.h"
+#include "interflect/image_files.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/render.h"
+#include "interflect/render/camera_samples.h"
 #include "interflect/render/outlines.h"
-#include "interflect/render/render.h"
 #include "interflect/scene/view.h"
+#include "interflect/solution_file.h"
+#include "interflect/tone_map.h"
 
 namespace interflect::command {
 

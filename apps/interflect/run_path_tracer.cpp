@@ -9,9 +9,9 @@
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/image/image_files.h"
+#include "interflect/error.h"
+#include "interflect/image_files.h"
 
 namespace interflect::command {
 

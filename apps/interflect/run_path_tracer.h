@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "interflect/render/path_tracer.h"
+#include "interflect/path_tracer.h"
 
 namespace interflect::command {
 

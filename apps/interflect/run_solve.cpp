@@ -12,7 +12,7 @@
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
 

@@ -2,9 +2,9 @@
 
 #include "apps/interflect/checkpoints.h"
 #include "apps/interflect/shared_options.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solver.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solver.h"
 
 namespace interflect::command {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/contacts.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/geometry/contacts.h"
 #include "interflect/geometry/split.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/scene/view.h"
@@ -264,7 +264,7 @@ void SolverOptions::add_importance(CLI::App& app) {
 
 SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {
     SolveOptions options = solve_;
-    options.method = method_.value_or(find_method(views.empty() ? "hsrr" : "ihsrr"));
+    options.method = method_.value_or(default_method(!views.empty()));
     options.method.importance = importance_.value_or(options.method.importance);
     for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
     constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();

@@ -8,9 +8,9 @@
 
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
-#include "interflect/formats/load_scene.h"
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
+#include "interflect/load_scene.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect::command {
 

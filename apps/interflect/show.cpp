@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "apps/interflect/parse.h"
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/render/camera_samples.h"
 
 namespace interflect::command {
 

@@ -2,8 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "interflect/exports/solution_file.h"
+#include "interflect/render/camera_samples.h"
 #include "interflect/render/quantity_picture.h"
+#include "interflect/solution_file.h"
 
 namespace interflect::command {
 

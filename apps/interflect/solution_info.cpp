@@ -7,8 +7,8 @@
 
 #include "apps/interflect/messages.h"
 #include "apps/interflect/print_views.h"
-#include "interflect/exports/solution_file.h"
 #include "interflect/exports/solve_report.h"
+#include "interflect/solution_file.h"
 
 namespace interflect::command {
 

@@ -13,9 +13,9 @@
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/exports/solution_file.h"
+#include "interflect/error.h"
+#include "interflect/solution_file.h"
 
 namespace interflect::command {
 

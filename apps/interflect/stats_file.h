@@ -4,7 +4,7 @@
 
 #include "apps/interflect/shared_options.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

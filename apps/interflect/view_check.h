@@ -1,7 +1,7 @@
 #pragma once
 
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

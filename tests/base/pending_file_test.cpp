@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -7,9 +7,9 @@
 #include <iterator>
 #include <random>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
-#include "interflect/exports/solution_file.h"
+#include "interflect/solution_file.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -29,7 +29,7 @@ std::string contents(const fs::path& path) {
 void write_small_solution(const fs::path& path) {
     Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
     scene.views = {{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}};
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("isrr");
     options.rays = 1000;
     options.views = {{scene.views[0]}};

@@ -11,9 +11,9 @@
 #include <random>
 #include <string>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
-#include "interflect/solver/solver.h"
+#include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -33,7 +33,7 @@ class DamagedRun : public testing::Test {
   protected:
     DamagedRun() {
         Scene scene = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.5f), Rgb(1)}});
-        SolveOptions options;
+        SolveOptions options{.method = find_method("srr")};
         options.method = find_method("ihsrr");
         options.views = {{{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}}};
         options.rays = 20'000;

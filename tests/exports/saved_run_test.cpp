@@ -16,10 +16,12 @@
 #include <string>
 #include <thread>
 
-#include "interflect/base/error.h"
 #include "interflect/base/random.h"
-#include "interflect/exports/solution_file.h"
-#include "interflect/solver/solver.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/exports/saved_run.h"
+#include "interflect/solution_file.h"
+#include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -30,7 +32,7 @@ namespace fs = std::filesystem;
 
 struct Case {
     std::string name;
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     bool has_lights = false;  // that are no surfaces
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
@@ -61,7 +63,7 @@ Scene open_room_with_lights() {
 std::vector<Case> cases() {
     std::vector<Case> all;
     const auto add = [&](const std::string& name, const std::string& method, const auto& change) {
-        SolveOptions options;
+        SolveOptions options{.method = find_method("srr")};
         options.method = find_method(method);
         if (options.method.importance != ImportanceUse::off) options.views = {{into_the_room}};
         options.rays = 60'000;
@@ -202,7 +204,7 @@ View turned(double degrees) {
 
 /// A run that has found the light for one view.
 Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed = 1) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {{into_the_room}};
     options.rays = 200'000;
@@ -247,7 +249,7 @@ TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
 // In a closed box of grey walls that all shine, H = M / (1 - rho) everywhere, whatever was looked at before. The mean
 // over the walls of 24 runs has a standard error below 0.3%, so 1.8% would be noticed; false alarms once in 10^9.
 TEST(ChangeOfViews, StaysUnbiased) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
     options.rays = 20'000;
     const View views[] = {{"a", {0.3f, 0.4f, 0.5f}, {0.9f, 1.9f, 2.9f}}, {"b", {0.3f, 1.4f, 2.5f}, {0.9f, 0.1f, 0.1f}}};
@@ -292,7 +294,7 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
 /// A run with few rays, a step at a time, whose views change after so many steps. It is saved and opened at each step
 /// from then on where a file is given. @param grew  Whether the mesh grew in the pass that was under way at the change.
 Solution changed_after_steps(int steps, Refinement refinement, const fs::path& file, bool& grew) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
     options.views = {{into_the_room}};
     options.refinement = refinement;
@@ -340,7 +342,7 @@ TEST(ChangeOfViews, RefusesWhatIsNoView) {
 }
 
 TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 50'000;
     Solver solver(open_room(), options);
@@ -351,7 +353,7 @@ TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
 }
 
 TEST(Solver, EndsAtTheErrorThatIsAskedFor) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 10'000'000;
     Solver solver(open_room(), options);
@@ -374,7 +376,7 @@ TEST(Solver, OpensOnlyFilesWithTheStateOfARun) {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "result.h5";
     const Scene scene = open_room();
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 1000;
     write_solution(file, scene, solve(scene, RayCaster(scene), options));
     try {

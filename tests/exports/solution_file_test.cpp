@@ -1,4 +1,4 @@
-#include "interflect/exports/solution_file.h"
+#include "interflect/solution_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 #include <limits>
 #include <random>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
 #include "tests/support/scenes.h"
 
@@ -40,7 +41,7 @@ SolvedScene example() {
     scene.views = {{"door", {0.1f, 0.2f, 0.3f}, {1, 2, 3}, {0, 1, 0}, 60},
                    {"corner", {1, 1, 1}, {0, 0, 0}, {0, 0, 1}, 45}};
 
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 10'000;
     options.seed = 0xfedcba9876543210;
     solved.solution = solve(scene, RayCaster(scene), options);

@@ -9,7 +9,7 @@ namespace {
 
 /// No option has its default, so that none can be forgotten.
 SolveOptions unusual_options() {
-    SolveOptions o;
+    SolveOptions o{.method = find_method("srr")};
     o.method = find_method("ihsrr");
     o.method.importance = ImportanceUse::direct;
     o.views = {{{"door", {0.1, 0.2, 0.3}, {1, 2, 3}, {0, 1, 0}, 60}, 2, 1.5f, 480}};
@@ -40,7 +40,7 @@ SolveOptions unusual_options() {
 TEST(SolveReport, HasEveryOption) {
     const Json json = json_of(unusual_options()), defaults = json_of(SolveOptions());
     for (const auto& [name, value] : json.items()) EXPECT_NE(value, defaults.at(name)) << name;
-    SolveOptions read;
+    SolveOptions read{.method = find_method("srr")};
     read.method = find_method("ihsrr");
     read_options(json, read);
     EXPECT_EQ(json_of(read), json);
@@ -75,7 +75,7 @@ TEST(SolveReport, HasEveryOption) {
 }
 
 TEST(SolveReport, HasNullForLimitsThatWereNotGiven) {
-    SolveOptions o;
+    SolveOptions o{.method = find_method("srr")};
     o.rays = std::numeric_limits<std::int64_t>::max();
     const Json json = json_of(o);
     for (const char* limit : {"rays", "seconds", "until"}) EXPECT_TRUE(json.at(limit).is_null()) << limit;
@@ -107,7 +107,7 @@ TEST(SolveReport, HasNullForErrorsThatAreNotKnown) {
 TEST(SolveReport, RefusesAnUnknownChoice) {
     Json json = json_of(SolveOptions());
     json["points"] = "halton";
-    SolveOptions read;
+    SolveOptions read{.method = find_method("srr")};
     EXPECT_ANY_THROW(read_options(json, read));
 }
 

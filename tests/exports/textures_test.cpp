@@ -1,11 +1,13 @@
 // Textures in solution files: a textured scene comes back as it was, and a run in it goes on with the same bits.
 //
-// Seen to fail when coordinates are left out, and when the means of elements are not found again after a file is opened.
+// Seen to fail when coordinates are left out, and when the means of elements are not found again after a file is
+// opened.
 #include <gtest/gtest.h>
 
-#include "interflect/base/error.h"
-#include "interflect/exports/solution_file.h"
-#include "interflect/solver/solver.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/solution_file.h"
+#include "interflect/solver.h"
 #include "tests/support/scenes.h"
 #include "tests/support/textured_scenes.h"
 
@@ -15,7 +17,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions refining() {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 200'000;
     return options;

@@ -1,11 +1,11 @@
 // Scenes that are named, not read.
-#include "interflect/formats/load_scene.h"
+#include "interflect/load_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/generators/maze.h"
 
 namespace interflect {

@@ -3,9 +3,9 @@
 
 #include <chrono>
 
-#include "interflect/base/error.h"
-#include "interflect/formats/load_scene.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
+#include "interflect/load_scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 

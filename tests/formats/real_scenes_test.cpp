@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/formats/load_scene.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/load_scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

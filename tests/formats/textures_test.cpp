@@ -7,14 +7,14 @@
 
 #include <fstream>
 
-#include "interflect/base/error.h"
-#include "interflect/formats/load_scene.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/formats/write_mgf.h"
 #include "interflect/generators/boxes.h"
-#include "interflect/image/image_files.h"
 #include "interflect/image/srgb.h"
+#include "interflect/image_files.h"
+#include "interflect/load_scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

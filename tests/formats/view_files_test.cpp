@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "interflect/base/error.h"
-#include "interflect/formats/load_scene.h"
+#include "interflect/error.h"
+#include "interflect/load_scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

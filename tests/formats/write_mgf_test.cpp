@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/formats/load_scene.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/mgf_colour.h"
+#include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
+#include "interflect/load_scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

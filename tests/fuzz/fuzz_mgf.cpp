@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -17,7 +17,7 @@
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 
 namespace interflect {
 namespace {

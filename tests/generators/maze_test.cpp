@@ -9,12 +9,12 @@
 #include <string>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/generators/building/solids.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/raycast/ray_caster.h"
 #include "interflect/scene/view.h"
 
 namespace interflect {

@@ -1,4 +1,4 @@
-#include "interflect/geometry/contacts.h"
+#include "interflect/contacts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

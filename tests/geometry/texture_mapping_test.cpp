@@ -1,12 +1,12 @@
 // Texture coordinates through all that makes new vertices: a coordinate that is linear in space stays so.
 //
-// Seen to fail when cuts or crossings of outlines make vertices without coordinates, splits with those of a corner, when
-// vertices that differ in coordinates alone are merged, and when a seam between images divides a flat surface.
+// Seen to fail when cuts or crossings of outlines make vertices without coordinates, splits with those of a corner,
+// when vertices that differ in coordinates alone are merged, and when a seam between images divides a flat surface.
 #include "interflect/geometry/texture_mapping.h"
 
 #include <gtest/gtest.h>
 
-#include "interflect/geometry/contacts.h"
+#include "interflect/contacts.h"
 #include "interflect/geometry/flat_surfaces.h"
 #include "interflect/geometry/polygon.h"
 #include "interflect/geometry/split.h"

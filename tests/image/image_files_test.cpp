@@ -1,4 +1,4 @@
-#include "interflect/image/image_files.h"
+#include "interflect/image_files.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -19,7 +19,7 @@
 #include <limits>
 #include <memory>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/image/srgb.h"
 #include "tests/support/scenes.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/error.h"
-#include "interflect/base/image_size.h"
+#include "interflect/error.h"
+#include "interflect/image_files.h"
 
 namespace interflect {
 namespace {

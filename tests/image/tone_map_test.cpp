@@ -1,11 +1,11 @@
-#include "interflect/image/tone_map.h"
+#include "interflect/tone_map.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/image/srgb.h"
 
 namespace interflect {

@@ -24,7 +24,11 @@ def faults(root: Path) -> list[str]:
     for folder in folders:
         if folder.name in LAYERS:
             found += layer_faults(folder)
-    for header in sorted([*library.rglob("*.h"), *(root / "apps").rglob("*.h")]):
+    public = sorted((root / "include").rglob("*.h"))
+    for header in public:
+        found += [f"{header}: includes interflect/{folder}/, which is not installed"
+                  for folder in INCLUDE.findall(header.read_text())]
+    for header in sorted([*public, *library.rglob("*.h"), *(root / "apps").rglob("*.h")]):
         found += header_faults(header)
     return found
 

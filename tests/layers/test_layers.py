@@ -24,7 +24,7 @@ class Checker(unittest.TestCase):
         self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp)")
         self.write("base/colour.h", "#pragma once\n")
         self.write("scene/CMakeLists.txt", "interflect_folder(scene\n  SOURCES scene.cpp\n  USES base\n  LINKS fmt)")
-        self.write("scene/scene.h", '#pragma once\n#include "interflect/base/colour.h"\n')
+        self.write("scene/core.h", '#pragma once\n#include "interflect/base/colour.h"\n')
 
     def write(self, name, text):
         path = self.root / "src" / "interflect" / name
@@ -41,13 +41,17 @@ class Checker(unittest.TestCase):
         self.assertEqual(faults(self.root), [])
 
     def test_include_of_a_later_layer(self):
-        self.write("base/colour.cpp", '#include "interflect/scene/scene.h"\n')
+        self.write("base/colour.cpp", '#include "interflect/scene/core.h"\n')
         self.assert_only_fault("base/colour.cpp", "interflect/scene/")
 
     def test_include_of_an_undeclared_layer(self):
         self.write("solver/CMakeLists.txt", "interflect_folder(solver SOURCES solve.cpp USES base)")
-        self.write("solver/solve.cpp", '#include "interflect/scene/scene.h"\n')
+        self.write("solver/solve.cpp", '#include "interflect/scene/core.h"\n')
         self.assert_only_fault("solver/solve.cpp", "interflect/scene/")
+
+    def test_public_header_that_needs_one_that_is_not(self):
+        self.write("../../include/interflect/scene.h", '#pragma once\n#include "interflect/scene/core.h"\n')
+        self.assert_only_fault("include/interflect/scene.h", "not installed")
 
     def test_use_of_a_later_layer(self):
         self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp USES scene)")

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/error.h"
-#include "interflect/image/tone_map.h"
+#include "interflect/error.h"
 #include "interflect/metrics/flip.h"
 #include "interflect/metrics/perceptual.h"
+#include "interflect/tone_map.h"
 
 namespace interflect {
 namespace {

@@ -21,7 +21,15 @@ foreach(file ${package_files})
 endforeach()
 
 run(${prefix}/bin/interflect --version)
-run(${CMAKE_COMMAND} -S ${consumer} -B ${work}/build -G ${generator} -D CMAKE_BUILD_TYPE=${configuration}
+# The README's example, as printed.
+file(READ ${consumer}/../../../README.md readme)
+string(REGEX MATCH "```cpp\n(#include[^`]*)```" found "${readme}")
+if(NOT found)
+  message(FATAL_ERROR "the README has no complete program")
+endif()
+file(WRITE ${work}/readme.cpp "${CMAKE_MATCH_1}")
+
+run(${CMAKE_COMMAND} -D readme_program=${work}/readme.cpp -S ${consumer} -B ${work}/build -G ${generator} -D CMAKE_BUILD_TYPE=${configuration}
     -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${work}/build --config ${configuration})
 run(${work}/build/consumer)

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 namespace {

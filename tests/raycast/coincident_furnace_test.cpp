@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -20,7 +21,7 @@ constexpr float exitance = 2, rho = 0.5f;
 const Material wall{"wall", Rgb(rho), Rgb(exitance)};
 
 SolveOptions furnace_options(std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 200'000;
     options.seed = seed;
     return options;

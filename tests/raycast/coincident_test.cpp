@@ -12,7 +12,7 @@
 #include <random>
 
 #include "interflect/geometry/split.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/formats/load_scene.h"
+#include "interflect/contacts.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
 #include "interflect/generators/two_rooms.h"
-#include "interflect/geometry/contacts.h"
 #include "interflect/geometry/split.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/load_scene.h"
+#include "interflect/ray_caster.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -2,7 +2,7 @@
 // Seen to fail (scripts/mutation-test) when the backs of two-sided faces answer as their fronts, backs of one-sided
 // faces stop rays, rays are not lifted off the surface that they leave.
 
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 
 #include <ImathMatrix.h>
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 

@@ -10,8 +10,9 @@
 #include <tuple>
 #include <vector>
 
-#include "interflect/base/error.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/render/smooth_field.h"
 #include "tests/support/scenes.h"
 

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -6,7 +6,7 @@
 // survivors of roulette not raised; 30 bounces at most; directions uniform over the hemisphere; points near the middle
 // of a lamp; shadow rays that count whatever they hit; the same random numbers for all batches, or for all vertices; no
 // ray offset; standard errors 15% too large.
-#include "interflect/render/path_tracer.h"
+#include "interflect/path_tracer.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -16,7 +16,7 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"

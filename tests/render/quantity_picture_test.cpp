@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/render/camera_samples.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,4 +1,4 @@
-#include "interflect/render/render.h"
+#include "interflect/render.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -9,10 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/path_tracer.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/outlines.h"
-#include "interflect/render/path_tracer.h"
 #include "interflect/render/quantity_picture.h"
 #include "tests/support/scenes.h"
 

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/geometry/contacts.h"
+#include "interflect/contacts.h"
+#include "interflect/elements/forest.h"
 #include "interflect/render/smooth_field.h"
 #include "tests/support/scenes.h"
 

@@ -3,7 +3,8 @@
 #include <set>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
 #include "interflect/render/smooth_surfaces.h"

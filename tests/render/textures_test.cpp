@@ -8,11 +8,12 @@
 #include <numbers>
 #include <numeric>
 
+#include "interflect/elements/forest.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/metrics/metrics.h"
-#include "interflect/render/path_tracer.h"
-#include "interflect/render/render.h"
-#include "interflect/solver/solve.h"
+#include "interflect/path_tracer.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
@@ -137,7 +138,7 @@ TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
     Scene scene = make_boxes({.boxes = 6, .seed = 3, .texture = true});
     const RayCaster ray_caster(scene);
     const View view = scene.views[0];
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 4'000'000;
     const Solution solution = solve(scene, ray_caster, options);

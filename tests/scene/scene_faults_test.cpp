@@ -5,10 +5,11 @@
 #include <functional>
 #include <limits>
 
-#include "interflect/base/error.h"
-#include "interflect/geometry/contacts.h"
+#include "interflect/contacts.h"
+#include "interflect/error.h"
+#include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

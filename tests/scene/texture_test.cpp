@@ -1,7 +1,7 @@
 // Textures: where texels lie, and what a scene must not have.
 //
 // Seen to fail when rows are taken from below, and when centres are shifted by half a texel.
-#include "interflect/scene/texture.h"
+#include "interflect/texture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <functional>
 #include <limits>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

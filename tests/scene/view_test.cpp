@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -30,7 +30,7 @@ class Convergence : public testing::Test {
     Errors errors_with(PointSet points, std::int64_t rays) const {
         Errors mean;
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-            SolveOptions options;
+            SolveOptions options{.method = find_method("srr")};
             options.points = points;
             options.rays = rays;
             options.seed = seed;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <random>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/variance_refinement.h"
 #include "tests/support/scenes.h"
@@ -43,7 +44,7 @@ struct Setting {
         for (int level = 0; level < levels; ++level) divide();
     }
     static SolveOptions hierarchical() {
-        SolveOptions options;
+        SolveOptions options{.method = find_method("srr")};
         options.method = find_method("hsrr");
         return options;
     }

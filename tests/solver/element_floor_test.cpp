@@ -29,7 +29,7 @@ WeightedView from(Imath::V3d eye) {
 }
 
 TEST(ElementFloor, IsWhatAPixelShows) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.views = {from({0, 0, 0})};
     const ElementFloor floor(room(), options);
     const V3f facing(0, -1, 0), oblique(0, -0.5f, std::sqrt(0.75f)), grazing(0, 0, 1);
@@ -42,7 +42,7 @@ TEST(ElementFloor, IsWhatAPixelShows) {
 }
 
 TEST(ElementFloor, IsThatOfTheNearestViewInWorldCoordinates) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.views = {from({0, 0, 0}), from({0, 9, 0})};
     const V3f facing(0, -1, 0);
     EXPECT_NEAR(ElementFloor(room(), options).pixel_area({0, 8, 0}, facing), 0.0004f, 1e-9f);
@@ -59,7 +59,7 @@ TEST(ElementFloor, WithoutAViewIsThatOfUnseenElements) {
 }
 
 TEST(ElementFloor, GivenByTheCallerHoldsEverywhere) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.views = {from({0, 0, 0})};
     options.min_area = 0.25;
     const ElementFloor floor(room(), options);

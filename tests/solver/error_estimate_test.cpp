@@ -10,8 +10,9 @@
 #include <tuple>
 #include <vector>
 
-#include "interflect/render/render.h"
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -39,7 +40,7 @@ WeightedView view(bool shows_lamp) {
 }
 
 SolveOptions options_for(const char* method, bool shows_lamp, std::int64_t rays, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {view(shows_lamp)};
     options.rays = rays;
@@ -128,7 +129,7 @@ TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
                               {"grey", Rgb(0.5f), Rgb(0)},
                               {"grey", Rgb(0.5f), Rgb(0)},
                               {"lamp", Rgb(0.5f), Rgb(10)}});
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
     options.views = {{View{"black", {2, 1.5, 1.2}, {0, 1.5, 1.2}, {0, 0, 1}, 30}}};
     options.rays = 100'000;

@@ -6,7 +6,8 @@
 
 #include <cmath>
 
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
@@ -17,7 +18,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions options_of(const char* method) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.rays = 80'000;
     options.views = {{into_the_corner}};

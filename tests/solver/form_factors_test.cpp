@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/transport.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"

@@ -11,9 +11,10 @@
 
 #include <cmath>
 
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -42,7 +43,7 @@ double expected_irradiance(double rho) {
 }
 
 SolveOptions paper_options(std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.complete_passes = false;
     options.warm_up = warm_up;
     options.iterations = averaged;
@@ -106,7 +107,7 @@ TEST_P(Furnace, IsUnbiasedAndWouldNoticeOnePercent) {
 TEST_P(Furnace, HasTheSameAnswerWithTheDefaultStart) {
     const double rho = GetParam(), limit = exitance / (1 - rho);
     const Runs sample(furnace(rho), [](std::uint64_t seed) {
-        SolveOptions options;
+        SolveOptions options{.method = find_method("srr")};
         options.rays = 100'000;
         options.seed = seed;
         return options;
@@ -123,7 +124,7 @@ TEST_P(Furnace, HasTheSameAnswerWithTheDefaultStart) {
 TEST(Furnace, WeighsEveryIterationByItsRays) {
     // Without noise in the mean, the power after each iteration tells its weight: tau = N_m / (N_1 + ... + N_m).
     constexpr double rho = 0.5;
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.complete_passes = false;
     options.warm_up = 2;
     options.rays = 1'000'000;
@@ -209,7 +210,7 @@ TEST_P(ClosedRoom, HasTheMeanIrradianceOfItsPowerBalance) {
     add_rectangle(scene, {2, 1, 0.5f}, {1, 0, 0}, {0, 2, 0.5f}, 0, 1, 1, true);       // a slanting table
     add_rectangle(scene, {1, 1, 0}, {0, 1, 0}, {0.25f, 0.25f, 1.5f}, 0, 2, 2, true);  // a leaning board
 
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 200'000;
     const Solution solution = solve(scene, RayCaster(scene), options);
     double surface = 0;

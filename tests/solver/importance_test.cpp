@@ -5,8 +5,9 @@
 
 #include <cmath>
 
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -25,7 +26,7 @@ Scene grey_box() {
 }
 
 SolveOptions options_for(const char* method, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {{into_the_corner}};
     options.rays = 200'000;

@@ -4,17 +4,18 @@
 // passes leave their unshot groups behind, when differences of siblings are not reduced alike, when set_exitance()
 // leaves the emission as it was.
 
-#include "interflect/scene/light_groups.h"
+#include "interflect/light_groups.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "interflect/base/error.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/solver/dimming.h"
+#include "interflect/dimming.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solver.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solver.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -44,7 +45,7 @@ Scene lit_room() {
 }
 
 SolveOptions options_of(const std::string& method, std::int64_t rays = 400'000) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.rays = rays;
     options.camera_rays = 1 << 13;

@@ -12,10 +12,10 @@
 #include <numbers>
 
 #include "interflect/luminaires/emission.h"
-#include "interflect/render/path_tracer.h"
-#include "interflect/render/render.h"
+#include "interflect/path_tracer.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -51,7 +51,7 @@ double mean_over(const Scene& scene, std::uint32_t patch, const std::function<do
 View view_of_floor() { return {"floor", {-3, -4, 3}, {1, 0.5, 0.5}, {0, 0, 1}, 40}; }
 
 SolveOptions options_of(const std::string& method, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.method.refines = false;
     options.points = PointSet::random;
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), [](c
 
 TEST(UniformSkyLight, IsPiTimesRadianceToAThousandth) {
     const Scene scene = open_floor({"", 0, UniformSky{Rgb(1000)}});
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 2'000'000;
     const Solution solution = solve(scene, RayCaster(scene), options);
     double sum = 0;
@@ -203,7 +203,7 @@ TEST(LightSourcesTogether, AgreeWithPathTracing) {
     scene.luminaires.push_back({"sun", 0, DirectionalLight{{2, 0.3f, -1}, {2000, 1900, 1500}}});
     const RayCaster ray_caster(scene);
     const View view{"room", {4.7, 3.7, 1.6}, {0.5, 1.2, 0.9}, {0, 0, 1}, 70};
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
     options.views = {{view, 1, 1.5f, 48}};
     options.rays = 4'000'000;

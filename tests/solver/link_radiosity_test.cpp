@@ -20,7 +20,8 @@
 #include <numbers>
 #include <ostream>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/methods/exchange.h"
 #include "tests/solver/reference_rooms.h"
@@ -41,7 +42,7 @@ const Method with_importance = [] {
 }();
 
 SolveOptions refined_to(double epsilon) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = without_importance;
     options.epsilon = epsilon;
     return options;

@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
@@ -141,7 +141,7 @@ TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
     const std::uint32_t white = add_material(scene, Rgb(0.7f), Rgb(0));
     add_rectangle(scene, {0.2f, 0.3f, 1.2f}, {0.6f, 0, 0}, {0, 1.3f, 0.2f}, white);
     const RayCaster ray_caster(scene);
-    SolveOptions reference;
+    SolveOptions reference{.method = find_method("srr")};
     reference.rays = 8'000'000;
     const Solution expected = solve(scene, ray_caster, reference);
     const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
@@ -158,7 +158,7 @@ TEST_P(EveryMethod, ShootsOrRefusesLightSourcesThatAreNoSurfaces) {
         EXPECT_THROW(solve(scene, ray_caster, options(1000, 1)), InputError);
         return;
     }
-    SolveOptions reference;
+    SolveOptions reference{.method = find_method("srr")};
     reference.rays = 8'000'000;
     const Solution expected = solve(scene, ray_caster, reference);
     const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());

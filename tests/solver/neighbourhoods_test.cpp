@@ -3,6 +3,7 @@
 // have from the next larger ones.
 
 #include "interflect/solver/neighbourhoods.h"
+#include "interflect/elements/forest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -14,8 +14,9 @@
 #include <numeric>
 #include <ostream>
 
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/form_factors.h"
@@ -34,7 +35,7 @@ struct Flat {
 std::ostream& operator<<(std::ostream& out, const Flat& flat) { return out << flat.method; }
 
 SolveOptions default_options(const Flat& flat, std::int64_t rays, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(flat.method);
     options.views = {{into_the_corner}};
     options.points = flat.points;
@@ -139,7 +140,7 @@ TEST(FurnaceOfPasses, IsRightAtAnyDistanceFromAnEdgeAndInElementsOfAnySize) {
     std::array<std::vector<double>, distances.size()> by_distance;
     std::array<std::vector<double>, levels> by_level;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        SolveOptions options;
+        SolveOptions options{.method = find_method("srr")};
         options.method = find_method("hsrr");
         options.rays = 2'000'000;
         options.seed = seed;

@@ -13,11 +13,12 @@
 #include <ostream>
 #include <random>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/render/render.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -83,7 +84,7 @@ struct Measured {
 Measured measure(const Placement& place, std::uint64_t seed) {
     const Scene scene = read_mgf_text(room(place), "room.mgf");
     const RayCaster ray_caster(scene);
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 150'000;
     options.seed = seed;

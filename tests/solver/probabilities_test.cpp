@@ -3,6 +3,7 @@
 // counted.
 
 #include "interflect/solver/probabilities.h"
+#include "interflect/elements/forest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -18,10 +18,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "interflect/elements/forest.h"
 #include "interflect/generators/maze.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
-#include "interflect/solver/solve.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
@@ -36,7 +37,7 @@ constexpr std::uint64_t runs = 32;
 constexpr std::int64_t rays_per_run = 100'000;
 
 SolveOptions walk_options(ImportanceUse importance, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("random-walk");
     options.method.importance = importance;
     options.views = {{into_the_corner}};

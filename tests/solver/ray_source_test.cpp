@@ -14,6 +14,7 @@
 #include <numbers>
 #include <vector>
 
+#include "interflect/base/points.h"
 #include "interflect/base/random.h"
 #include "tests/support/statistics.h"
 

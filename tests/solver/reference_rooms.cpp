@@ -48,7 +48,7 @@ Scene furnished_room() {
 }
 
 SolveOptions unbiased_options(PointSet points, std::uint64_t seed) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.seed = seed;
     options.points = points;
     options.complete_passes = false;

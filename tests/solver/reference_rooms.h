@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 #include "tests/support/form_factors.h"
 
 namespace interflect::testing_support {

@@ -24,7 +24,7 @@ std::vector<IterationPlan> all_plans(Schedule& schedule) {
 }
 
 TEST(Schedule, AveragesWhatComesAfterTheWarmUp) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.warm_up = 2;
     options.iterations = 4;
     options.rays_per_iteration = 1000;
@@ -39,7 +39,7 @@ TEST(Schedule, AveragesWhatComesAfterTheWarmUp) {
 }
 
 TEST(Schedule, CountsImportanceRaysOfTheStartButDoesNotAverageThem) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 10'000'000;
     Schedule schedule(options, patches);
     schedule.began_with(123'456, 44'000);
@@ -55,7 +55,7 @@ TEST(Schedule, SpendsTheBudgetExactly) {
     for (const std::int64_t rays : {1, 2, 999, 50'001, 1'234'567})
         for (const std::int64_t per_iteration : {0, 1, 1000})
             for (const int warm_up : {0, 3}) {
-                SolveOptions options;
+                SolveOptions options{.method = find_method("srr")};
                 options.rays = rays;
                 options.rays_per_iteration = per_iteration;
                 options.warm_up = warm_up;
@@ -67,7 +67,7 @@ TEST(Schedule, SpendsTheBudgetExactly) {
 }
 
 TEST(Schedule, GrowsWithWhatIsAveraged) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 100'000'000;
     Schedule schedule(options, patches);
     schedule.began_with(100'000, 0);
@@ -81,7 +81,7 @@ TEST(Schedule, GrowsWithWhatIsAveraged) {
 }
 
 TEST(Schedule, HasNoTinyLastIteration) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 10'300;
     options.rays_per_iteration = 1000;
     Schedule schedule(options, patches);
@@ -89,7 +89,7 @@ TEST(Schedule, HasNoTinyLastIteration) {
 }
 
 TEST(Schedule, EndsWithTheFinalIterationEvenIfLightRanOutBeforeTheRaysDid) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 1000;
     Schedule schedule(options, patches);
     IterationPlan plan = schedule.next(0);
@@ -104,7 +104,7 @@ TEST(Schedule, EndsWithTheFinalIterationEvenIfLightRanOutBeforeTheRaysDid) {
 }
 
 TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     EXPECT_EQ(Schedule(options, patches).start_rays(), 50'000);
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 400'000);
     options.rays = 80'000;
@@ -116,7 +116,7 @@ TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
 }
 
 TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = std::numeric_limits<std::int64_t>::max();
     options.seconds = 10;
     Schedule schedule(options, patches);
@@ -133,7 +133,7 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
 }
 
 TEST(Schedule, HasAShortIterationBeforeLongOnesUnlessTheirNumberIsAskedFor) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = options.rays_per_iteration = most_rays_per_iteration;
     Schedule schedule(options, patches);
     const std::vector<IterationPlan> plans = all_plans(schedule);
@@ -146,7 +146,7 @@ TEST(Schedule, HasAShortIterationBeforeLongOnesUnlessTheirNumberIsAskedFor) {
 }
 
 TEST(Schedule, FindsOutHowFastItIsBeforeALongIterationUnderALimitOfTime) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = options.rays_per_iteration = most_rays_per_iteration;
     options.seconds = 10;
     Schedule schedule(options, patches);

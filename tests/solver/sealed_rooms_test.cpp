@@ -8,10 +8,11 @@
 #include <numbers>
 #include <ostream>
 
+#include "interflect/contacts.h"
+#include "interflect/elements/forest.h"
 #include "interflect/generators/two_rooms.h"
-#include "interflect/geometry/contacts.h"
 #include "interflect/geometry/split.h"
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect {
 namespace {
@@ -23,7 +24,7 @@ double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const Scene whole = make_two_rooms(rooms);
     const auto least_extent = static_cast<float>(2 * default_element_size(whole));
     const Scene scene = cuts ? cut_at_contacts(whole, {.least_extent = least_extent}) : whole;
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 1'000'000;
     options.min_area = min_area;

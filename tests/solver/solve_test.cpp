@@ -1,7 +1,7 @@
 // What a caller of solve() relies on, apart from the numbers being right: limits, interruption, reproducibility,
 // errors.
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@
 #include <cmath>
 #include <thread>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/solver/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
@@ -30,7 +31,7 @@ Solution solve(const Scene& scene, const SolveOptions& options, const Monitor& m
 }
 
 SolveOptions with_rays(std::int64_t rays) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = rays;
     return options;
 }
@@ -119,7 +120,7 @@ TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
 
 TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     const Scene scene = furnished_room();
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
     options.rays = 60'000;
     options.max_elements = 3 * scene.patches.size();
@@ -275,7 +276,7 @@ TEST(Solve, RefusesLightsBeyondSinglePrecision) {
 }
 
 TEST(Solve, ListsAllOptionsOutOfRange) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.rays = 0;
     options.seconds = std::nan("");
     options.until = 1;

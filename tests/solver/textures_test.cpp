@@ -6,9 +6,10 @@
 
 #include <vector>
 
+#include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/radiosity.h"
-#include "interflect/solver/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
@@ -19,7 +20,7 @@ namespace {
 using namespace testing_support;
 
 Solution solved(const Scene& scene, const char* method, std::int64_t rays = 600'000, std::uint64_t seed = 1) {
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.rays = rays;
     options.seed = seed;

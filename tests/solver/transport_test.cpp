@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/probabilities.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/scenes.h"

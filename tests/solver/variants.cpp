@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "interflect/elements/forest.h"
 #include "tests/support/scenes.h"
 
 namespace interflect::testing_support {

@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
+#include "interflect/elements/forest.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect::testing_support {
 
 /// A method with options that make a variant of it.
 struct Variant {
     std::string name;  ///< Letters, digits and underscores.
-    SolveOptions options;
+    SolveOptions options{.method = find_method("srr")};
 };
 std::ostream& operator<<(std::ostream& out, const Variant& variant);
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/steps.h"
 #include "tests/support/scenes.h"
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 #include "tests/support/form_factors.h"
 
 namespace interflect::testing_support {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "interflect/base/colour.h"
-#include "interflect/scene/scene.h"
+#include "interflect/colour.h"
+#include "interflect/scene.h"
 
 namespace interflect::testing_support {
 

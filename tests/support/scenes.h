@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::testing_support {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
 

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

@@ -4,13 +4,9 @@
 #include <cstdint>
 #include <span>
 
-namespace interflect {
+#include "interflect/point_set.h"
 
-/// Where the four random numbers of a ray come from.
-enum class PointSet {
-    sobol,   ///< Owen-scrambled Sobol' points, a sequence of its own for each source: error falls faster than N^-1/2.
-    random,  ///< Pseudo-random (Philox): error falls like N^-1/2.
-};
+namespace interflect {
 
 /// Coordinates of consecutive 4D points, one array a dimension, so that what follows can be vectorised; all in (0, 1).
 struct PointBlock {

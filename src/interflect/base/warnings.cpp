@@ -1,4 +1,4 @@
-#include "interflect/base/warnings.h"
+#include "interflect/warnings.h"
 
 #include <algorithm>
 

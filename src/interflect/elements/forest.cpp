@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/scene/geometry_fingerprint.h"
 
 namespace interflect {

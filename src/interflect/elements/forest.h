@@ -9,7 +9,7 @@
 #include "interflect/base/stable_array.h"
 #include "interflect/elements/cell.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

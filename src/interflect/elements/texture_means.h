@@ -5,7 +5,7 @@
 
 #include "interflect/elements/cell.h"
 #include "interflect/geometry/texture_integral.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

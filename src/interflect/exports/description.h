@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "interflect/exports/solution_file.h"
+#include "interflect/solution_file.h"
 
 namespace interflect {
 

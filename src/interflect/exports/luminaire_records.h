@@ -1,7 +1,7 @@
 #pragma once
 
 #include "interflect/exports/json_text.h"
-#include "interflect/scene/luminaire.h"
+#include "interflect/luminaire.h"
 
 namespace interflect {
 

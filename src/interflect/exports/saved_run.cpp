@@ -4,10 +4,12 @@
 
 #include <stdexcept>
 
-#include "interflect/base/error.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/exports/solution_file.h"
-#include "interflect/solver/solver.h"
+#include "interflect/error.h"
+#include "interflect/exports/saved_run.h"
+#include "interflect/solution_file.h"
+#include "interflect/solver.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

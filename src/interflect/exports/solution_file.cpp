@@ -1,4 +1,5 @@
-#include "interflect/exports/solution_file.h"
+#include "interflect/solution_file.h"
+#include "interflect/exports/saved_run.h"
 
 #include <fmt/format.h>
 
@@ -12,12 +13,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
 #include "interflect/exports/description.h"
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
 #include "interflect/exports/texture_records.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "interflect/exports/json_text.h"
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect {
 

@@ -4,7 +4,7 @@
 
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

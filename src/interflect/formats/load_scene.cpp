@@ -1,14 +1,15 @@
-#include "interflect/formats/load_scene.h"
+#include "interflect/load_scene.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
+#include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
 
 namespace interflect {

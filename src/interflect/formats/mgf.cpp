@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/formats/mgf_reader.h"
 #include "interflect/formats/text_file.h"
 

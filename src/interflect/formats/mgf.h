@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/formats/read_options.h"
-#include "interflect/scene/scene.h"
+#include "interflect/read_options.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
 

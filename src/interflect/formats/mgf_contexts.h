@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "interflect/formats/mgf_colour.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

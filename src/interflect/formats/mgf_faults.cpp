@@ -1,6 +1,6 @@
 #include "interflect/formats/mgf_faults.h"
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

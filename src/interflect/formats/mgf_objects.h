@@ -8,7 +8,7 @@
 
 #include "interflect/formats/mgf_contexts.h"
 #include "interflect/formats/mgf_scene_builder.h"
-#include "interflect/formats/read_options.h"
+#include "interflect/read_options.h"
 
 namespace interflect {
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

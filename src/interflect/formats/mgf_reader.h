@@ -20,7 +20,7 @@
 #include "interflect/formats/mgf_sources.h"
 #include "interflect/formats/mgf_transform.h"
 #include "interflect/formats/mgf_work.h"
-#include "interflect/formats/read_options.h"
+#include "interflect/read_options.h"
 
 namespace interflect {
 

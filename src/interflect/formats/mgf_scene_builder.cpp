@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/geometry/polygon.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "interflect/formats/mgf_contexts.h"
-#include "interflect/formats/read_options.h"
 #include "interflect/geometry/vertex_weld.h"
+#include "interflect/read_options.h"
+#include "interflect/scene.h"
 #include "interflect/scene/core.h"
-#include "interflect/scene/scene.h"
 
 namespace interflect {
 

@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/formats/text_file.h"
 
 namespace interflect {

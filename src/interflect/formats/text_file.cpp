@@ -6,7 +6,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

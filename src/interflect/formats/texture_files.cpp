@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "interflect/base/error.h"
-#include "interflect/image/image_files.h"
+#include "interflect/error.h"
 #include "interflect/image/srgb.h"
+#include "interflect/image_files.h"
 
 namespace interflect {
 

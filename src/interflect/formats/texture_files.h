@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "interflect/scene/texture.h"
+#include "interflect/texture.h"
 
 namespace interflect {
 

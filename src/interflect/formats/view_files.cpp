@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/formats/json_text.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/number.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/generators/building/furnish.h"
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"

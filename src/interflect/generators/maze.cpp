@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/generators/building/floor_space.h"
 #include "interflect/generators/building/furnish.h"

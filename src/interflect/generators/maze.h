@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

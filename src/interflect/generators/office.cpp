@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/generators/building/floor_space.h"
 #include "interflect/generators/building/furnish.h"
 #include "interflect/generators/building/room_views.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/generators/building/solids.h"
 
 namespace interflect {

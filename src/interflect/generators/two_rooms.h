@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -10,7 +10,7 @@
 
 #include "interflect/geometry/facet.h"
 #include "interflect/geometry/planar_polygon.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -1,4 +1,4 @@
-#include "interflect/geometry/contacts.h"
+#include "interflect/contacts.h"
 
 #include <fmt/format.h>
 

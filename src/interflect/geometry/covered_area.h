@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

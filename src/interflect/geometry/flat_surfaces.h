@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "interflect/scene.h"
 #include "interflect/scene/patch_area.h"
-#include "interflect/scene/scene.h"
 
 namespace interflect {
 

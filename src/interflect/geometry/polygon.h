@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

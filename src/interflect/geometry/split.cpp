@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/geometry/vertex_weld.h"

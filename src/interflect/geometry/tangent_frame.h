@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/scene/texture.h"
+#include "interflect/texture.h"
 
 namespace interflect {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
 

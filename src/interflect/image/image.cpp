@@ -1,10 +1,10 @@
-#include "interflect/image/image.h"
+#include "interflect/image.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

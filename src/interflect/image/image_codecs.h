@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "interflect/image/image.h"
-#include "interflect/image/image_files.h"
+#include "interflect/image.h"
+#include "interflect/image_files.h"
 
 /// One pair of functions a file format, for image_files.cpp alone. Decoders throw std::runtime_error with the reason
 /// only; whoever knows the file's name adds it.

@@ -1,4 +1,4 @@
-#include "interflect/image/image_files.h"
+#include "interflect/image_files.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,9 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/image/image_codecs.h"
+#include "interflect/image/pending_image.h"
 
 namespace interflect {
 

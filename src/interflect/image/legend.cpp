@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "interflect/base/error.h"
-#include "interflect/base/image_size.h"
+#include "interflect/error.h"
+#include "interflect/image_files.h"
 
 namespace interflect {
 

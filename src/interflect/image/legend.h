@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "interflect/image.h"
 #include "interflect/image/false_colour.h"
-#include "interflect/image/image.h"
 
 namespace interflect {
 

@@ -1,4 +1,4 @@
-#include "interflect/image/tone_map.h"
+#include "interflect/tone_map.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "interflect/base/points.h"
 #include "interflect/geometry/tangent_frame.h"
 
 namespace interflect {

@@ -6,10 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "interflect/base/colour.h"
 #include "interflect/base/points.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/colour.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "interflect/base/colour.h"
-#include "interflect/scene/scene.h"
+#include "interflect/colour.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
+#include "interflect/error.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "interflect/image/image.h"
+#include "interflect/image.h"
 
 namespace interflect {
 

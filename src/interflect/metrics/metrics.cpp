@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/error.h"
-#include "interflect/image/tone_map.h"
+#include "interflect/error.h"
 #include "interflect/metrics/flip.h"
 #include "interflect/metrics/perceptual.h"
+#include "interflect/tone_map.h"
 
 namespace interflect {
 

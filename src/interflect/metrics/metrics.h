@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "interflect/image/image.h"
+#include "interflect/image.h"
 
 namespace interflect {
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

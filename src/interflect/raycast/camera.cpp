@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include "interflect/base/error.h"
-#include "interflect/base/image_size.h"
+#include "interflect/error.h"
+#include "interflect/image_files.h"
 #include "interflect/scene/view.h"
 
 namespace interflect {

@@ -9,7 +9,7 @@
 
 #include "interflect/base/ranked_bits.h"
 #include "interflect/geometry/box_tree.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

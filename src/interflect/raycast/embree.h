@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
+#include "interflect/ray_caster.h"
 #include "interflect/raycast/coincident.h"
-#include "interflect/raycast/ray_caster.h"
 
 namespace interflect {
 

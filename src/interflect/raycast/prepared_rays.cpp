@@ -2,8 +2,8 @@
 #include <limits>
 #include <vector>
 
+#include "interflect/ray_caster.h"
 #include "interflect/raycast/embree.h"
-#include "interflect/raycast/ray_caster.h"
 
 namespace interflect {
 

@@ -1,4 +1,4 @@
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
+#include "interflect/error.h"
 #include "interflect/raycast/embree.h"
 #include "interflect/scene/geometry_fingerprint.h"
 

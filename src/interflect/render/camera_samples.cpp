@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

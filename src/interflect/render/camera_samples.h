@@ -6,9 +6,10 @@
 #include <span>
 
 #include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/render.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 
@@ -29,19 +30,6 @@ struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;
     std::span<const Hit> hits;
-};
-
-/// Progress of a picture.
-struct PictureProgress {
-    std::int64_t rays = 0;  ///< So far.
-    double fraction = 0;    ///< Of all rays, in [0, 1].
-};
-
-/// How a caller watches the progress of a picture, and ends it early.
-struct PictureMonitor {
-    /// Called from the calling thread, about every million rays; may be empty.
-    std::function<void(const PictureProgress&)> on_progress;
-    const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is left in milliseconds.
 };
 
 /// Traces a camera ray at each of `offsets` from every sample, and calls `visit` for one pixel after the other, from

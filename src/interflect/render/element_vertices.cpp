@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/smooth_surfaces.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/render/camera_samples.h"
 
 namespace interflect {
 

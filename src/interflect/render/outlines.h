@@ -1,10 +1,10 @@
 #pragma once
 
 #include "interflect/elements/forest.h"
-#include "interflect/image/image.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/image.h"
+#include "interflect/ray_caster.h"
 #include "interflect/render/camera_samples.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

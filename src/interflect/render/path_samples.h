@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 #include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {

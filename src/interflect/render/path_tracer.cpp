@@ -1,4 +1,4 @@
-#include "interflect/render/path_tracer.h"
+#include "interflect/path_tracer.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
+#include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/illumination.h"
 #include "interflect/raycast/camera.h"

@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/path_tracer.h"
+#include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/raycast/ray_caster.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/path_samples.h"
-#include "interflect/render/path_tracer.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

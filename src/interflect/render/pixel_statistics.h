@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/colour.h"
-#include "interflect/render/path_tracer.h"
+#include "interflect/colour.h"
+#include "interflect/path_tracer.h"
 #include "interflect/render/path_wavefront.h"
 
 namespace interflect {

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/render/camera_samples.h"
 
 namespace interflect {
 

@@ -4,11 +4,11 @@
 #include <string>
 
 #include "interflect/elements/forest.h"
+#include "interflect/image.h"
 #include "interflect/image/false_colour.h"
-#include "interflect/image/image.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 #include "interflect/render/camera_samples.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -1,12 +1,14 @@
-#include "interflect/render/render.h"
+#include "interflect/render.h"
 
 #include <atomic>
 #include <numbers>
 #include <optional>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
+#include "interflect/render/camera_samples.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
 
@@ -87,6 +89,11 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     result.non_finite_pixels = count_non_finite(result.image);
     result.interrupted = monitor.stop && *monitor.stop;
     return result;
+}
+
+Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                 const RenderOptions& options, const PictureMonitor& monitor) {
+    return render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
 }
 
 }  // namespace interflect

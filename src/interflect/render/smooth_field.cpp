@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

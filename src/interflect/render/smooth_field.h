@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/element_vertices.h"
 

@@ -4,16 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/render.h"
+#include "interflect/scene.h"
 
 namespace interflect {
-
-/// What counts as one smooth surface.
-struct SmoothingOptions {
-    /// Patches whose normals differ by more than this do not shade into each other [degrees]. The default is wider than
-    /// the 22.5 degrees between the facets of a sphere or cylinder that a reader has tessellated.
-    float crease_angle = 30;
-};
 
 /// Which corners and edges of patches are one and the same in one smooth surface, and so share their values.
 struct SmoothSurfaces {

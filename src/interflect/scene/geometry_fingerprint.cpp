@@ -3,9 +3,9 @@
 #include <bit>
 #include <string>
 
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

@@ -1,4 +1,4 @@
-#include "interflect/scene/light_groups.h"
+#include "interflect/light_groups.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <utility>
 #include <variant>
 
-#include "interflect/base/error.h"
-#include "interflect/scene/scene.h"
+#include "interflect/error.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

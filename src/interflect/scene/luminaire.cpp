@@ -1,4 +1,4 @@
-#include "interflect/scene/luminaire.h"
+#include "interflect/luminaire.h"
 
 #include <fmt/format.h>
 

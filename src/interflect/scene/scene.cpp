@@ -1,10 +1,10 @@
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/scene/limits.h"
 #include "interflect/scene/view.h"
 

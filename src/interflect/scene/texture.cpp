@@ -1,4 +1,4 @@
-#include "interflect/scene/texture.h"
+#include "interflect/texture.h"
 
 #include <fmt/format.h>
 

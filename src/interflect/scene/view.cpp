@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/scene/core.h"
 #include "interflect/scene/limits.h"
 

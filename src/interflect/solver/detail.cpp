@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

@@ -1,11 +1,11 @@
-#include "interflect/solver/dimming.h"
+#include "interflect/dimming.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/solver/group_light.h"
 #include "interflect/solver/materials.h"
 

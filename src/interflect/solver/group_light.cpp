@@ -1,6 +1,7 @@
 #include "interflect/solver/group_light.h"
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
+#include "interflect/light_groups.h"
 #include "interflect/luminaires/emission.h"
-#include "interflect/scene/light_groups.h"
 #include "interflect/solver/materials.h"
 
 namespace interflect {

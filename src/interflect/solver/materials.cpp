@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {

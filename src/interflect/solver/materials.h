@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/colour.h"
 #include "interflect/base/ranked_bits.h"
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 #include "interflect/solver/textured_elements.h"
 
 namespace interflect {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/textured_elements.h"
 

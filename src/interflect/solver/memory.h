@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

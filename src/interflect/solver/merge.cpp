@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

@@ -1,4 +1,5 @@
 #include "interflect/solver/neighbourhoods.h"
+#include "interflect/elements/forest.h"
 
 #include <ImathBox.h>
 

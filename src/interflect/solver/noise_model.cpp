@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/group_light.h"
 #include "interflect/solver/state_archive.h"

@@ -5,6 +5,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/stable_array.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

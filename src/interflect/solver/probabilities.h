@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/solver/radiosity.h"
 

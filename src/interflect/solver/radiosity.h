@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "interflect/base/colour.h"
 #include "interflect/base/parallel.h"
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/materials.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interflect/base/points.h"
 #include "interflect/geometry/tangent_frame.h"
 
 namespace interflect {

@@ -6,7 +6,7 @@
 #include "interflect/base/points.h"
 #include "interflect/elements/cell.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 
 namespace interflect {
 

@@ -8,7 +8,7 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/elements/forest.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 #include "interflect/solver/arrivals.h"
 #include "interflect/solver/gathering.h"
 #include "interflect/solver/materials.h"

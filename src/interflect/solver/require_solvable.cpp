@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/error.h"
+#include "interflect/error.h"
 
 namespace interflect {
 

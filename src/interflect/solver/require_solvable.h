@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect {
 

@@ -1,4 +1,5 @@
 #include "interflect/solver/schedule.h"
+#include "interflect/solver/state_archive.h"
 
 #include <algorithm>
 #include <cmath>

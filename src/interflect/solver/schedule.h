@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 #include "interflect/solver/state_archive.h"
 
 namespace interflect {

@@ -1,10 +1,10 @@
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 #include <memory>
 #include <utility>
 
-#include "interflect/base/error.h"
-#include "interflect/solver/solver.h"
+#include "interflect/error.h"
+#include "interflect/solver.h"
 
 namespace interflect {
 
@@ -16,6 +16,8 @@ const Method& find_method(const std::string& name) {
     }
     throw InputError("there is no method '" + name + "'; there are: " + known);
 }
+
+const Method& default_method(bool has_views) { return find_method(has_views ? "ihsrr" : "hsrr"); }
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     // They outlive the solver.

@@ -1,4 +1,4 @@
-#include "interflect/solver/solver.h"
+#include "interflect/solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,13 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/error.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/require_solvable.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -114,8 +116,13 @@ Solution Solver::Run::snapshot() {
 
 namespace {
 
+SolveOptions with_method(SolveOptions options) {
+    if (!options.method.make) options.method = default_method(!options.views.empty());
+    return options;
+}
+
 std::shared_ptr<const RayCaster> caster_of(const Scene& scene, const SolveOptions& options) {
-    require_solvable(scene, options);
+    require_solvable(scene, with_method(options));
     return std::make_shared<RayCaster>(scene);
 }
 
@@ -128,7 +135,8 @@ Solver::Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& op
     : Solver(scene, caster_of(*scene, options), options) {}
 
 Solver::Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
-               const SolveOptions& options) {
+               const SolveOptions& asked_for) {
+    const SolveOptions options = with_method(asked_for);
     require_solvable(*scene, options);
     ray_caster->require_made_for(*scene);
     run_ = std::make_unique<Run>(std::move(scene), std::move(ray_caster), options);

@@ -9,9 +9,12 @@
 
 #include "interflect/base/address_space.h"
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/radiosity.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
+#include "interflect/solver/view_importance.h"
 
 namespace interflect {
 

@@ -6,14 +6,15 @@
 #include <memory>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
+#include "interflect/solve.h"
 #include "interflect/solver/element_floor.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/noise_model.h"
 #include "interflect/solver/risk_check.h"
 #include "interflect/solver/schedule.h"
-#include "interflect/solver/solve.h"
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/stop_request.h"
 #include "interflect/solver/transport.h"

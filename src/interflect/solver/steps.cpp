@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/probabilities.h"
 
 namespace interflect {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "interflect/solve.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/neighbourhoods.h"
-#include "interflect/solver/solve.h"
 #include "interflect/solver/transport.h"
 
 namespace interflect {

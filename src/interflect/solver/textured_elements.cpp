@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

@@ -6,7 +6,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/elements/texture_means.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -9,7 +9,9 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 #include "interflect/solver/arrivals.h"
 #include "interflect/solver/gathering.h"
 #include "interflect/solver/ray_allocation.h"

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/colour.h"
 #include "interflect/base/points.h"
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 #include "interflect/solver/arrivals.h"
 #include "interflect/solver/group_light.h"
 #include "interflect/solver/materials.h"

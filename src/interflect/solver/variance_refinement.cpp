@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 
 namespace interflect {

@@ -5,7 +5,9 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

@@ -6,19 +6,12 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 #include "interflect/solver/state_archive.h"
 
 namespace interflect {
-
-/// A view and how much it counts beside others.
-struct WeightedView {
-    View view = {};
-    double weight = 1;         ///< > 0; what counts is its share of the sum of all.
-    float aspect = 16.0f / 9;  ///< Width over height of the picture.
-    int pixel_rows = 720;      ///< Of the picture, > 0: elements need be no smaller than what a pixel shows.
-};
 
 /// The points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
 /// that they can be handed to elements anew whenever the mesh has changed.

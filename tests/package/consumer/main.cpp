@@ -1,12 +1,6 @@
 // The whole way through the library, as someone outside uses it: a scene, a ray, a solution, a file, a picture.
 
-#include <interflect/exports/solution_file.h>
-#include <interflect/image/image_files.h>
-#include <interflect/raycast/ray_caster.h>
-#include <interflect/render/render.h>
-#include <interflect/scene/scene.h>
-#include <interflect/solver/solve.h>
-#include <interflect/solver/solver.h>
+#include <interflect/interflect.h>
 
 #include <array>
 #include <cmath>
@@ -34,6 +28,22 @@ interflect::Scene glowing_cube(float exitance, float reflectance) {
     return scene;
 }
 
+// Dims one of two groups of sources while a run goes on, saves it and opens it again.
+void dim_a_lamp() {
+    interflect::Scene scene = glowing_cube(2, 0.5f);
+    scene.luminaires = {{"lamp", 0, interflect::PointLight{{0.5f, 0.5f, 0.6f}, interflect::Rgb(1)}}};
+    scene.light_groups = {{"walls", "glow"}, {"lamps", "lamp*"}};
+    interflect::Solver solver(scene, {.rays = 200'000});
+    solver.advance({.rays = 100'000});
+    solver.set_exitance("lamps", 0);
+    solver.save("dimmed.h5");
+    solver = interflect::Solver::open("dimmed.h5");
+    solver.advance({});
+    for (std::size_t i = 0; i < scene.patches.size(); ++i)
+        expect(std::abs(solver.solution().irradiance[i].x / 4 - 1) < 0.05f,
+               "the irradiance of the furnace without the lamp within 5%");
+}
+
 }  // namespace
 
 int main() {
@@ -49,8 +59,8 @@ int main() {
 
     const interflect::Solution solution = interflect::solve(scene, ray_caster, {.rays = 100'000});
     const float expected = exitance / (1 - reflectance);  // of a closed box: B = M + rho B = H
-    for (const auto& irradiance : solution.irradiance)
-        expect(std::abs(irradiance.x / expected - 1) < 0.05f, "the irradiance of a furnace within 5%");
+    for (std::size_t i = 0; i < scene.patches.size(); ++i)
+        expect(std::abs(solution.irradiance[i].x / expected - 1) < 0.05f, "the irradiance of a furnace within 5%");
 
     interflect::write_solution("cube.h5", scene, solution);
     expect(interflect::read_solution("cube.h5").solution.irradiance == solution.irradiance, "to read what was written");
@@ -63,8 +73,12 @@ int main() {
            "a run in steps, saved and opened, to have the same bits");
 
     const interflect::View view{.name = "inside", .eye = {0.5f, 0.5f, 0.5f}};
+    solver.set_views({{view}});
+    solver.advance({.rays = 50'000});
     const auto picture =
-        interflect::render(scene, *solution.forest, ray_caster, view, solution.irradiance, {.width = 4, .height = 4});
+        interflect::render(solver.scene(), solver.solution(), solver.ray_caster(), view, {.width = 4, .height = 4});
     expect(picture.escaped_rays == 0, "no ray to leave a closed cube");
+
+    dim_a_lamp();
     std::puts("consumer: all is well");
 }

@@ -6,7 +6,7 @@
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/generators/building/furniture.h"
 #include "interflect/generators/building/palette.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::building {
 

@@ -5,7 +5,7 @@
 
 #include "interflect/generators/building/random_sequence.h"
 #include "interflect/generators/building/shell.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::building {
 

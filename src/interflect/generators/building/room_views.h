@@ -3,7 +3,7 @@
 #include <ImathBox.h>
 
 #include "interflect/generators/building/floor_plan.h"
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect::building {
 

@@ -6,6 +6,7 @@
 
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect {
 

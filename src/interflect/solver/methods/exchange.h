@@ -8,7 +8,7 @@
 #include <span>
 
 #include "interflect/elements/forest.h"
-#include "interflect/raycast/ray_caster.h"
+#include "interflect/ray_caster.h"
 
 namespace interflect {
 

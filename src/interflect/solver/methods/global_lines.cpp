@@ -9,9 +9,12 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/solver/methods/passes.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 
@@ -152,7 +155,8 @@ class LineSums {
             r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
-            r.escaped_rays += escaped_[i];
+            if (channel_sum(radiosity_[i]) > 0)
+                r.escaped_rays += escaped_[i];  // not those of the dark outside of a room
         }
         return r;
     }

@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 
-#include "interflect/base/error.h"
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/solver/radiosity.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/methods/exchange.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

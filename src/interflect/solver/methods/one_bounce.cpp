@@ -3,9 +3,11 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/radiosity.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "interflect/solver/iteration_method.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

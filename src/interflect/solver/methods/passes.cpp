@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/methods/one_bounce.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/variance_refinement.h"
 
 namespace interflect {

@@ -5,9 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/merge.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

@@ -6,10 +6,13 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "interflect/solver/iteration_method.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

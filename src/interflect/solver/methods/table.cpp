@@ -1,6 +1,6 @@
 #include <array>
 
-#include "interflect/solver/solve.h"
+#include "interflect/solve.h"
 
 namespace interflect {
 

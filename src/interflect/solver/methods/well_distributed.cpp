@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
+#include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
 namespace interflect {

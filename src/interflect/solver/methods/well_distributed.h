@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "interflect/elements/forest.h"
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/methods/passes.h"
+#include "interflect/solver/state_archive.h"
 
 namespace interflect {
 

@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <string>
 
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
-#include "interflect/solver/state_archive.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect {
+
+class StateArchive;
 
 /// A solved scene: all that is needed to draw it again.
 struct SolvedScene {
@@ -29,16 +30,6 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 /// Reads what write_solution wrote, and files of the versions 2 and 3, which have no checksums.
 /// @throws InputError for a file that is missing, damaged or something else.
 SolvedScene read_solution(const std::filesystem::path& path);
-
-/// A run that can go on.
-struct SavedRun {
-    SolvedScene solved;  ///< The sources of its scene are not dimmed; Solution::dimming says which should be.
-    StateArchive state;  ///< For reading.
-};
-
-/// Reads what write_solution() wrote with a state: opens and verifies the file once. @throws InputError where it has no
-/// state, or one of another version of Interflect, and as read_solution().
-SavedRun read_saved_run(const std::filesystem::path& path);
 
 /// Whether the file at `path` begins like a solution file, of this version or an older one; false when it cannot be
 /// read. True of a new one whose first bytes are damaged.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/scene/scene.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -2,9 +2,8 @@
 
 #include <filesystem>
 
-#include "interflect/formats/read_options.h"
-#include "interflect/formats/view_files.h"
-#include "interflect/scene/scene.h"
+#include "interflect/read_options.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

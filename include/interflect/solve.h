@@ -9,14 +9,22 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/colour.h"
-#include "interflect/base/points.h"
-#include "interflect/elements/forest.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
-#include "interflect/solver/view_importance.h"
+#include "interflect/colour.h"
+#include "interflect/point_set.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 
 namespace interflect {
+
+class ElementForest;
+
+/// A view and how much it counts beside others.
+struct WeightedView {
+    View view = {};
+    double weight = 1;         ///< > 0; what counts is its share of the sum of all.
+    float aspect = 16.0f / 9;  ///< Width over height of the picture.
+    int pixel_rows = 720;      ///< Of the picture, > 0: elements need be no smaller than what a pixel shows.
+};
 
 /// What importance steers.
 enum class ImportanceUse {
@@ -41,7 +49,7 @@ using MakeIterationMethod = std::unique_ptr<IterationMethod>(SolverState& state)
 struct Method {
     const char* name;
     const char* source;             ///< Author and year.
-    MakeIterationMethod* make;      ///< Never null.
+    MakeIterationMethod* make;      ///< Null only of automatic_method.
     bool refines = false;           ///< Hierarchical: makes elements below the patches.
     bool follows_variance = false;  ///< Refines between complete passes as Refinement says; others by power.
     ImportanceUse importance = ImportanceUse::off;  ///< Taken as `off` where there is no view.
@@ -58,14 +66,19 @@ extern const std::span<const Method> methods;
 /// The method of that name. @throws InputError that lists the methods there are.
 const Method& find_method(const std::string& name);
 
+/// What SolveOptions begin with: Solver takes default_method().
+inline constexpr Method automatic_method{.name = "automatic", .source = "", .make = nullptr};
+/// ihsrr where there are views, else hsrr.
+const Method& default_method(bool has_views);
+
 /// Beyond that the fixed-point sums of transport would round what single rays carry.
 inline constexpr std::int64_t most_rays_per_iteration = 100'000'000'000;
 inline constexpr int most_camera_rays = 1 << 22;
 
 /// What to compute and when to stop. The run ends at the first limit that is reached.
 struct SolveOptions {
-    Method method = methods[0];
-    std::vector<WeightedView> views;  ///< What is looked at; empty: there is no importance.
+    Method method = automatic_method;
+    std::vector<WeightedView> views = {};  ///< What is looked at; empty: there is no importance.
 
     std::int64_t rays = 20'000'000;  ///< Most rays to trace in all; > 0.
     /// Most time to take [s]; > 0. An iteration that it cuts short is lost. Bits then depend on speed.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interflect/image/image.h"
+#include "interflect/image.h"
 
 namespace interflect {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "interflect/image/image.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
+#include "interflect/image.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
 

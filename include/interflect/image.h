@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/colour.h"
+#include "interflect/colour.h"
 
 namespace interflect {
+
+/// Larger images are neither rendered nor read, whatever a file claims.
+inline constexpr std::int64_t most_image_pixels = std::int64_t{1} << 28;
 
 /// A picture: linear Rec. 709 colours in any unit, row by row, row 0 at the top.
 struct Image {

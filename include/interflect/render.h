@@ -1,16 +1,38 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <span>
 
-#include "interflect/elements/forest.h"
-#include "interflect/image/image.h"
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/render/camera_samples.h"
-#include "interflect/render/smooth_surfaces.h"
-#include "interflect/scene/scene.h"
+#include "interflect/image.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect {
+
+class ElementForest;
+
+/// What counts as one smooth surface.
+struct SmoothingOptions {
+    /// Patches whose normals differ by more than this do not shade into each other [degrees]. The default is wider than
+    /// the 22.5 degrees between the facets of a sphere or cylinder that a reader has tessellated.
+    float crease_angle = 30;
+};
+
+/// Progress of a picture.
+struct PictureProgress {
+    std::int64_t rays = 0;  ///< So far.
+    double fraction = 0;    ///< Of all rays, in [0, 1].
+};
+
+/// How a caller watches the progress of a picture, and ends it early.
+struct PictureMonitor {
+    /// Called from the calling thread, about every million rays; may be empty.
+    std::function<void(const PictureProgress&)> on_progress;
+    const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is left in milliseconds.
+};
 
 /// How irradiance is reconstructed at points from that of elements.
 enum class Shading {
@@ -47,5 +69,8 @@ struct Rendering {
 Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
                  std::span<const Rgb> irradiance, const RenderOptions& options = {},
                  const PictureMonitor& monitor = {});
+/// The same of a solution of the scene.
+Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                 const RenderOptions& options = {}, const PictureMonitor& monitor = {});
 
 }  // namespace interflect

@@ -5,10 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "interflect/base/image_size.h"
-#include "interflect/base/pending_file.h"
-#include "interflect/image/image.h"
-#include "interflect/scene/scene.h"
+#include "interflect/image.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 
@@ -49,9 +47,6 @@ struct ImageMetadata {
 ///         reason where the file cannot be written.
 void write_image(const std::filesystem::path& path, const Image& image,
                  const ImageMetadata& metadata = ImageMetadata());
-
-/// The same into a file that appears under its name once it is complete: commits it. Errors have its final name.
-void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata());
 
 /// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png is decoded from sRGB).
 /// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.

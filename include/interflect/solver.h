@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "interflect/raycast/ray_caster.h"
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
-#include "interflect/solver/state_archive.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect {
+
+class StateArchive;
 
 /// How far Solver::advance() goes: to the first of these.
 struct Limits {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "interflect/scene/scene.h"
-#include "interflect/solver/solve.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect {
 

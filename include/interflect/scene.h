@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/colour.h"
-#include "interflect/base/warnings.h"
-#include "interflect/scene/light_groups.h"
-#include "interflect/scene/luminaire.h"
-#include "interflect/scene/texture.h"
+#include "interflect/colour.h"
+#include "interflect/light_groups.h"
+#include "interflect/luminaire.h"
+#include "interflect/texture.h"
+#include "interflect/warnings.h"
 
 namespace interflect {
 

@@ -1,0 +1,14 @@
+/// \file
+/// All of the library: read a scene, solve it, look at it, keep it.
+#pragma once
+
+#include "interflect/contacts.h"
+#include "interflect/dimming.h"
+#include "interflect/error.h"
+#include "interflect/image_files.h"
+#include "interflect/load_scene.h"
+#include "interflect/path_tracer.h"
+#include "interflect/render.h"
+#include "interflect/solution_file.h"
+#include "interflect/solver.h"
+#include "interflect/tone_map.h"
