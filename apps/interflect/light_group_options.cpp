@@ -24,14 +24,16 @@ std::pair<std::string, std::string> name_and_value(const char* option, const std
 }  // namespace
 
 void LightGroupOptions::add_to(CLI::App& app) {
-    app.add_flag("--light-groups", by_name,
-                 "Keep the light of each object with sources apart (of each emitting material where there are no "
-                 "objects), for render --dim");
+    CLI::Option* const all =
+        app.add_flag("--light-groups", by_name,
+                     "Keep the light of each object with sources apart (of each emitting material where there are no "
+                     "objects), for render --dim");
     app.add_option("--group", groups,
                    "Keep the light of some sources apart: those whose object, material or light has such a name ('*' "
                    "stands for anything); may be repeated")
         ->type_name("NAME=PATTERN")
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->excludes(all);
 }
 
 void LightGroupOptions::set_groups(Scene& scene) const {
@@ -39,8 +41,9 @@ void LightGroupOptions::set_groups(Scene& scene) const {
         auto [name, pattern] = name_and_value("--group", text, "NAME=PATTERN, as in 'desk=lamps.desk*'");
         scene.light_groups.push_back({std::move(name), std::move(pattern)});
     }
-    if (by_name && groups.empty()) scene.light_groups = groups_by_name(scene);
+    if (by_name) scene.light_groups = groups_by_name(scene);
     if (scene.light_groups.empty()) return;
+    require_sources_of_groups(scene);
     std::string names;
     for (const std::string& name : source_groups(scene).names) names += (names.empty() ? "" : ", ") + name;
     spdlog::info("light groups: {}", names);

@@ -36,9 +36,11 @@ struct SourceGroups {
     std::size_t index_of(const std::string& name) const;
 };
 
-/// Empty where the scene has no groups. @throws InputError for more than most_light_groups, for two of one name, and
-/// for one that no source is in.
+/// Empty where the scene has no groups. @throws InputError for more than most_light_groups and for two of one name.
 SourceGroups source_groups(const Scene& scene);
+
+/// @throws InputError for a group that no source is in, and as source_groups().
+void require_sources_of_groups(const Scene& scene);
 
 /// A group for each object that is in no other one and has a source; where the sources are in one object or in none, a
 /// group for each material and luminaire. @throws InputError where that is more than most_light_groups.

@@ -157,7 +157,8 @@ struct Solution {
     /// Of H what each light group brings, [group][element]: they sum to H. Empty unless the scene has light groups.
     std::vector<std::vector<Rgb>> groups;
     std::vector<std::string> group_names;  ///< As in source_groups(scene).
-    /// What the sources of each group are scaled by, of what the scene says they emit; see Solver::set_exitance().
+    /// Of each group: what the sources of the scene are still to be scaled by. 1 but in the files that Solver::save()
+    /// writes, whose scene has its sources as they were.
     std::vector<float> dimming;
     std::vector<float> view_importance;       ///< v; empty where there is no view.
     std::vector<float> indirect_importance;   ///< psi - v; likewise.

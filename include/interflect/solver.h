@@ -92,6 +92,7 @@ class Solver {
     struct Run;
     void archive(StateArchive& archive);
     std::shared_ptr<const Scene> undimmed_scene() const;
+    const std::vector<float>& dimming() const;
 
     std::unique_ptr<Run> run_;
 };

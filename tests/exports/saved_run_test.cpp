@@ -341,6 +341,33 @@ TEST(ChangeOfViews, RefusesWhatIsNoView) {
     EXPECT_EQ(solver.options().views.front().view.look_at, into_the_room.look_at);
 }
 
+/// What is saved with a dimmed group shows as it is lit now, and goes on as if it had never been saved.
+TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
+    const TemporaryFolder folder;
+    const fs::path run = folder.path() / "run.h5", result = folder.path() / "result.h5";
+    SolveOptions options{.method = find_method("hsrr")};
+    options.rays = 60'000;
+    Solver solver(open_room_with_lights(), options);
+    solver.advance({.rays = 20'000});
+    solver.set_exitance("daylight", 0.25f);
+    solver.set_exitance("other", 0);
+    solver.save(run);
+    write_solution(result, solver.scene(), solver.solution());
+    for (const fs::path& file : {run, result}) {
+        const SolvedScene read = read_solution(file);
+        EXPECT_EQ(read.solution.irradiance, solver.solution().irradiance);
+        EXPECT_EQ(read.solution.dimming, (std::vector<float>{1, 1}));
+        EXPECT_EQ(std::get<UniformSky>(read.scene.luminaires[3].kind).radiance, 0.25f * Rgb(9, 10, 12));
+        EXPECT_EQ(rating(read.scene.luminaires[0]), Rgb(0));
+    }
+    Solver opened = Solver::open(run);
+    for (Solver* s : {&solver, &opened}) {
+        s->set_exitance("other", 0.5f);
+        s->advance({});
+    }
+    expect_same(opened.solution(), solver.solution());
+}
+
 TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");

@@ -71,7 +71,7 @@ TEST(LightGroups, FindTheirSources) {
     scene.light_groups = {{"all lamps", "lamps"}};
     EXPECT_EQ(source_groups(scene).of_patch.back(), 0);
     scene.light_groups = {{"none", "lam?"}};
-    EXPECT_THROW(source_groups(scene), InputError);
+    EXPECT_THROW(require_sources_of_groups(scene), InputError);
     scene.light_groups = {{"twice", "*"}, {"twice", "*"}};
     EXPECT_THROW(source_groups(scene), InputError);
 }
@@ -136,8 +136,9 @@ TEST(Dimming, IsWhatSolvingTheDimmedSceneGives) {
     Scene scene = lit_room();
     const RayCaster ray_caster(scene);
     Solution solution = solve(scene, ray_caster, options_of("hsrr", 2'000'000));
-    dim(scene, solution, "red", 0.25f);
     dim(scene, solution, "other", 0);
+    dim(scene, solution, "blue", 0);  // what is dark stays a group
+    dim(scene, solution, "red", 0.25f);
     dim(scene, solution, "torch", 3);
     Scene together = scene;
     together.light_groups.clear();

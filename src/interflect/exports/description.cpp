@@ -81,6 +81,7 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
                      {"materials", json_of_materials(scene.materials)},
                      {"luminaires", luminaires},
                      {"light_groups", groups},
+                     {"group_names", solution.group_names},
                      {"dimming", dimming},
                      {"objects", scene.objects}};
     if (!scene.textures.empty()) description["textures"] = json_of(scene.textures);
@@ -102,6 +103,7 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
     read_result(json, solved.format_version, solution);
     solution.emitted_power = vector_of<RgbD>(json.at("emitted_power"));
     solution.interrupted = json.at("interrupted").get<bool>();
+    if (json.contains("group_names")) solution.group_names = json.at("group_names").get<std::vector<std::string>>();
     if (json.contains("dimming")) solution.dimming = json.at("dimming").get<std::vector<float>>();
     return json.at("has_importance").get<bool>();
 }

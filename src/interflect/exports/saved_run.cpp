@@ -24,7 +24,8 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
 
 void Solver::save(const std::filesystem::path& path) {
     PendingFile file(path);
-    const Solution& result = solution();  // before the archive refers to what this works on
+    Solution result = solution();  // before the archive refers to what this works on
+    result.dimming = dimming();
     StateArchive state;
     SolveOptions saved = options();
     archive_options(state, saved);

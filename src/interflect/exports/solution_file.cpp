@@ -168,9 +168,12 @@ std::string group_dataset(std::size_t group) { return fmt::format("/solution/gro
 
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
     Solution& solution = solved.solution;
-    solution.group_names = source_groups(solved.scene).names;
-    if (solution.dimming.size() != solution.group_names.size())
-        throw std::runtime_error("light groups and their dimming differ in number");
+    const std::size_t named = solved.scene.light_groups.size();  // beside them there may be "other" light
+    const bool has_names =
+        solution.group_names.size() == named || (named > 0 && solution.group_names.size() == named + 1);
+    if (!has_names || solution.dimming.size() != solution.group_names.size())
+        throw std::runtime_error("light groups, their names and their dimming differ in number");
+    source_groups(solved.scene);  // throws InputError
     for (std::size_t g = 0; g < solution.group_names.size(); ++g)
         solution.groups.push_back(grouped<Rgb>(file.read<float>(group_dataset(g), 3)));
 }

@@ -43,6 +43,8 @@ const Format& format_of(const fs::path& path) {
 }
 
 bool emits(const Scene& scene) {
+    const auto shines = [](const Luminaire& luminaire) { return largest_channel(rating(luminaire)) > 0; };
+    if (std::any_of(scene.luminaires.begin(), scene.luminaires.end(), shines)) return true;
     return std::any_of(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
         return largest_channel(scene.materials[patch.material].exitance) > 0;
     });

@@ -117,15 +117,22 @@ SourceGroups source_groups(const Scene& scene) {
         groups.of_patch.push_back(channel_sum(m.exitance) > 0 ? group_of(p.object, m.name) : 0);
     }
     for (const Luminaire& l : scene.luminaires) groups.of_luminaire.push_back(group_of(l.object, l.name));
-    for (std::size_t g = 0; g < other; ++g) {
-        groups.names.push_back(scene.light_groups[g].name);
-        if (!used[g])
-            throw InputError(fmt::format("light group '{}': no source of light matches '{}'", groups.names[g],
-                                         scene.light_groups[g].pattern));
-    }
+    for (const LightGroup& g : scene.light_groups) groups.names.push_back(g.name);
     if (used[other]) groups.names.emplace_back("other");
     require_count(groups.size());
     return groups;
+}
+
+void require_sources_of_groups(const Scene& scene) {
+    const SourceGroups groups = source_groups(scene);
+    std::vector<bool> used(groups.size(), false);
+    for (std::size_t i = 0; i < groups.of_patch.size(); ++i)
+        if (channel_sum(scene.materials[scene.patches[i].material].exitance) > 0) used[groups.of_patch[i]] = true;
+    for (const std::uint8_t g : groups.of_luminaire) used[g] = true;
+    for (std::size_t g = 0; g < scene.light_groups.size(); ++g)
+        if (!used[g])
+            throw InputError(fmt::format("light group '{}': no source of light matches '{}'",
+                                         scene.light_groups[g].name, scene.light_groups[g].pattern));
 }
 
 std::vector<LightGroup> groups_by_name(const Scene& scene) {

@@ -13,7 +13,8 @@ namespace interflect {
 
 void dim(Scene& scene, Solution& solution, const std::string& group, float factor) {
     SourceGroups groups = source_groups(scene);
-    if (solution.groups.empty()) groups.names.clear();
+    // Where a group is dark, the scene does not tell that there is "other" light.
+    if (!groups.empty()) groups.names = solution.group_names;
     const std::size_t g = groups.index_of(group);
     if (!(factor >= 0 && std::isfinite(factor)))
         throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));

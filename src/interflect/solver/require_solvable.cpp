@@ -47,6 +47,7 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(o.method.separates_groups || scene.light_groups.empty(),
             fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
     require_no_faults(faults, "cannot solve", scene);
+    require_sources_of_groups(scene);
 }
 
 }  // namespace interflect

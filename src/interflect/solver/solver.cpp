@@ -108,6 +108,7 @@ Solution Solver::Run::snapshot() {
     Solution copy = state.solution;
     method->finish(state);  // changes irradiance
     std::swap(copy, state.solution);
+    std::fill(copy.dimming.begin(), copy.dimming.end(), 1.0f);  // of what the sources of `scene` emit
     const auto forest = std::make_shared<ElementForest>(*scene, state.forest->size());
     forest->rebuild(state.forest->subdivided());
     copy.forest = forest;
@@ -210,12 +211,15 @@ const Solution& Solver::solution() const {
 }
 
 Solution Solver::take_solution() && {
+    Solution& solution = run_->state.solution;
     run_->method->finish(run_->state);
-    return std::move(run_->state.solution);
+    std::fill(solution.dimming.begin(), solution.dimming.end(), 1.0f);
+    return std::move(solution);
 }
 
 std::shared_ptr<const Scene> Solver::shared_scene() const { return run_->scene; }
 std::shared_ptr<const Scene> Solver::undimmed_scene() const { return run_->undimmed_scene; }
+const std::vector<float>& Solver::dimming() const { return run_->state.solution.dimming; }
 std::shared_ptr<const RayCaster> Solver::shared_ray_caster() const { return run_->ray_caster; }
 const SolveOptions& Solver::options() const { return run_->state.options; }
 

@@ -266,7 +266,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
                                 receive(step, shooting, batch);
                             });
     } catch (const Interrupted&) {
-        arrivals.clear(old_size);
+        arrivals.clear(forest.size());
         forget_new_elements(forest, old_size);
         throw;
     }
