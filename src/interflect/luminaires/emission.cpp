@@ -29,7 +29,7 @@ Imath::Box3f box_around(const Scene& scene) {
     return box;
 }
 
-/// Cosine of the angle of a ray of a cone to its axis, for v in (0, 1]: the inner part is uniform in solid angle;
+/// Cosine of the angle of a ray of a beam to its axis, for v in (0, 1]: the inner part is uniform in solid angle;
 /// beyond it intensity is in proportion to (c - outer)^2.
 float sample_cosine(float v, float inner, float outer, float inner_share) {
     if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
@@ -58,7 +58,7 @@ RgbD Emission::total_power() const {
 }
 
 void Emission::add(const PointLight& light) {
-    add_cone({light.position, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, -1, -1, 1}, light.intensity);
+    add_beam({light.position, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, -1, -1, 1}, light.intensity);
 }
 
 void Emission::add(const SpotLight& light) {
@@ -66,12 +66,12 @@ void Emission::add(const SpotLight& light) {
     const TangentFrame frame(axis);
     const float inner = light.inner_cosine(), outer = light.outer_cosine();
     const float within = 1 - inner, beyond = (inner - outer) / 3;
-    add_cone({light.position, axis, frame.s, frame.t, inner, outer, within / (within + beyond)}, light.intensity);
+    add_beam({light.position, axis, frame.s, frame.t, inner, outer, within / (within + beyond)}, light.intensity);
 }
 
-void Emission::add_cone(const Cone& cone, const Rgb& intensity) {
-    const double solid_angle = 2 * std::numbers::pi * ((1.0 - cone.inner) + (double{cone.inner} - cone.outer) / 3);
-    emitters_.push_back({cone, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
+void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
+    const double solid_angle = 2 * std::numbers::pi * ((1.0 - beam.inner) + (double{beam.inner} - beam.outer) / 3);
+    emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
 /// Starts on the rectangle that the scene's box fills as seen along the light.
@@ -124,9 +124,9 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
         for (std::size_t i = 0; i < count; ++i) {
             const float u = (column + a[i]) / cells_per_side, v = (row + b[i]) / cells_per_side;
             Ray& ray = rays[begin + i];
-            if (const Cone* cone = std::get_if<Cone>(&emitter.shape)) {
-                const float cosine = sample_cosine(v, cone->inner, cone->outer, cone->inner_share);
-                ray = {cone->position, turned(cone->axis, cone->s, cone->t, cosine, u)};
+            if (const Beam* beam = std::get_if<Beam>(&emitter.shape)) {
+                const float cosine = sample_cosine(v, beam->inner, beam->outer, beam->inner_share);
+                ray = {beam->position, turned(beam->axis, beam->s, beam->t, cosine, u)};
             } else {
                 const Window& window = std::get<Window>(emitter.shape);
                 ray.origin = window.corner + window.edge_u * u + window.edge_v * v;
@@ -141,7 +141,7 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
 Rgb Emission::irradiance(std::size_t part, float distance) const {
     const Emitter& emitter = emitters_[part / parts_per_emitter];
     const float squared = std::max(distance * distance, std::numeric_limits<float>::min());
-    if (std::holds_alternative<Cone>(emitter.shape)) return emitter.rating / squared;
+    if (std::holds_alternative<Beam>(emitter.shape)) return emitter.rating / squared;
     const Window& window = std::get<Window>(emitter.shape);
     return window.is_diffuse ? emitter.rating * (window.part_area / (window.part_area + pi * squared)) : emitter.rating;
 }

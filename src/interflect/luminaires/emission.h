@@ -45,7 +45,7 @@ class Emission {
 
   private:
     /// Into the cone around `axis` from cosine 1 to `outer`.
-    struct Cone {
+    struct Beam {
         V3f position, axis, s, t;
         float inner, outer;  // cosines
         float inner_share;   // of the power, within the inner angle
@@ -58,7 +58,7 @@ class Emission {
         bool is_diffuse;
     };
     struct Emitter {
-        std::variant<Cone, Window> shape;
+        std::variant<Beam, Window> shape;
         Rgb rating;
         RgbD part_power;
         std::size_t luminaire = 0;
@@ -68,7 +68,7 @@ class Emission {
     void add(const SpotLight& light);
     void add(const DirectionalLight& light);
     void add(const UniformSky& sky);
-    void add_cone(const Cone& cone, const Rgb& intensity);
+    void add_beam(const Beam& cone, const Rgb& intensity);
     void add_window(Window window, const Rgb& exitance);
 
     std::vector<V3f> corners_;  // of the box around the scene; empty without patches

@@ -169,11 +169,11 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
 
 /// Whatever is in the way of the rays towards one side of a face covers it there.
 void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const float> tolerance) {
-    struct Side {
+    struct CoveredSide {
         std::uint32_t patch;
         float share;
     };
-    std::vector<Side> sides;
+    std::vector<CoveredSide> sides;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (hidden_[i] || overlapped_[i]) {
             sides.push_back({i, 0});
@@ -195,8 +195,8 @@ void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const floa
             share = uncovered_area_share(scene, patch, others, tolerance[face]);
         }
     });
-    std::erase_if(sides, [](const Side& side) { return !(side.share < 1); });
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.patch < b.patch; });
+    std::erase_if(sides, [](const CoveredSide& side) { return !(side.share < 1); });
+    std::sort(sides.begin(), sides.end(), [](const CoveredSide& a, const CoveredSide& b) { return a.patch < b.patch; });
     std::vector<std::uint32_t> patches;
     for (const auto& [patch, share] : sides) {
         patches.push_back(patch);
