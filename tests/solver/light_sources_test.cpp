@@ -12,10 +12,9 @@
 #include <numbers>
 
 #include "interflect/luminaires/emission.h"
-#include "interflect/path_tracer.h"
-#include "interflect/render.h"
 #include "interflect/solve.h"
 #include "interflect/solver/materials.h"
+#include "tests/solver/room_with_window.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -142,26 +141,6 @@ TEST(UniformSkyLight, IsPiTimesRadianceToAThousandth) {
     EXPECT_NEAR(sum, 1000 * pi, 1000 * pi * 1e-3);
 }
 
-/// A black room of 5 x 4 x 3 m, open above nothing: the sky shines in through a window of 1.5 x 1.2 m in the wall x =
-/// 0.
-Scene room_with_window(Rgb sky) {
-    Scene scene;
-    scene.objects = {""};
-    const std::uint32_t black = add_material(scene, Rgb(0), Rgb(0));
-    const auto add = [&](V3f corner, V3f u, V3f v, int n) { add_rectangle(scene, corner, u, v, black, n, n, true); };
-    add({0, 0, 0}, {5, 0, 0}, {0, 4, 0}, 5);  // floor
-    add({0, 0, 3}, {5, 0, 0}, {0, 4, 0}, 1);
-    add({5, 0, 0}, {0, 4, 0}, {0, 0, 3}, 1);
-    add({0, 0, 0}, {5, 0, 0}, {0, 0, 3}, 1);
-    add({0, 4, 0}, {5, 0, 0}, {0, 0, 3}, 1);
-    add({0, 0, 0}, {0, 1, 0}, {0, 0, 3}, 1);
-    add({0, 2.5f, 0}, {0, 1.5f, 0}, {0, 0, 3}, 1);
-    add({0, 1, 0}, {0, 1.5f, 0}, {0, 0, 1}, 1);
-    add({0, 1, 2.2f}, {0, 1.5f, 0}, {0, 0, 0.8f}, 1);
-    scene.luminaires = {{"sky", 0, UniformSky{sky}}};
-    return scene;
-}
-
 TEST(UniformSkyLight, ThroughAWindowFollowsTheFormFactor) {
     const Scene scene = room_with_window(Rgb(100));
     const RayCaster ray_caster(scene);
@@ -191,46 +170,6 @@ TEST(LightSourcesTogether, EmitWhatArrivesAndEscapes) {
     const RgbD expected = Emission(scene).total_power();
     EXPECT_NEAR((arrived.x + solution.iterations.back().escaped_power.x) / expected.x, 1, 1e-5);
     EXPECT_NEAR(solution.emitted_power.x / expected.x, 1, 1e-12);
-}
-
-/// A room with a window, a lamp in it, a spot light and the Sun: with the hierarchy and importance, mean and blocks of
-/// the picture agree with path tracing.
-TEST(LightSourcesTogether, AgreeWithPathTracing) {
-    Scene scene = room_with_window({300, 350, 420});
-    scene.materials[0].reflectance = {0.6f, 0.5f, 0.4f};
-    scene.luminaires.push_back({"lamp", 0, PointLight{{3.1f, 2.2f, 2.4f}, {60, 60, 40}}});
-    scene.luminaires.push_back({"spot", 0, SpotLight{{4, 1, 2.9f}, {-1, 0.5f, -2}, {200, 100, 100}, 15, 35}});
-    scene.luminaires.push_back({"sun", 0, DirectionalLight{{2, 0.3f, -1}, {2000, 1900, 1500}}});
-    const RayCaster ray_caster(scene);
-    const View view{"room", {4.7, 3.7, 1.6}, {0.5, 1.2, 0.9}, {0, 0, 1}, 70};
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("ihsrr");
-    options.views = {{view, 1, 1.5f, 48}};
-    options.rays = 4'000'000;
-    const Solution solution = solve(scene, ray_caster, options);
-    RenderOptions picture;
-    picture.width = 72, picture.height = 48;
-    const Image found = render(scene, *solution.forest, ray_caster, view, solution.irradiance, picture).image;
-    PathOptions paths;
-    paths.width = 72, paths.height = 48;
-    paths.samples = 512;
-    const PathTracing traced = trace_paths(scene, ray_caster, view, paths, {});
-    constexpr int blocks = 6;
-    std::vector<double> mine(blocks * blocks, 0), reference(blocks * blocks, 0);
-    for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 72; ++x) {
-            const auto block = static_cast<std::size_t>(y * blocks / 48 * blocks + x * blocks / 72);
-            const auto pixel = static_cast<std::size_t>(y * 72 + x);
-            mine[block] += luminance(found.pixels[pixel]);
-            reference[block] += luminance(traced.image.pixels[pixel]);
-        }
-    double sum = 0, expected = 0, squares = 0;
-    for (std::size_t i = 0; i < mine.size(); ++i) {
-        sum += mine[i], expected += reference[i];
-        squares += std::pow(mine[i] / reference[i] - 1, 2) / static_cast<double>(mine.size());
-    }
-    EXPECT_NEAR(sum / expected, 1, 0.01);
-    EXPECT_LT(std::sqrt(squares), 0.04);
 }
 
 }  // namespace
