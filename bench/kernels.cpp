@@ -40,7 +40,7 @@ struct SolvedMaze {
     SolveOptions options() const {
         SolveOptions o{.method = find_method("srr")};
         o.method = find_method("ihsrr");
-        o.rays = 2'000'000;
+        o.limits.rays = 2'000'000;
         o.views.push_back({scene.views.at(4)});
         return o;
     }
@@ -48,7 +48,7 @@ struct SolvedMaze {
         TransportStep step = power_step(materials, Emission(), solution, Radiosity(materials, solution.irradiance),
                                         importance_weights(solution, Neighbourhoods(forest)), true, rays)
                                  .step;
-        if (refines) step.oracle = make_oracle(solution, solution.options.rays, 1e-6);
+        if (refines) step.oracle = make_oracle(solution, solution.options.limits.rays, 1e-6);
         step.oracle.max_elements = forest.size();
         return step;
     }

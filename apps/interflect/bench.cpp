@@ -64,15 +64,15 @@ struct Workload {
         : materials(scene, ray_caster),
           solution(solve(scene, ray_caster, options)),
           forest(std::const_pointer_cast<ElementForest>(solution.forest)),
-          streams(options.points, options.seed) {
+          streams(options.experimental.points, options.seed) {
         if (!(channel_sum(solution.emitted_power) > 0))
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
         const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
-        step = power_step(materials, Emission(), solution, light, weights, combined, options.rays).step;
+        step = power_step(materials, Emission(), solution, light, weights, combined, options.limits.rays).step;
         if (options.method.refines && !refines_by_variance(options))
-            step.oracle = make_oracle(solution, options.rays, options.min_area);
+            step.oracle = make_oracle(solution, options.limits.rays, options.refinement.min_area);
         step.oracle.max_elements = forest->size();
         rays = transport_rays(*forest, ray_caster, step, streams);
     }
@@ -194,7 +194,7 @@ void run(const BenchArguments& options) {
     const ThreadLimit limit(options.threads);
     Scene scene = options.scene.load();
     SolveOptions solve_options;
-    solve_options.rays = options.rays;
+    solve_options.limits.rays = options.rays;
     for (const View& view : options.view.views(scene)) solve_options.views.push_back({view});
     solve_options.method = options.method.value_or(default_method(!solve_options.views.empty()));
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);

@@ -43,9 +43,10 @@ std::string magnitude(double number) {
 }
 
 double fraction_done(const SolveOptions& options, const IterationReport& report) {
-    double fraction = static_cast<double>(report.rays) / static_cast<double>(options.rays);
-    if (std::isfinite(options.seconds)) fraction = std::max(fraction, report.seconds / options.seconds);
-    if (options.until > 0) fraction = std::max(fraction, std::pow(options.until / report.error_estimate, 2));
+    double fraction = static_cast<double>(report.rays) / static_cast<double>(options.limits.rays);
+    if (std::isfinite(options.limits.time)) fraction = std::max(fraction, report.seconds / options.limits.time);
+    if (options.limits.until > 0)
+        fraction = std::max(fraction, std::pow(options.limits.until / report.error_estimate, 2));
     return std::clamp(fraction, 0.0, 1.0);
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "apps/interflect/run_path_tracer.h"
+#include "apps/interflect/shared_options.h"
 #include "interflect/error.h"
 
 namespace interflect::command {
@@ -23,7 +24,8 @@ bool has(const std::array<std::string_view, Count>& names, const std::string& na
 constexpr std::array<std::string_view, 2> shared_with_path_tracing = {"--seed", "--until"};
 
 bool is_of_solving(const CLI::Option& option) {
-    constexpr std::array<std::string_view, 3> groups = {"Solver", "Refinement", "Importance"};
+    constexpr std::array<std::string_view, 5> groups = {solver_group, limits_group, refinement_group, importance_group,
+                                                        experimental_group};
     return has(groups, option.get_group());
 }
 

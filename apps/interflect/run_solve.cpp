@@ -51,16 +51,16 @@ void log_outcome(const Solution& solution) {
                      : "");
     if (!solution.options.views.empty() && !std::isfinite(last.error_estimate) && solution.iterations.size() > 2)
         spdlog::warn("no view shows a lit surface that reflects light: the error is not known");
-    if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.max_elements)
+    if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.refinement.max_elements)
         spdlog::warn("refinement ended at {} elements: for a finer mesh raise --max-elements or --memory",
                      last.elements);
 }
 
 /// With as many elements at most as memory and addresses are there for. @param memory  As asked for, or 0.
 SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, SolveOptions options, std::size_t memory) {
-    if (options.max_elements < scene.patches.size())
-        throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}", options.max_elements,
-                                     scene.patches.size(), scene.name));
+    if (options.refinement.max_elements < scene.patches.size())
+        throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
+                                     options.refinement.max_elements, scene.patches.size(), scene.name));
     const std::size_t there_is = std::min(machine_memory() / 10 * 9, addressable_memory());
     const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
     const MemoryNeed need = memory_need(scene, ray_caster);
@@ -68,7 +68,7 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
         throw std::runtime_error(fmt::format(
             "{} needs {} MiB of memory; the limits of this process (ulimit -v, control groups) leave {} MiB",
             scene.name, (need.with(scene.patches.size()) >> 20) + 1, there_is >> 20));
-    options.max_elements = std::min(options.max_elements, elements_within(need, bytes, scene));
+    options.refinement.max_elements = std::min(options.refinement.max_elements, elements_within(need, bytes, scene));
     return options;
 }
 
@@ -100,7 +100,7 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
         };
         const Monitor monitor{show, &stop_on_signal()};
         Limits limits;
-        if (!checkpoints.file.empty()) limits.seconds = checkpoints.every;
+        if (!checkpoints.file.empty()) limits.time = checkpoints.every;
         for (bool is_over = false; !is_over;) {
             const AdvanceReport report = solver.advance(limits, monitor);
             is_over = report.is_finished || report.is_stopped;

@@ -43,11 +43,11 @@ void MeshOptions::add_to(CLI::App& app) {
                "not refine; none: as in the file")
         ->type_name("METRES|auto|none")
         ->default_str("auto")
-        ->group("Solver");
+        ->group(solver_group);
     app.add_flag("--contact-cuts,!--no-contact-cuts", contact_cuts,
                  "Cut faces where others stand on them, pass through or cover them, so that no light leaks there "
                  "(default), or leave them as in the file")
-        ->group("Solver");
+        ->group(solver_group);
 }
 
 Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) const {
@@ -55,7 +55,7 @@ Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) co
         const Warnings earlier = std::exchange(scene.warnings, {});
         const std::size_t faces = scene.patches.size();
         scene = cut_at_contacts(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene)),
-                                        .most_patches = read.max_patches});
+                                        .max_patches = read.max_patches});
         log_warnings(scene.warnings);
         if (scene.patches.size() > faces)
             spdlog::info("faces are cut where others meet them: {} patches, before {}", scene.patches.size(), faces);
@@ -107,14 +107,6 @@ void add_threads(CLI::App& app, int& threads) {
         ->check(CLI::Range(0, 4096));
 }
 
-namespace {
-
-constexpr const char* solver_group = "Solver";
-constexpr const char* refinement_group = "Refinement";
-constexpr const char* importance_group = "Importance";
-
-}  // namespace
-
 void add_method(CLI::App& app, std::optional<Method>& method) {
     std::vector<std::pair<std::string, Method>> choices;
     choices.reserve(methods.size());
@@ -124,142 +116,153 @@ void add_method(CLI::App& app, std::optional<Method>& method) {
         ->group(solver_group);
 }
 
-void add_limits(CLI::App& app, std::optional<std::int64_t>& rays, std::optional<double>& seconds,
-                std::optional<double>& until) {
-    add_parsed(app, "--rays", rays, parse_count,
-               "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
-        ->type_name("COUNT")
-        ->group(solver_group);
-    app.add_option("--time", seconds,
-                   "Most seconds to solve; reading and cutting the scene, and drawing and writing, come on top")
-        ->type_name("SECONDS")
-        ->check(number_between(1e-3, 1e9))
-        ->group(solver_group);
-    add_parsed(app, "--until", until, parse_share,
-               "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
-        ->type_name("SHARE")
-        ->group(solver_group);
+void LimitOptions::add_to(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(limits_group); };
+    group(add_parsed(app, "--rays", rays, parse_count,
+                     "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
+              ->type_name("COUNT"));
+    group(app.add_option("--time", time,
+                         "Most seconds to solve; reading and cutting the scene, and drawing and writing, come on top")
+              ->type_name("SECONDS")
+              ->check(number_between(1e-3, 1e9)));
+    group(add_parsed(app, "--until", until, parse_share,
+                     "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
+              ->type_name("SHARE"));
+}
+
+Limits LimitOptions::resolved() const {
+    const Limits unlimited;
+    return {rays.value_or(unlimited.rays), time.value_or(unlimited.time), until.value_or(unlimited.until)};
 }
 
 void SolverOptions::add_to(CLI::App& app) {
     add_method(app, method_);
-    add_limits(app);
-    add_sampling(app);
-    add_refinement(app);
-    add_importance(app);
+    add_parsed(app, "--seed", solve_.seed, parse_seed, "Same seed, same bits")
+        ->type_name("NUMBER")
+        ->default_str("1")
+        ->group(solver_group);
     app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
         ->type_name("FILE")
         ->group(solver_group);
+    limits_.add_to(app);
+    add_refinement(app);
+    add_importance(app);
+    add_schedule(app);
+    add_paper_refinement(app);
+    add_paper_importance(app);
     add_threads(app, threads);
-}
-
-void SolverOptions::add_limits(CLI::App& app) { command::add_limits(app, rays_, seconds_, until_); }
-
-void SolverOptions::add_sampling(CLI::App& app) {
-    const auto group = [](CLI::Option* option) { option->group(solver_group); };
-    group(add_parsed(app, "--seed", solve_.seed, parse_seed, "Same seed, same bits")
-              ->type_name("NUMBER")
-              ->default_str("1"));
-    group(add_choice<PointSet>(app, "--points", solve_.points,
-                               {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
-                               "Sample points: scrambled Sobol' or pseudo-random")
-              ->default_str("sobol"));
-    group(app.add_option("--warm-up", solve_.warm_up, "Iterations that are not averaged, after the first estimate")
-              ->capture_default_str()
-              ->check(CLI::Range(0, 1'000'000)));
-    group(app.add_option("--iterations", solve_.iterations, "Averaged iterations; 0: as many as the limits allow")
-              ->capture_default_str()
-              ->check(CLI::Range(0, 1'000'000'000)));
-    group(add_parsed(app, "--rays-per-iteration", solve_.rays_per_iteration, parse_iteration_size,
-                     "Rays of each iteration; default: small at first, then growing")
-              ->type_name("COUNT"));
-    group(app.add_flag(
-        "--complete-passes,!--one-bounce", solve_.complete_passes,
-        "Each iteration follows light bounce by bounce to its end (default), or takes the mean one bounce further"));
 }
 
 void SolverOptions::add_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(refinement_group); };
-    group(add_choice<Refinement>(app, "--refinement", solve_.refinement,
-                                 {{"variance", Refinement::variance}, {"power", Refinement::power}},
-                                 "Elements are split by what rays tell of them, or pairs by power (Eq. 14, 15)")
+    RefinementOptions& refinement = solve_.refinement;
+    group(add_choice<RefinementCriterion>(
+              app, "--refinement-criterion", refinement.criterion,
+              {{"variance", RefinementCriterion::variance}, {"power", RefinementCriterion::power}},
+              "Elements are split by what rays tell of them, or pairs by power (Eq. 14, 15)")
               ->default_str("variance"));
     group(
-        app.add_flag("--shrinkage,!--no-shrinkage", solve_.shrinkage,
-                     "Reduce differences of neighbouring elements that are mostly noise (with --refinement variance)"));
-    group(app.add_option("--epsilon", solve_.epsilon,
-                         "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
-                         "once 20M rays are averaged")
-              ->type_name("SHARE")
-              ->capture_default_str()
-              ->check(number_between(1e-15, 1e15)));
-    group(
-        app.add_option("--epsilon-decay", solve_.epsilon_decay,
-                       "That power falls as rays^-EXPONENT: the mesh gets finer as the noise falls; 0: as in the paper")
-            ->type_name("EXPONENT")
-            ->capture_default_str()
-            ->check(number_between(0, 1)));
-    group(
-        app.add_option("--min-area", solve_.min_area,
+        app.add_option("--min-area", refinement.min_area,
                        "No element smaller than this [m2]; 0: what a pixel shows of what is seen, else (5 mm)2 or less")
             ->type_name("AREA")
             ->capture_default_str()
             ->check(number_between(0, 1e9)));
-    group(add_parsed(app, "--max-elements", solve_.max_elements, parse_element_count, "Refinement ends there")
+    group(add_parsed(app, "--max-elements", refinement.max_elements, parse_element_count, "Refinement ends there")
               ->type_name("COUNT")
               ->default_str("67M"));
     group(add_parsed(app, "--memory", memory, parse_memory,
                      "Refinement ends before the process takes more than this (k, M, G: powers of 1024)")
               ->type_name("BYTES")
               ->default_str("9/10 of the machine's"));
-    group(app.add_flag("--defer-refinement", solve_.defer_refinement,
-                       "No refinement during the warm-up ('dr'); there is one with --warm-up"));
-    group(app.add_option("--inherited-weight", solve_.inherited_weight,
-                         "How much its parent's past counts for a new element; 1: as in the paper")
-              ->type_name("SHARE")
-              ->capture_default_str()
-              ->check(number_between(0, 1)));
 }
 
 void SolverOptions::add_importance(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(importance_group); };
     group(add_choice<ImportanceUse>(
         app, "--importance", importance_,
-        {{"none", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
+        {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
         "What a view steers by: nothing, what it shows, or that and all that lights it (default: the method's)"));
-    group(add_choice<bool>(app, "--iteration", solve_.separate_iterations, {{"separate", true}, {"combined", false}},
-                           "Importance and power in steps of their own ('si'), or in one ('ci')")
-              ->default_str("combined"));
-    group(add_choice<bool>(app, "--importance-storage", solve_.importance_at_elements,
-                           {{"patch", false}, {"element", true}}, "Keep importance by patches, or by elements ('hi')")
-              ->default_str("element"));
-    group(add_choice<bool>(app, "--importance-sampling", solve_.total_importance,
-                           {{"indirect", false}, {"total", true}},
-                           "Rays start by indirect (Eq. 10) or total importance")
-              ->default_str("indirect"));
+    ImportanceOptions& importance = solve_.importance;
+    group(app.add_option("--camera-rays", importance.camera_rays,
+                         "Rays that find what a view shows at first, per view; more follow as rays are averaged")
+              ->capture_default_str()
+              ->check(CLI::Range(1, most_camera_rays)));
     group(app.add_option(
-                 "--importance-smoothing", solve_.importance_smoothing,
+                 "--importance-smoothing", importance.smoothing,
                  "How much of its parent's importance drives an element's rays and refinement; 0: as in the paper")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--importance-exponent", solve_.importance_exponent,
+    group(app.add_option("--importance-exponent", importance.exponent,
                          "Rays start by power times importance to this power; 1: as in the paper")
               ->type_name("EXPONENT")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--alpha", solve_.alpha, "Share of the rays for importance")
+}
+
+void SolverOptions::add_schedule(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(experimental_group); };
+    ExperimentalOptions& o = solve_.experimental;
+    group(add_choice<PointSet>(app, "--points", o.points, {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
+                               "Sample points: scrambled Sobol' or pseudo-random")
+              ->default_str("sobol"));
+    group(app.add_flag("--one-bounce", o.one_bounce,
+                       "Each iteration takes the mean one bounce further, instead of following light to its end"));
+    group(app.add_option("--warm-up", o.warm_up, "Iterations that are not averaged, after the first estimate")
+              ->capture_default_str()
+              ->check(CLI::Range(0, 1'000'000)));
+    group(app.add_option("--iterations", o.iterations, "Averaged iterations; 0: as many as the limits allow")
+              ->capture_default_str()
+              ->check(CLI::Range(0, 1'000'000'000)));
+    group(add_parsed(app, "--rays-per-iteration", o.rays_per_iteration, parse_iteration_size,
+                     "Rays of each iteration; default: small at first, then growing")
+              ->type_name("COUNT"));
+}
+
+void SolverOptions::add_paper_refinement(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(experimental_group); };
+    ExperimentalOptions& o = solve_.experimental;
+    group(app.add_flag("--shrinkage,!--no-shrinkage", o.shrinkage,
+                       "Reduce differences of neighbouring elements that are mostly noise "
+                       "(with --refinement-criterion variance)"));
+    group(app.add_option("--epsilon", o.epsilon,
+                         "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
+                         "once 20M rays are averaged")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(1e-15, 1e15)));
+    group(
+        app.add_option("--epsilon-decay", o.epsilon_decay,
+                       "That power falls as rays^-EXPONENT: the mesh gets finer as the noise falls; 0: as in the paper")
+            ->type_name("EXPONENT")
+            ->capture_default_str()
+            ->check(number_between(0, 1)));
+    group(app.add_option("--inherited-weight", o.inherited_weight,
+                         "How much its parent's past counts for a new element; 1: as in the paper")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--beta", solve_.beta, "Share of the other rays that start by power alone")
+    group(app.add_flag("--defer-refinement", o.defer_refinement,
+                       "No refinement during the warm-up ('dr'); there is one with --warm-up"));
+}
+
+void SolverOptions::add_paper_importance(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(experimental_group); };
+    ExperimentalOptions& o = solve_.experimental;
+    group(app.add_flag("--separate-iterations", o.separate_iterations,
+                       "Importance and power in steps of their own ('si'), instead of in one ('ci')"));
+    group(app.add_flag("--importance-at-patches", o.importance_at_patches,
+                       "Keep importance by patches, instead of by elements ('hi')"));
+    group(app.add_flag("--total-importance", o.total_importance,
+                       "Rays start by total importance (Eq. 9), instead of indirect (Eq. 10)"));
+    group(app.add_option("--alpha", o.alpha, "Share of the rays for importance")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--camera-rays", solve_.camera_rays,
-                         "Rays that find what a view shows at first, per view; more follow as rays are averaged")
+    group(app.add_option("--beta", o.beta, "Share of the other rays that start by power alone")
+              ->type_name("SHARE")
               ->capture_default_str()
-              ->check(CLI::Range(1, most_camera_rays)));
+              ->check(number_between(0, 1)));
 }
 
 SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {
@@ -267,10 +270,7 @@ SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspec
     options.method = method_.value_or(default_method(!views.empty()));
     options.method.importance = importance_.value_or(options.method.importance);
     for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
-    constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();
-    options.rays = rays_.value_or(seconds_ || until_ ? all : SolveOptions().rays);
-    options.seconds = seconds_.value_or(std::numeric_limits<double>::infinity());
-    options.until = until();
+    if (limits_.any()) options.limits = limits_.resolved();
     return options;
 }
 

@@ -52,6 +52,25 @@ struct ViewOptions {
 /// The files that these name.
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view);
 
+/// Where the help lists the options of solving; `render --shading path` has none of these.
+inline constexpr const char* solver_group = "Solver";
+inline constexpr const char* limits_group = "Limits";
+inline constexpr const char* refinement_group = "Refinement";
+inline constexpr const char* importance_group = "Importance";
+inline constexpr const char* experimental_group =
+    "Experimental (the paper's switches, and what is measured against them)";
+
+/// When a run ends.
+struct LimitOptions {
+    std::optional<std::int64_t> rays;
+    std::optional<double> time, until;
+
+    void add_to(CLI::App& app);
+    bool any() const { return rays || time || until; }
+    /// Unlimited by what was not given.
+    Limits resolved() const;
+};
+
 /// How to solve.
 struct SolverOptions {
     int threads = 0;         ///< 0: as many as the machine has.
@@ -60,31 +79,27 @@ struct SolverOptions {
 
     void add_to(CLI::App& app);
     /// What solve() is to be asked for. Where no method was named it is ihsrr if something is looked at, else hsrr; the
-    /// default of rays goes where only another limit was given.
+    /// default limit goes where another was given.
     /// @param aspect  Width over height of the pictures.
     SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
     std::uint64_t seed() const { return solve_.seed; }
-    double until() const { return until_.value_or(0); }  ///< Target of the relative error; 0 where none was given.
+    double until() const { return limits_.resolved().until; }  ///< Target of the relative error; 0: none was given.
 
   private:
-    void add_limits(CLI::App& app);
-    void add_sampling(CLI::App& app);
     void add_refinement(CLI::App& app);
     void add_importance(CLI::App& app);
+    void add_schedule(CLI::App& app);
+    void add_paper_refinement(CLI::App& app);
+    void add_paper_importance(CLI::App& app);
 
     SolveOptions solve_;
+    LimitOptions limits_;
     std::optional<Method> method_;
     std::optional<ImportanceUse> importance_;
-    std::optional<std::int64_t> rays_;
-    std::optional<double> seconds_, until_;
 };
 
 /// How to solve, where it is named.
 void add_method(CLI::App& app, std::optional<Method>& method);
-
-/// When a run ends.
-void add_limits(CLI::App& app, std::optional<std::int64_t>& rays, std::optional<double>& seconds,
-                std::optional<double>& until);
 
 void add_threads(CLI::App& app, int& threads);
 

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "apps/interflect/commands.h"
@@ -85,8 +83,7 @@ void add_solve(CLI::App& app, int& exit_code) {
 void add_resume(CLI::App& app, int& exit_code) {
     struct Options {
         std::filesystem::path input, output, stats;
-        std::optional<std::int64_t> rays;
-        std::optional<double> seconds, until;
+        LimitOptions limits;
         Checkpoints checkpoints;
         int threads = 0;
     };
@@ -94,7 +91,7 @@ void add_resume(CLI::App& app, int& exit_code) {
     CLI::App& command = *app.add_subcommand("resume", "Go on with a run that was saved, as if it had never ended");
     command.add_option("FILE", options->input, "What --checkpoint wrote")->required();
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
-    add_limits(command, options->rays, options->seconds, options->until);
+    options->limits.add_to(command);
     options->checkpoints.add_to(command, "Save the run to this file now and then (default: FILE itself)");
     command.add_option("--stats", options->stats, "Write what each iteration did to this file, as JSON lines")
         ->type_name("FILE");
@@ -111,10 +108,7 @@ void add_resume(CLI::App& app, int& exit_code) {
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Solver solver = Solver::open(options->input);
-        constexpr double infinity = std::numeric_limits<double>::infinity();
-        if (options->rays || options->seconds || options->until)
-            solver.set_plan(options->rays.value_or(std::numeric_limits<std::int64_t>::max()),
-                            options->seconds.value_or(infinity), options->until.value_or(0));
+        if (options->limits.any()) solver.set_plan(options->limits.resolved());
         const std::shared_ptr<const Scene> scene = solver.shared_scene();
         StatsFile stats(options->threads, options->stats, *scene);
         const Solution solution = run_to_end(std::move(solver), options->checkpoints);

@@ -18,7 +18,7 @@ struct ContactOptions {
     /// Most pieces of one face, in (0, 2^31); a face that needs more is cut into fewer.
     std::uint32_t most_pieces_per_face = 1u << 16;
     /// Most patches of the resulting scene; once there, further faces stay whole.
-    std::uint64_t most_patches = 50'000'000;
+    std::uint64_t max_patches = 50'000'000;
 };
 
 /// Cuts faces along the segments in which other faces meet them, so that no element lies on both sides of a wall or is

@@ -34,7 +34,7 @@ enum class ImportanceUse {
 };
 
 /// What decides where the mesh is refined. See refine_by_variance() and Oracle.
-enum class Refinement {
+enum class RefinementCriterion {
     variance,  ///< Elements are split where their children are expected to differ by more than their noise.
     power,     ///< Pairs of elements are split by the power that passes between them (Eq. 14, 15), as in the paper.
 };
@@ -51,7 +51,7 @@ struct Method {
     const char* source;             ///< Author and year.
     MakeIterationMethod* make;      ///< Null only of automatic_method.
     bool refines = false;           ///< Hierarchical: makes elements below the patches.
-    bool follows_variance = false;  ///< Refines between complete passes as Refinement says; others by power.
+    bool follows_variance = false;  ///< Can refine by RefinementCriterion::variance; others do by power.
     ImportanceUse importance = ImportanceUse::off;  ///< Taken as `off` where there is no view.
     const char* no_importance = nullptr;            ///< Why importance cannot steer it; null: it can.
     bool is_stochastic = true;                      ///< Its noise is measured, and falls with the rays.
@@ -75,56 +75,79 @@ const Method& default_method(bool has_views);
 inline constexpr std::int64_t most_rays_per_iteration = 100'000'000'000;
 inline constexpr int most_camera_rays = 1 << 22;
 
-/// What to compute and when to stop. The run ends at the first limit that is reached.
-struct SolveOptions {
-    Method method = automatic_method;
-    std::vector<WeightedView> views = {};  ///< What is looked at; empty: there is no importance.
+/// Where to stop: at the first limit that is reached. Each is unlimited unless it is given.
+struct Limits {
+    std::int64_t rays = std::numeric_limits<std::int64_t>::max();  ///< To trace in all; > 0.
+    double time = std::numeric_limits<double>::infinity();         ///< Spent on solving [s]; > 0.
+    double until = 0;  ///< Estimated relative error (IterationReport::error_estimate), in [0, 1); 0: none.
+};
 
-    std::int64_t rays = 20'000'000;  ///< Most rays to trace in all; > 0.
-    /// Most time to take [s]; > 0. An iteration that it cuts short is lost. Bits then depend on speed.
-    double seconds = std::numeric_limits<double>::infinity();
-    double until = 0;  ///< Stop at this estimated relative error (see IterationReport); 0: never. In [0, 1).
-    std::uint64_t seed = 1;
+/// Where and how far the mesh is refined, by methods that do (Method::refines).
+struct RefinementOptions {
+    /// Of methods that can (Method::follows_variance), unless ExperimentalOptions::one_bounce; all others refine by
+    /// power.
+    RefinementCriterion criterion = RefinementCriterion::variance;
+    /// No element smaller than this [m^2]; >= 0. 0: with a view, the area that a pixel shows of the element; of
+    /// elements that no view shows, and without a view, (5 mm)^2 or less, by the scene's size.
+    double min_area = 0;
+    std::size_t max_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
+};
+
+/// How the views steer the work. Whether they do is Method::importance.
+struct ImportanceOptions {
+    int camera_rays = 1 << 16;  ///< Rays that find V at first, per view; 1 to most_camera_rays. More follow later.
+    /// How much of its parent's importance drives an element's rays and refinement, and to which power importance
+    /// drives rays; in [0, 1]. 0 and 1: as in the paper.
+    double smoothing = 0.9, exponent = 0.75;
+};
+
+/// What the paper varies, and what is measured against it. The defaults are good ones; names, meanings and defaults may
+/// change with any version.
+struct ExperimentalOptions {
     PointSet points = PointSet::sobol;
 
-    /// True: each iteration is a pass of its own, which follows light from the emitters bounce by bounce until little
-    /// is left; passes are independent, and their mean is kept. False: the paper's, from darkness through warm_up
-    /// iterations, each of which is one bounce of the running mean; methods that keep every ray only begin with a pass.
-    bool complete_passes = true;
+    /// False: each iteration is a pass of its own, which follows light from the emitters bounce by bounce until little
+    /// is left; passes are independent, and their mean is kept. True: the paper's, from darkness through warm_up
+    /// iterations, each of which is one bounce of the running mean; methods that keep every ray do not begin with a
+    /// pass.
+    bool one_bounce = false;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Averaged iterations; 0: as many as the limits allow. >= 0.
     /// Rays of each iteration; 0: begins small and grows with the rays already averaged. At most
     /// most_rays_per_iteration.
     std::int64_t rays_per_iteration = 0;
 
-    /// Of methods that follow variance (Method::follows_variance), with complete passes; all others refine by power.
-    Refinement refinement = Refinement::variance;
-    bool shrinkage = true;  ///< With Refinement::variance, differences that are mostly noise are reduced (shrinkage.h).
-
-    /// Threshold of Eq. 14 and 15 once 20 million rays are averaged, relative to the reference power (see
-    /// reference_power); > 0. Method hr takes it as it is.
+    /// With RefinementCriterion::variance, differences that are mostly noise are reduced (docs/method.md).
+    bool shrinkage = true;
+    /// Threshold of Eq. 14 and 15 once 20 million rays are averaged, relative to the power that is seen
+    /// (without a view: emitted); > 0. Method hr takes it as it is.
     double epsilon = 4e-8;
     /// After N rays the threshold is in proportion to N^-decay, so that the mesh gets finer as the noise falls; in [0,
     /// 1]. At 0 it is the same for all iterations, as in the paper.
     double epsilon_decay = 0.75;
-    /// No element smaller than this [m^2]; >= 0. 0: with a view, the area that a pixel shows of the element; of
-    /// elements that no view shows, and without a view, see ElementFloor.
-    double min_area = 0;
-    std::size_t max_elements = std::size_t{1} << 26;  ///< Refinement ends there; at least the number of patches.
     /// How much what a new element inherits counts for it in later iterations, since it is too smooth; in [0, 1].
     /// At 1 all elements are averaged alike, as in the paper.
     double inherited_weight = 0.1;
     bool defer_refinement = false;  ///< No refinement before averaging begins ('dr').
 
-    bool separate_iterations = false;    ///< Importance and power in steps of their own ('si'), or combined ('ci').
-    bool importance_at_elements = true;  ///< Importance is kept by leaves ('hi'), or by patches.
+    bool separate_iterations = false;    ///< Importance and power in steps of their own ('si'), else combined ('ci').
+    bool importance_at_patches = false;  ///< Importance is kept by patches, else by leaves ('hi').
     bool total_importance = false;       ///< Eq. 9 in place of Eq. 10.
-    /// How importance drives rays, and the first of them the oracle too (see importance_weight); in [0, 1]. 0 and 1:
-    /// as in the paper.
-    double importance_smoothing = 0.9, importance_exponent = 0.75;
-    double alpha = 0.1;  ///< Share of the rays for importance, Eq. 11; in [0, 1].
-    double beta = 0.1;   ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
-    int camera_rays = 1 << 16;  ///< Rays that find V at first, per view; 1 to most_camera_rays. More follow later.
+    double alpha = 0.1;                  ///< Share of the rays for importance, Eq. 11; in [0, 1].
+    double beta = 0.1;  ///< Share of the power rays that follow power alone, so that nothing is missed; in [0, 1].
+};
+
+/// What to compute and when to stop. A setting has one name in the library, on the command line and in files:
+/// docs/design.md lists them.
+struct SolveOptions {
+    Method method = automatic_method;
+    std::vector<WeightedView> views = {};  ///< What is looked at; empty: there is no importance.
+    /// Of the whole run. An iteration that Limits::time cuts short is lost; bits then depend on speed.
+    Limits limits{.rays = 20'000'000};
+    std::uint64_t seed = 1;
+    RefinementOptions refinement = {};
+    ImportanceOptions importance = {};
+    ExperimentalOptions experimental = {};
 };
 
 /// Where a run stands after an iteration; counts since its start.

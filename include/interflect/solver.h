@@ -15,15 +15,6 @@ namespace interflect {
 
 class StateArchive;
 
-/// How far Solver::advance() goes: to the first of these.
-struct Limits {
-    std::int64_t rays =
-        std::numeric_limits<std::int64_t>::max();  ///< Beyond those so far; the last iteration is whole.
-    /// Time from now on [s]. No step of rays begins later, but one is always traced.
-    double seconds = std::numeric_limits<double>::infinity();
-    double error = 0;  ///< Estimated relative error (IterationReport::error_estimate).
-};
-
 /// Where a run stands.
 struct AdvanceReport {
     double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite as long as it is not known.
@@ -37,10 +28,10 @@ struct AdvanceReport {
 /// and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is merged with the running
 /// mean (Eq. 6).
 ///
-/// SolveOptions are the plan of the whole run: they alone decide how its iterations are sized, and where it ends.
-/// Limits only decide when advance() returns; the work that is then under way goes on with the next call. So many small
-/// calls, or saving and opening in between, give the same bits as one call, on any number of threads. Only
-/// SolveOptions::seconds makes iterations depend on how fast they are.
+/// SolveOptions are the plan of the whole run: they alone decide how its iterations are sized, and where it ends. The
+/// Limits of advance() only decide when it returns; the work that is then under way goes on with the next call. So many
+/// small calls, or saving and opening in between, give the same bits as one call, on any number of threads. Only
+/// Limits::time of the plan makes iterations depend on how fast they are.
 class Solver {
   public:
     /// @throws InputError listing every option out of range and every fault of the scene; for a view that defines no
@@ -56,6 +47,8 @@ class Solver {
 
     /// Goes on until a limit is reached, the plan is fulfilled, or Monitor::stop is set, which another thread or a
     /// signal handler may do. Rays that are asked for beyond a plan that is fulfilled are added to it.
+    /// @param limits  Rays and time count from now on. The last iteration is whole: `rays` may be exceeded. No step of
+    ///                rays begins after `time`, but one is always traced.
     AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
 
     /// Goes on with other views: what is known of the light is kept, importance is found anew.
@@ -66,8 +59,9 @@ class Solver {
     /// @throws InputError for a group that there is not, for a factor that is negative or not finite, and unless the
     /// method averages iterations (Method::follows_dimming).
     void set_exitance(const std::string& group, float factor);
-    /// Replaces the limits of the plan: rays in all, time in all [s], error.
-    void set_plan(std::int64_t rays, double seconds, double until);
+    /// Replaces SolveOptions::limits, which count from the beginning of the run.
+    /// @throws InputError for one out of range.
+    void set_plan(const Limits& limits);
 
     /// The light as far as it is known. Made when it is first asked for, in O(elements); the reference holds until the
     /// solver changes, a copy for ever.

@@ -8,7 +8,7 @@ import unittest
 
 from command import BAD_INPUT, COMMAND, DONE, FAILED, CommandTest
 
-FINE = ("--refinement", "power", "--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
+FINE = ("--refinement-criterion", "power", "--rays", "3M", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
 MIB = 1 << 20
 
 
@@ -75,7 +75,7 @@ class LimitedAddressSpace(CommandTest):
     def test_solves_whatever_is_asked_for(self):
         few = ("solve", "maze:2", "-o", "out.h5", "--rays", "100k", "--view", "room-0")
         for options in ((), ("--memory", "500M"), ("--memory", "64G"), ("--max-elements", "4G"), ("--method", "hwdrs")):
-            importance = ("--importance", "none") if "hwdrs" in options else ()
+            importance = ("--importance", "off") if "hwdrs" in options else ()
             self.assertIn("elements", self.under(2000 * MIB, *few, *options, *importance))
 
     def test_ends_refinement_before_the_limit(self):

@@ -64,9 +64,8 @@ class WrongUsage(CommandTest):
 
     def test_words(self):
         self.assert_wrong([*SOLVE, "--method", "guess"], "--method", "srr")
-        self.assert_wrong([*SOLVE, "--importance", "some"], "--importance", "none", "direct", "full")
-        self.assert_wrong([*SOLVE, "--iteration", "both"], "--iteration", "separate", "combined")
-        self.assert_wrong([*SOLVE, "--importance-storage", "disk"], "--importance-storage", "patch", "element")
+        self.assert_wrong([*SOLVE, "--importance", "some"], "--importance", "off", "direct", "full")
+        self.assert_wrong([*SOLVE, "--refinement-criterion", "taste"], "--refinement-criterion", "variance", "power")
         self.assert_wrong([*RENDER, "--show", "all"], "--show", "importance", "level", "mesh")
         self.assert_wrong([*SOLVE, "--points", "grid"], "--points", "sobol", "random")
         self.assert_wrong([*RENDER, "--shading", "phong"], "--shading", "flat", "smooth")

@@ -31,7 +31,7 @@ void write_small_solution(const fs::path& path) {
     scene.views = {{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}};
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("isrr");
-    options.rays = 1000;
+    options.limits.rays = 1000;
     options.views = {{scene.views[0]}};
     write_solution(path, scene, solve(scene, RayCaster(scene), options));
 }

@@ -36,8 +36,8 @@ class DamagedRun : public testing::Test {
         SolveOptions options{.method = find_method("srr")};
         options.method = find_method("ihsrr");
         options.views = {{{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}}};
-        options.rays = 20'000;
-        options.camera_rays = 1000;
+        options.limits.rays = 20'000;
+        options.importance.camera_rays = 1000;
         Solver solver(std::move(scene), options);
         solver.advance({.rays = 10'000});
         solver.save(path_);

@@ -66,8 +66,8 @@ std::vector<Case> cases() {
         SolveOptions options{.method = find_method("srr")};
         options.method = find_method(method);
         if (options.method.importance != ImportanceUse::off) options.views = {{into_the_room}};
-        options.rays = 60'000;
-        options.camera_rays = 2000;
+        options.limits.rays = 60'000;
+        options.importance.camera_rays = 2000;
         change(options);
         all.push_back({name, options});
     };
@@ -80,24 +80,24 @@ std::vector<Case> cases() {
     add("hr_with_importance", "hr", [](SolveOptions& o) {
         o.method.importance = ImportanceUse::full;
         o.views = {{into_the_room}};
-        o.epsilon = 1e-4;
+        o.experimental.epsilon = 1e-4;
     });
     add("random_walk_with_importance", "random-walk", [](SolveOptions& o) {
         o.method.importance = ImportanceUse::full;
         o.views = {{into_the_room}};
     });
-    add("ihsrr_si", "ihsrr", [](SolveOptions& o) { o.separate_iterations = true; });
-    add("ihsrr_by_power", "ihsrr", [](SolveOptions& o) { o.refinement = Refinement::power; });
+    add("ihsrr_si", "ihsrr", [](SolveOptions& o) { o.experimental.separate_iterations = true; });
+    add("ihsrr_by_power", "ihsrr", [](SolveOptions& o) { o.refinement.criterion = RefinementCriterion::power; });
     add("ihsrr_one_bounce", "ihsrr", [](SolveOptions& o) {
-        o.complete_passes = false;
-        o.warm_up = 1;
-        o.rays_per_iteration = 10'000;
+        o.experimental.one_bounce = true;
+        o.experimental.warm_up = 1;
+        o.experimental.rays_per_iteration = 10'000;
     });
     add("ihsrr_one_bounce_si", "ihsrr", [](SolveOptions& o) {
-        o.complete_passes = false;
-        o.separate_iterations = true;
+        o.experimental.one_bounce = true;
+        o.experimental.separate_iterations = true;
     });
-    add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.complete_passes = false; });
+    add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.experimental.one_bounce = true; });
     const std::size_t without_lights = all.size();
     for (std::size_t i = 0; i < without_lights; ++i)
         if (all[i].options.method.separates_groups && all[i].options.method.takes_luminaires)
@@ -138,7 +138,7 @@ void expect_same(const Solution& s, const Solution& expected) {
 
 TEST_P(SavedRun, HasTheSameBitsInManyCalls) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
-    for (const Limits& limits : {Limits{.rays = 1}, Limits{.seconds = 0}}) {
+    for (const Limits& limits : {Limits{.rays = 1}, Limits{.time = 0}}) {
         Solver solver(scene, GetParam().options);
         int calls = 1;
         while (!solver.advance(limits).is_finished) {
@@ -153,7 +153,7 @@ TEST_P(SavedRun, HasTheSameBitsInManyCalls) {
 TEST_P(SavedRun, HasTheSameBitsWhenSavedAndOpenedAfterEveryStep) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
     Solver solver(scene, GetParam().options);
-    while (!solver.advance({.seconds = 0}).is_finished) {
+    while (!solver.advance({.time = 0}).is_finished) {
         solver.save(file);
         solver = Solver::open(file);
     }
@@ -207,8 +207,8 @@ Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed 
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {{into_the_room}};
-    options.rays = 200'000;
-    options.camera_rays = 2000;
+    options.limits.rays = 200'000;
+    options.importance.camera_rays = 2000;
     options.seed = seed;
     Solver solver(open_room(), options);
     solver.advance({});
@@ -251,7 +251,7 @@ TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
 TEST(ChangeOfViews, StaysUnbiased) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
-    options.rays = 20'000;
+    options.limits.rays = 20'000;
     const View views[] = {{"a", {0.3f, 0.4f, 0.5f}, {0.9f, 1.9f, 2.9f}}, {"b", {0.3f, 1.4f, 2.5f}, {0.9f, 0.1f, 0.1f}}};
     const Scene scene = closed_box({1, 2, 3}, 3, {{"wall", Rgb(0.6f), Rgb(2)}});
     double sum = 0, squares = 0;
@@ -280,10 +280,10 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
         Solver once = solver_of_a_view(method), often = solver_of_a_view(method);
         for (Solver* solver : {&once, &often}) {
             solver->set_views({{turned(25)}});
-            solver->set_plan(300'000, std::numeric_limits<double>::infinity(), 0);
+            solver->set_plan({.rays = 300'000});
         }
         once.advance({});
-        while (!often.advance({.seconds = 0}).is_finished) {
+        while (!often.advance({.time = 0}).is_finished) {
             often.save(folder.path() / "run.h5");
             often = Solver::open(folder.path() / "run.h5");
         }
@@ -293,15 +293,15 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
 
 /// A run with few rays, a step at a time, whose views change after so many steps. It is saved and opened at each step
 /// from then on where a file is given. @param grew  Whether the mesh grew in the pass that was under way at the change.
-Solution changed_after_steps(int steps, Refinement refinement, const fs::path& file, bool& grew) {
+Solution changed_after_steps(int steps, RefinementCriterion criterion, const fs::path& file, bool& grew) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
     options.views = {{into_the_room}};
-    options.refinement = refinement;
-    options.rays = 50'000;
-    options.camera_rays = 1000;
+    options.refinement.criterion = criterion;
+    options.limits.rays = 50'000;
+    options.importance.camera_rays = 1000;
     Solver solver(open_room(), options);
-    for (int step = 0; step < steps; ++step) solver.advance({.seconds = 0});
+    for (int step = 0; step < steps; ++step) solver.advance({.time = 0});
     const auto elements = [&] { return solver.solution().forest->size(); };
     const std::uint32_t before = elements();
     solver.set_views({{turned(25)}});
@@ -311,7 +311,7 @@ Solution changed_after_steps(int steps, Refinement refinement, const fs::path& f
             solver.save(file);
             solver = Solver::open(file);
         }
-        is_finished = solver.advance({.seconds = 0}).is_finished;
+        is_finished = solver.advance({.time = 0}).is_finished;
         if (step == 0) grew = elements() > before;
     }
     return solver.solution();
@@ -321,12 +321,12 @@ Solution changed_after_steps(int steps, Refinement refinement, const fs::path& f
 // grown since.
 TEST(ChangeOfViews, HasTheSameBitsWhenSavedInTheMiddleOfAPass) {
     const TemporaryFolder folder;
-    for (const Refinement refinement : {Refinement::variance, Refinement::power}) {
+    for (const RefinementCriterion criterion : {RefinementCriterion::variance, RefinementCriterion::power}) {
         int times_grown = 0;
         for (int steps = 30; steps < 80; steps += 7) {
             bool grew = false;
-            const Solution expected = changed_after_steps(steps, refinement, {}, grew);
-            expect_same(changed_after_steps(steps, refinement, folder.path() / "run.h5", grew), expected);
+            const Solution expected = changed_after_steps(steps, criterion, {}, grew);
+            expect_same(changed_after_steps(steps, criterion, folder.path() / "run.h5", grew), expected);
             times_grown += grew;
         }
         EXPECT_GT(times_grown, 0) << "else the test would notice little";
@@ -346,7 +346,7 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
     const TemporaryFolder folder;
     const fs::path run = folder.path() / "run.h5", result = folder.path() / "result.h5";
     SolveOptions options{.method = find_method("hsrr")};
-    options.rays = 60'000;
+    options.limits.rays = 60'000;
     Solver solver(open_room_with_lights(), options);
     solver.advance({.rays = 20'000});
     solver.set_exitance("daylight", 0.25f);
@@ -371,7 +371,7 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
 TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
-    options.rays = 50'000;
+    options.limits.rays = 50'000;
     Solver solver(open_room(), options);
     EXPECT_TRUE(solver.advance({}).is_finished);
     const AdvanceReport report = solver.advance({.rays = 200'000});
@@ -382,9 +382,9 @@ TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
 TEST(Solver, EndsAtTheErrorThatIsAskedFor) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
-    options.rays = 10'000'000;
+    options.limits.rays = 10'000'000;
     Solver solver(open_room(), options);
-    const AdvanceReport report = solver.advance({.error = 0.3});
+    const AdvanceReport report = solver.advance({.until = 0.3});
     EXPECT_LE(report.error, 0.3);
     EXPECT_LT(report.rays, 10'000'000);
     EXPECT_FALSE(report.is_finished);
@@ -404,7 +404,7 @@ TEST(Solver, OpensOnlyFilesWithTheStateOfARun) {
     const fs::path file = folder.path() / "result.h5";
     const Scene scene = open_room();
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 1000;
+    options.limits.rays = 1000;
     write_solution(file, scene, solve(scene, RayCaster(scene), options));
     try {
         Solver::open(file);

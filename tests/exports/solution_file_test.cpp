@@ -42,7 +42,7 @@ SolvedScene example() {
                    {"corner", {1, 1, 1}, {0, 0, 0}, {0, 0, 1}, 45}};
 
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 10'000;
+    options.limits.rays = 10'000;
     options.seed = 0xfedcba9876543210;
     solved.solution = solve(scene, RayCaster(scene), options);
     return solved;
@@ -54,8 +54,8 @@ SolvedScene refined_example() {
     SolveOptions options = solved.solution.options;
     options.method = find_method("ihsrr");
     options.views = {{solved.scene.views[0]}};
-    options.epsilon = 1e-3;
-    options.epsilon_decay = 0;
+    options.experimental.epsilon = 1e-3;
+    options.experimental.epsilon_decay = 0;
     solved.solution = solve(solved.scene, RayCaster(solved.scene), options);
     return solved;
 }
@@ -190,7 +190,7 @@ TEST_F(SolutionFile, ReadsWhatWasWritten) {
         solved.solution.interrupted = interrupted;
         write_solution(path_, solved.scene, solved.solution);
         expect_equal(read_solution(path_), solved);
-        EXPECT_EQ(read_solution(path_).solution.options.rays, 10'000);
+        EXPECT_EQ(read_solution(path_).solution.options.limits.rays, 10'000);
     }
 }
 
@@ -242,7 +242,7 @@ TEST_F(SolutionFile, OpensVersion3) {
     expect_equal(read, solved);
     EXPECT_EQ(read.format_version, 3);
     EXPECT_EQ(read.interflect_version, "");
-    EXPECT_EQ(read.solution.options.rays, 10'000) << "as many as were traced";
+    EXPECT_EQ(read.solution.options.limits.rays, 10'000) << "as many as were traced";
 }
 
 /// A room of six two-sided walls and a lamp that Interflect 0.1.0 solved when version 3 was the newest.
@@ -345,7 +345,8 @@ TEST_F(SolutionFile, IsNotWrittenWhenItCouldNotBeRead) {
                 HasSubstr("emitted power"));
     EXPECT_THAT(refused_with([](Scene& s, Solution&) { s.materials[0].reflectance.x = 1; }), HasSubstr("reflectance"));
     EXPECT_THAT(refused_with([](Scene& s, Solution&) { s.views[0].fov = std::nanf(""); }), HasSubstr("view 'door'"));
-    EXPECT_THAT(refused_with([](Scene&, Solution& s) { s.options.epsilon = std::nan(""); }), HasSubstr("'epsilon'"));
+    EXPECT_THAT(refused_with([](Scene&, Solution& s) { s.options.experimental.epsilon = std::nan(""); }),
+                HasSubstr("'epsilon'"));
     EXPECT_EQ(refusal(path_, good), "written");
 }
 

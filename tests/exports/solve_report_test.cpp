@@ -13,27 +13,27 @@ SolveOptions unusual_options() {
     o.method = find_method("ihsrr");
     o.method.importance = ImportanceUse::direct;
     o.views = {{{"door", {0.1, 0.2, 0.3}, {1, 2, 3}, {0, 1, 0}, 60}, 2, 1.5f, 480}};
-    o.rays = 12345;
-    o.seconds = 2.5;
-    o.until = 0.02;
-    o.points = PointSet::random;
-    o.complete_passes = false;
-    o.warm_up = 3;
-    o.iterations = 4;
-    o.rays_per_iteration = 500;
-    o.refinement = Refinement::power;
-    o.shrinkage = false;
-    o.epsilon = 1e-3;
-    o.epsilon_decay = 0.5;
-    o.min_area = 1e-4;
-    o.inherited_weight = 0.25;
-    o.defer_refinement = o.separate_iterations = o.total_importance = true;
-    o.importance_at_elements = false;
-    o.importance_smoothing = 0.3;
-    o.importance_exponent = 0.6;
-    o.alpha = 0.2;
-    o.beta = 0.4;
-    o.camera_rays = 99;
+    o.limits.rays = 12345;
+    o.limits.time = 2.5;
+    o.limits.until = 0.02;
+    o.experimental.points = PointSet::random;
+    o.experimental.one_bounce = true;
+    o.experimental.warm_up = 3;
+    o.experimental.iterations = 4;
+    o.experimental.rays_per_iteration = 500;
+    o.refinement.criterion = RefinementCriterion::power;
+    o.experimental.shrinkage = false;
+    o.experimental.epsilon = 1e-3;
+    o.experimental.epsilon_decay = 0.5;
+    o.refinement.min_area = 1e-4;
+    o.experimental.inherited_weight = 0.25;
+    o.experimental.defer_refinement = o.experimental.separate_iterations = o.experimental.total_importance = true;
+    o.experimental.importance_at_patches = true;
+    o.importance.smoothing = 0.3;
+    o.importance.exponent = 0.6;
+    o.experimental.alpha = 0.2;
+    o.experimental.beta = 0.4;
+    o.importance.camera_rays = 99;
     return o;
 }
 
@@ -45,29 +45,29 @@ TEST(SolveReport, HasEveryOption) {
     read_options(json, read);
     EXPECT_EQ(json_of(read), json);
     const SolveOptions o = unusual_options();
-    EXPECT_EQ(read.rays, o.rays);
-    EXPECT_EQ(read.seconds, o.seconds);
-    EXPECT_EQ(read.until, o.until);
-    EXPECT_EQ(read.points, o.points);
-    EXPECT_EQ(read.complete_passes, o.complete_passes);
-    EXPECT_EQ(read.warm_up, o.warm_up);
-    EXPECT_EQ(read.iterations, o.iterations);
-    EXPECT_EQ(read.rays_per_iteration, o.rays_per_iteration);
-    EXPECT_EQ(read.refinement, o.refinement);
-    EXPECT_EQ(read.shrinkage, o.shrinkage);
-    EXPECT_EQ(read.epsilon, o.epsilon);
-    EXPECT_EQ(read.epsilon_decay, o.epsilon_decay);
-    EXPECT_EQ(read.min_area, o.min_area);
-    EXPECT_EQ(read.inherited_weight, o.inherited_weight);
-    EXPECT_EQ(read.defer_refinement, o.defer_refinement);
-    EXPECT_EQ(read.separate_iterations, o.separate_iterations);
-    EXPECT_EQ(read.importance_at_elements, o.importance_at_elements);
-    EXPECT_EQ(read.total_importance, o.total_importance);
-    EXPECT_EQ(read.importance_smoothing, o.importance_smoothing);
-    EXPECT_EQ(read.importance_exponent, o.importance_exponent);
-    EXPECT_EQ(read.alpha, o.alpha);
-    EXPECT_EQ(read.beta, o.beta);
-    EXPECT_EQ(read.camera_rays, o.camera_rays);
+    EXPECT_EQ(read.limits.rays, o.limits.rays);
+    EXPECT_EQ(read.limits.time, o.limits.time);
+    EXPECT_EQ(read.limits.until, o.limits.until);
+    EXPECT_EQ(read.experimental.points, o.experimental.points);
+    EXPECT_EQ(read.experimental.one_bounce, o.experimental.one_bounce);
+    EXPECT_EQ(read.experimental.warm_up, o.experimental.warm_up);
+    EXPECT_EQ(read.experimental.iterations, o.experimental.iterations);
+    EXPECT_EQ(read.experimental.rays_per_iteration, o.experimental.rays_per_iteration);
+    EXPECT_EQ(read.refinement.criterion, o.refinement.criterion);
+    EXPECT_EQ(read.experimental.shrinkage, o.experimental.shrinkage);
+    EXPECT_EQ(read.experimental.epsilon, o.experimental.epsilon);
+    EXPECT_EQ(read.experimental.epsilon_decay, o.experimental.epsilon_decay);
+    EXPECT_EQ(read.refinement.min_area, o.refinement.min_area);
+    EXPECT_EQ(read.experimental.inherited_weight, o.experimental.inherited_weight);
+    EXPECT_EQ(read.experimental.defer_refinement, o.experimental.defer_refinement);
+    EXPECT_EQ(read.experimental.separate_iterations, o.experimental.separate_iterations);
+    EXPECT_EQ(read.experimental.importance_at_patches, o.experimental.importance_at_patches);
+    EXPECT_EQ(read.experimental.total_importance, o.experimental.total_importance);
+    EXPECT_EQ(read.importance.smoothing, o.importance.smoothing);
+    EXPECT_EQ(read.importance.exponent, o.importance.exponent);
+    EXPECT_EQ(read.experimental.alpha, o.experimental.alpha);
+    EXPECT_EQ(read.experimental.beta, o.experimental.beta);
+    EXPECT_EQ(read.importance.camera_rays, o.importance.camera_rays);
     EXPECT_EQ(read.method.importance, o.method.importance);
     ASSERT_EQ(read.views.size(), 1u);
     EXPECT_EQ(read.views[0].view.eye, o.views[0].view.eye);
@@ -76,14 +76,14 @@ TEST(SolveReport, HasEveryOption) {
 
 TEST(SolveReport, HasNullForLimitsThatWereNotGiven) {
     SolveOptions o{.method = find_method("srr")};
-    o.rays = std::numeric_limits<std::int64_t>::max();
+    o.limits.rays = std::numeric_limits<std::int64_t>::max();
     const Json json = json_of(o);
-    for (const char* limit : {"rays", "seconds", "until"}) EXPECT_TRUE(json.at(limit).is_null()) << limit;
+    for (const char* limit : {"rays", "time", "until"}) EXPECT_TRUE(json.at(limit).is_null()) << limit;
     SolveOptions read = unusual_options();
     read_options(json, read);
-    EXPECT_EQ(read.rays, o.rays);
-    EXPECT_EQ(read.seconds, o.seconds);
-    EXPECT_EQ(read.until, o.until);
+    EXPECT_EQ(read.limits.rays, o.limits.rays);
+    EXPECT_EQ(read.limits.time, o.limits.time);
+    EXPECT_EQ(read.limits.until, o.limits.until);
 }
 
 TEST(SolveReport, HasTheIterationWithoutItsTime) {
@@ -102,6 +102,25 @@ TEST(SolveReport, HasNullForErrorsThatAreNotKnown) {
     const Json json = json_of(IterationReport());
     EXPECT_TRUE(json.at("noise_estimate").is_null());
     EXPECT_EQ(report_of(json).noise_estimate, std::numeric_limits<double>::infinity());
+}
+
+TEST(SolveReport, ReadsOptionsUnderTheirFormerNames) {
+    Json json = json_of(unusual_options());
+    for (const char* name : {"time", "refinement_criterion", "one_bounce", "separate_iterations",
+                             "importance_at_patches", "total_importance"})
+        json.erase(name);
+    json.update({{"seconds", 2.5},
+                 {"refinement", "power"},
+                 {"complete_passes", false},
+                 {"iteration", "separate"},
+                 {"importance_storage", "patch"},
+                 {"importance_sampling", "total"}});
+    SolveOptions read{.method = find_method("ihsrr")};
+    read_options(json, read);
+    EXPECT_EQ(json_of(read), json_of(unusual_options()));
+    json["importance"] = "none";
+    read_options(json, read);
+    EXPECT_EQ(read.method.importance, ImportanceUse::off);
 }
 
 TEST(SolveReport, RefusesAnUnknownChoice) {

@@ -19,7 +19,7 @@ using namespace testing_support;
 SolveOptions refining() {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
-    options.rays = 200'000;
+    options.limits.rays = 200'000;
     return options;
 }
 

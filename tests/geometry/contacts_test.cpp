@@ -281,7 +281,7 @@ TEST(Contacts, LimitsAreReported) {
     const Scene few = cut_at_contacts(scene, {.most_pieces_per_face = 7});
     expect_same_surfaces(scene, few);
     EXPECT_EQ(few.warnings.entries().size(), 1u);
-    const Scene whole = cut_at_contacts(scene, {.most_patches = scene.patches.size() + 3});
+    const Scene whole = cut_at_contacts(scene, {.max_patches = scene.patches.size() + 3});
     EXPECT_EQ(whole.patches.size(), scene.patches.size());
     EXPECT_EQ(whole.warnings.entries().size(), 1u);
     EXPECT_THAT(cut_at_contacts(scene).warnings.entries(), IsEmpty());

@@ -22,7 +22,7 @@ const Material wall{"wall", Rgb(rho), Rgb(exitance)};
 
 SolveOptions furnace_options(std::uint64_t seed) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 200'000;
+    options.limits.rays = 200'000;
     options.seed = seed;
     return options;
 }
@@ -116,7 +116,7 @@ TEST(DoubledWalls, OfAFurnaceEmitOnceWithLinks) {
     double_walls(scene, Copy::in_quarters);
     SolveOptions options = furnace_options(1);
     options.method = find_method("hr");
-    options.epsilon = 1e-3;
+    options.experimental.epsilon = 1e-3;
     const Solution solution = solve(scene, RayCaster(scene), options);
     EXPECT_NEAR(emitted(solution), exitance * 22, 1e-4);
     EXPECT_NEAR(radiosity(solution, 0), exitance / (1 - rho), 0.1 * exitance / (1 - rho));

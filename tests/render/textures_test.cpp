@@ -139,7 +139,7 @@ TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
     const RayCaster ray_caster(scene);
     const View view = scene.views[0];
     SolveOptions options{.method = find_method("hsrr")};
-    options.rays = 4'000'000;
+    options.limits.rays = 4'000'000;
     const Solution solution = solve(scene, ray_caster, options);
     const RenderOptions size{.width = 96, .height = 64, .samples = 64};
     const Image reference = trace_paths(scene, ray_caster, view, {.width = 96, .height = 64, .samples = 128}).image;

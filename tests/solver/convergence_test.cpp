@@ -31,8 +31,8 @@ class Convergence : public testing::Test {
         Errors mean;
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
             SolveOptions options{.method = find_method("srr")};
-            options.points = points;
-            options.rays = rays;
+            options.experimental.points = points;
+            options.limits.rays = rays;
             options.seed = seed;
             const Solution solution = solve(scene_, ray_caster_, options);
             const double error = relative_error(scene_, solution.irradiance, exact_);

@@ -122,7 +122,7 @@ TEST_P(DenseSolutionOfMethod, IsTheMeanInAColourfulBox) {
     Scene scene = colourful_box();
     scene.materials[3].reflectance = Rgb(0.02f);  // what is black receives as a whole, on whatever mesh
     const Sample sample(scene, 20, [](std::uint64_t seed) { return on_a_fixed_mesh(GetParam(), seed); });
-    const bool divided = GetParam().options.method.refines && !GetParam().options.defer_refinement;
+    const bool divided = GetParam().options.method.refines && !GetParam().options.experimental.defer_refinement;
     for (const Solution& s : sample.solutions()) ASSERT_EQ(s.forest->size(), divided ? 5u * 54 : 54u);
     const Scene leaves = scene_of_leaves(scene, *sample.solutions()[0].forest);
     const std::vector<RgbD> exact = dense_irradiance(leaves, exact_form_factors(leaves));

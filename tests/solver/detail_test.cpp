@@ -251,7 +251,7 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
     const IterationPlan plan{100, false};
     for (const float trust : {0.0f, 0.1f, 1.0f}) {
         Setting s(1, 1);
-        s.options.inherited_weight = trust;
+        s.options.experimental.inherited_weight = trust;
         std::vector<Rgb>& mean = s.state.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));
         update_history(s.state, plan,
@@ -306,11 +306,11 @@ TEST(VarianceRefinement, KeepsItsLimitsAndLeavesWhatIsMeasuredTooLittle) {
     Setting s(4, 1);
     const auto edge = [](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.3f : -0.3f; };
     for (int k = 0; k < 4; ++k) s.iterate(1000, {1, 1}, 10, edge);
-    s.options.max_elements = s.state.forest->size() + 21;
+    s.options.refinement.max_elements = s.state.forest->size() + 21;
     const std::uint32_t before = s.state.forest->size();
     refine_by_variance(s.state);
     EXPECT_EQ(s.state.forest->size(), before + 20);
-    s.options.max_elements = 1 << 20;
+    s.options.refinement.max_elements = 1 << 20;
     for (float& h : s.state.history) h = 0;
     const std::uint32_t then = s.state.forest->size();
     refine_by_variance(s.state);

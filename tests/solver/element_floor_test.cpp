@@ -61,7 +61,7 @@ TEST(ElementFloor, WithoutAViewIsThatOfUnseenElements) {
 TEST(ElementFloor, GivenByTheCallerHoldsEverywhere) {
     SolveOptions options{.method = find_method("srr")};
     options.views = {from({0, 0, 0})};
-    options.min_area = 0.25;
+    options.refinement.min_area = 0.25;
     const ElementFloor floor(room(), options);
     EXPECT_EQ(floor.unseen(), 0.25f);
     EXPECT_EQ(floor.min_area({0, 1, 0}, {0, -1, 0}, true), 0.25f);

@@ -43,7 +43,7 @@ SolveOptions options_for(const char* method, bool shows_lamp, std::int64_t rays,
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {view(shows_lamp)};
-    options.rays = rays;
+    options.limits.rays = rays;
     options.seed = seed;
     return options;
 }
@@ -132,8 +132,8 @@ TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
     options.views = {{View{"black", {2, 1.5, 1.2}, {0, 1.5, 1.2}, {0, 0, 1}, 30}}};
-    options.rays = 100'000;
-    options.until = 0.99;
+    options.limits.rays = 100'000;
+    options.limits.until = 0.99;
     const RayCaster ray_caster(scene);
     const Solution s = solve(scene, ray_caster, options);
     for (const IterationReport& report : s.iterations) {
@@ -141,11 +141,11 @@ TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
         EXPECT_TRUE(std::isinf(report.noise_estimate));
     }
     // Light may run out before the rays do: it is absorbed.
-    EXPECT_GT(s.iterations.back().rays, options.rays / 10 * 9) << "no error is small enough where none is known";
+    EXPECT_GT(s.iterations.back().rays, options.limits.rays / 10 * 9) << "no error is small enough where none is known";
     scene.materials[0].reflectance = Rgb(0.5f);
     const Solution grey = solve(scene, RayCaster(scene), options);
     EXPECT_LT(grey.iterations.back().error_estimate, 0.99);
-    EXPECT_LT(grey.iterations.back().rays, options.rays);
+    EXPECT_LT(grey.iterations.back().rays, options.limits.rays);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using namespace testing_support;
 SolveOptions options_of(const char* method) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
-    options.rays = 80'000;
+    options.limits.rays = 80'000;
     options.views = {{into_the_corner}};
     return options;
 }
@@ -50,9 +50,9 @@ TEST(Importance, ChangesNothingWithoutAView) {
 TEST(AlphaZeroAndBetaOne, ShootEveryRayByPowerAlone) {
     const Scene scene = colourful_box();
     SolveOptions by_importance = options_of("isrr"), by_power = options_of("srr");
-    by_importance.complete_passes = by_power.complete_passes = false;
-    by_importance.alpha = 0;
-    by_importance.beta = 1;
+    by_importance.experimental.one_bounce = by_power.experimental.one_bounce = true;
+    by_importance.experimental.alpha = 0;
+    by_importance.experimental.beta = 1;
     const std::vector<Rgb> driven = solve_all(scene, by_importance).irradiance;
     const std::vector<Rgb> plain = solve_all(scene, by_power).irradiance;
     // The weights are the same up to rounding, which may move a ray to the next patch once in a while.
@@ -62,8 +62,8 @@ TEST(AlphaZeroAndBetaOne, ShootEveryRayByPowerAlone) {
 TEST(AlphaZero, LeavesImportanceAsThePreparationFoundIt) {
     const Scene scene = colourful_box();
     SolveOptions options = options_of("isrr");
-    options.separate_iterations = true;
-    options.alpha = 0;
+    options.experimental.separate_iterations = true;
+    options.experimental.alpha = 0;
     const Solution start = solve_until(0, scene, options), end = solve_all(scene, options);
     EXPECT_EQ(end.indirect_importance, start.indirect_importance);
     EXPECT_EQ(end.iterations.back().importance_rays, start.iterations.back().importance_rays);
@@ -73,8 +73,8 @@ TEST(AlphaZero, LeavesImportanceAsThePreparationFoundIt) {
 TEST(AlphaOne, LeavesLightAsThePreparationFoundIt) {
     const Scene scene = colourful_box();
     SolveOptions options = options_of("isrr");
-    options.separate_iterations = true;
-    options.alpha = 1;
+    options.experimental.separate_iterations = true;
+    options.experimental.alpha = 1;
     const Solution start = solve_until(0, scene, options), end = solve_all(scene, options);
     EXPECT_EQ(end.irradiance, start.irradiance);
     EXPECT_EQ(end.iterations.back().power_rays, start.iterations.back().power_rays);
@@ -85,9 +85,9 @@ TEST(AlphaOne, LeavesLightAsThePreparationFoundIt) {
 Solution two_iterations_trusting(double inherited_weight) {
     SolveOptions options = options_of("hsrr");
     options.views.clear();
-    options.rays_per_iteration = 1000;
-    options.complete_passes = false;
-    options.inherited_weight = inherited_weight;
+    options.experimental.rays_per_iteration = 1000;
+    options.experimental.one_bounce = true;
+    options.experimental.inherited_weight = inherited_weight;
     divide_everything(options, 0.03);  // m^2; the walls have 2, 3 and 6: three levels
     return solve_until(2, furnace(1), options);
 }
@@ -103,8 +103,8 @@ TEST(InheritedTrust, NeitherLosesNorMakesLight) {
 TEST(OneIteration, FromDarknessIsOneBounce) {
     for (const char* method : {"srr", "hsrr"}) {
         SolveOptions options = options_of(method);
-        options.complete_passes = false;
-        options.iterations = 1;
+        options.experimental.one_bounce = true;
+        options.experimental.iterations = 1;
         const Solution s = solve_all(furnace(1), options);
         ASSERT_EQ(s.iterations.size(), 1u);
         EXPECT_NEAR(s.iterations[0].total_power.x / s.emitted_power.x, 1.5, 1e-5) << "M + rho M";
@@ -113,9 +113,9 @@ TEST(OneIteration, FromDarknessIsOneBounce) {
 
 TEST(WarmUp, ThatNeverEndsKeepsOneMoreBounceEachTime) {
     SolveOptions options = options_of("hsrr");
-    options.complete_passes = false;
-    options.warm_up = 100;
-    options.rays_per_iteration = 20'000;
+    options.experimental.one_bounce = true;
+    options.experimental.warm_up = 100;
+    options.experimental.rays_per_iteration = 20'000;
     const Solution s = solve_all(furnace(1), options);
     ASSERT_EQ(s.iterations.size(), 4u);
     EXPECT_NEAR(s.iterations.back().total_power.x / s.emitted_power.x, 1 + 0.5 + 0.25 + 0.125 + 0.0625, 1e-5);

@@ -44,10 +44,10 @@ double expected_irradiance(double rho) {
 
 SolveOptions paper_options(std::uint64_t seed) {
     SolveOptions options{.method = find_method("srr")};
-    options.complete_passes = false;
-    options.warm_up = warm_up;
-    options.iterations = averaged;
-    options.rays_per_iteration = 10'000;
+    options.experimental.one_bounce = true;
+    options.experimental.warm_up = warm_up;
+    options.experimental.iterations = averaged;
+    options.experimental.rays_per_iteration = 10'000;
     options.seed = seed;
     return options;
 }
@@ -108,7 +108,7 @@ TEST_P(Furnace, HasTheSameAnswerWithTheDefaultStart) {
     const double rho = GetParam(), limit = exitance / (1 - rho);
     const Runs sample(furnace(rho), [](std::uint64_t seed) {
         SolveOptions options{.method = find_method("srr")};
-        options.rays = 100'000;
+        options.limits.rays = 100'000;
         options.seed = seed;
         return options;
     });
@@ -125,9 +125,9 @@ TEST(Furnace, WeighsEveryIterationByItsRays) {
     // Without noise in the mean, the power after each iteration tells its weight: tau = N_m / (N_1 + ... + N_m).
     constexpr double rho = 0.5;
     SolveOptions options{.method = find_method("srr")};
-    options.complete_passes = false;
-    options.warm_up = 2;
-    options.rays = 1'000'000;
+    options.experimental.one_bounce = true;
+    options.experimental.warm_up = 2;
+    options.limits.rays = 1'000'000;
     const Solution solution = solve(furnace(rho), RayCaster(furnace(rho)), options);
     const double surface = solution.emitted_power.x / exitance;
     const auto& iterations = solution.iterations;
@@ -167,10 +167,10 @@ TEST_P(DeepFurnace, HasTheSameIrradianceEverywhere) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         SolveOptions options = GetParam().options;
         options.views = {{into_the_corner}};
-        options.complete_passes = false;
-        options.warm_up = warm_up;
-        options.iterations = averaged;
-        options.rays_per_iteration = 10'000;
+        options.experimental.one_bounce = true;
+        options.experimental.warm_up = warm_up;
+        options.experimental.iterations = averaged;
+        options.experimental.rays_per_iteration = 10'000;
         options.seed = seed;
         divide_everything(options, 0.03f);  // m^2; the walls have 2, 3 and 6
         const Solution solution = solve(scene, ray_caster, options);
@@ -211,7 +211,7 @@ TEST_P(ClosedRoom, HasTheMeanIrradianceOfItsPowerBalance) {
     add_rectangle(scene, {1, 1, 0}, {0, 1, 0}, {0.25f, 0.25f, 1.5f}, 0, 2, 2, true);  // a leaning board
 
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 200'000;
+    options.limits.rays = 200'000;
     const Solution solution = solve(scene, RayCaster(scene), options);
     double surface = 0;
     for (const Patch& patch : scene.patches) surface += patch_area(scene, patch);

@@ -29,7 +29,7 @@ SolveOptions options_for(const char* method, std::uint64_t seed) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {{into_the_corner}};
-    options.rays = 200'000;
+    options.limits.rays = 200'000;
     options.seed = seed;
     return options;
 }
@@ -71,7 +71,8 @@ TEST(Importance, InAClosedGreyBoxIsViewImportanceOverOneMinusRho) {
     for (const float rho : {0.0f, 0.5f, 0.8f}) {
         const Scene scene = closed_box({1, 2, 3}, 3, {{"grey", Rgb(rho), Rgb(1)}});
         SolveOptions options = options_for("isrr", 1);
-        options.separate_iterations = true;  // then all rays of an importance step carry the same importance
+        options.experimental.separate_iterations =
+            true;  // then all rays of an importance step carry the same importance
         const Solution s = solve(scene, RayCaster(scene), options);
         const double indirect = rho / (1 - rho);
         EXPECT_NEAR(sum_over_leaves(s, s.indirect_importance), indirect, 0.02 * indirect) << "rho " << rho;
@@ -93,9 +94,9 @@ TEST_P(Duality, LightAndImportanceMeasureTheSame) {
     double mean = 0;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
         SolveOptions options = on_a_fixed_mesh(GetParam(), seed);
-        options.rays_per_iteration = 12'000;
-        options.alpha = 0.5;
-        if (!options.importance_at_elements) options.min_area = left_whole;
+        options.experimental.rays_per_iteration = 12'000;
+        options.experimental.alpha = 0.5;
+        if (options.experimental.importance_at_patches) options.refinement.min_area = left_whole;
         const Solution s = solve(scene, ray_caster, options);
         ASSERT_EQ(s.non_finite, 0);
         const double light = measured_by_light(scene, s);

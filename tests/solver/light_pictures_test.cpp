@@ -20,12 +20,13 @@ using namespace testing_support;
 /// the picture agree with path tracing.
 struct Hierarchy {
     const char* method;
-    Refinement refinement;
+    RefinementCriterion criterion;
 };
 class LightSourcesOnTheHierarchy : public testing::TestWithParam<Hierarchy> {};
 INSTANTIATE_TEST_SUITE_P(All, LightSourcesOnTheHierarchy,
-                         testing::Values(Hierarchy{"ihsrr", Refinement::variance},
-                                         Hierarchy{"ihsrr", Refinement::power}, Hierarchy{"hwdrs", Refinement::power}));
+                         testing::Values(Hierarchy{"ihsrr", RefinementCriterion::variance},
+                                         Hierarchy{"ihsrr", RefinementCriterion::power},
+                                         Hierarchy{"hwdrs", RefinementCriterion::power}));
 
 TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     Scene scene = room_with_window({300, 350, 420});
@@ -37,9 +38,9 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     const View view{"room", {4.7, 3.7, 1.6}, {0.5, 1.2, 0.9}, {0, 0, 1}, 70};
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(GetParam().method);
-    options.refinement = GetParam().refinement;
+    options.refinement.criterion = GetParam().criterion;
     options.views = {{view, 1, 1.5f, 48}};
-    options.rays = 4'000'000;
+    options.limits.rays = 4'000'000;
     const Solution solution = solve(scene, ray_caster, options);
     RenderOptions picture;
     picture.width = 72, picture.height = 48;

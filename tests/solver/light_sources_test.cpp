@@ -53,9 +53,9 @@ SolveOptions options_of(const std::string& method, std::uint64_t seed) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.method.refines = false;
-    options.points = PointSet::random;
-    options.rays = 60'000;
-    options.camera_rays = 1 << 12;
+    options.experimental.points = PointSet::random;
+    options.limits.rays = 60'000;
+    options.importance.camera_rays = 1 << 12;
     options.seed = seed;
     if (options.method.importance != ImportanceUse::off) options.views = {{view_of_floor()}};
     return options;
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), [](c
 TEST(UniformSkyLight, IsPiTimesRadianceToAThousandth) {
     const Scene scene = open_floor({"", 0, UniformSky{Rgb(1000)}});
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 2'000'000;
+    options.limits.rays = 2'000'000;
     const Solution solution = solve(scene, RayCaster(scene), options);
     double sum = 0;
     for (const Rgb& h : solution.irradiance) sum += h.x / static_cast<double>(solution.irradiance.size());
@@ -147,7 +147,7 @@ TEST(UniformSkyLight, ThroughAWindowFollowsTheFormFactor) {
     std::vector<std::vector<double>> irradiance(25);
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
         SolveOptions options = options_of("srr", seed);
-        options.rays = 400'000;
+        options.limits.rays = 400'000;
         const Solution solution = solve(scene, ray_caster, options);
         for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i].push_back(solution.irradiance[2 * i].x);
     }
@@ -164,7 +164,7 @@ TEST(LightSourcesTogether, EmitWhatArrivesAndEscapes) {
     Scene scene = room_with_window(Rgb(100));
     for (const Source& source : sources()) scene.luminaires.push_back(source.luminaire);
     SolveOptions options = options_of("srr", 3);
-    options.iterations = 1;
+    options.experimental.iterations = 1;
     const Solution solution = solve(scene, RayCaster(scene), options);
     const RgbD arrived = integral(*solution.forest, solution.irradiance);
     const RgbD expected = Emission(scene).total_power();

@@ -44,7 +44,7 @@ const Method with_importance = [] {
 SolveOptions refined_to(double epsilon) {
     SolveOptions options{.method = find_method("srr")};
     options.method = without_importance;
-    options.epsilon = epsilon;
+    options.experimental.epsilon = epsilon;
     return options;
 }
 
@@ -217,7 +217,7 @@ TEST(LinkRadiosity, OfCoincidentFacesOneIsLit) {
     Scene scene = lamp_over_floor();
     add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 2);  // paper on the floor
     SolveOptions options = refined_to(1e-4);
-    options.min_area = 0.01;
+    options.refinement.min_area = 0.01;
     const Solution s = solve_scene(scene, options);
     const ElementForest& forest = *s.forest;
     EXPECT_EQ(s.irradiance[forest.leaf_at(1, {0.5f, 0.5f})], Rgb(0)) << "the floor below the paper";
@@ -297,19 +297,19 @@ TEST(LinkRadiosity, RefinesMoreAsEpsilonFallsAndOnlyWhereAsked) {
 TEST(LinkRadiosity, RefinementKeepsItsLimits) {
     const Scene scene = colourful_box();
     SolveOptions options = refined_to(1e-5);
-    options.max_elements = 200;
+    options.refinement.max_elements = 200;
     EXPECT_LE(solve_scene(scene, options).forest->size(), 200u);
 
     options = refined_to(1e-5);
-    options.min_area = 0.02;
+    options.refinement.min_area = 0.02;
     const Solution coarse = solve_scene(scene, options);
     for (std::uint32_t e = 0; e < coarse.forest->size(); ++e) ASSERT_GE(coarse.forest->area(e), 0.02f);
 
     options = refined_to(1e-5);
     const std::int64_t first_rays = solve_scene(scene, unrefined()).iterations.back().rays;
-    options.rays = 2 * first_rays;
+    options.limits.rays = 2 * first_rays;
     const std::int64_t rays = solve_scene(scene, options).iterations.back().rays;
-    EXPECT_LE(rays, options.rays);
+    EXPECT_LE(rays, options.limits.rays);
     EXPECT_GT(rays, first_rays);
 }
 
@@ -348,10 +348,10 @@ TEST(LinkRadiosity, NamesARemedyWhereThereAreTooManyLinks) {
 TEST(LinkRadiosity, StopsWhenAskedAndAtItsLimits) {
     const Scene scene = colourful_box();
     SolveOptions options = refined_to(1e-3);
-    options.iterations = 3;
+    options.experimental.iterations = 3;
     EXPECT_EQ(solve_scene(scene, options).iterations.size(), 3u);
-    options.iterations = 0;
-    options.seconds = 1e-9;
+    options.experimental.iterations = 0;
+    options.limits.time = 1e-9;
     const Solution dark = solve_scene(scene, options);
     EXPECT_FALSE(dark.interrupted) << "a limit of time is no interruption";
     EXPECT_TRUE(dark.iterations.empty()) << "links were not even made";

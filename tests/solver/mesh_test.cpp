@@ -64,11 +64,11 @@ Leaves leaves_of(const char* method, const Room& room) {
     options.method = find_method(method);
     const V3f eye(0.5f, 0.5f, 1.5f), look_at(3.5f, 2.5f, 0.8f);
     options.views = {{{"room", eye * room.metre, look_at * room.metre, {0, 0, 1}, 60}}};
-    options.rays = room.rays;
-    options.epsilon = room.epsilon;
-    options.epsilon_decay = room.epsilon_decay;
-    options.refinement = Refinement::power;  // Eq. 14 and 15 as published
-    options.min_area = std::pow(0.02 * room.metre, 2);
+    options.limits.rays = room.rays;
+    options.experimental.epsilon = room.epsilon;
+    options.experimental.epsilon_decay = room.epsilon_decay;
+    options.refinement.criterion = RefinementCriterion::power;  // Eq. 14 and 15 as published
+    options.refinement.min_area = std::pow(0.02 * room.metre, 2);
     options.seed = room.seed;
     const Solution solution = solve(scene, RayCaster(scene), options);
     const std::uint32_t first_cellar = solution.forest->patch_count() - cellar_walls;

@@ -38,8 +38,8 @@ class EveryMethod : public testing::TestWithParam<Variant> {
   protected:
     SolveOptions options(std::int64_t rays, std::uint64_t seed) const {
         SolveOptions o = GetParam().options;
-        o.camera_rays = 4000;
-        o.rays = rays;
+        o.importance.camera_rays = 4000;
+        o.limits.rays = rays;
         o.seed = seed;
         return o;
     }
@@ -142,7 +142,7 @@ TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
     add_rectangle(scene, {0.2f, 0.3f, 1.2f}, {0.6f, 0, 0}, {0, 1.3f, 0.2f}, white);
     const RayCaster ray_caster(scene);
     SolveOptions reference{.method = find_method("srr")};
-    reference.rays = 8'000'000;
+    reference.limits.rays = 8'000'000;
     const Solution expected = solve(scene, ray_caster, reference);
     const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
     const std::vector<Solution> sample = solutions(scene);
@@ -159,7 +159,7 @@ TEST_P(EveryMethod, ShootsOrRefusesLightSourcesThatAreNoSurfaces) {
         return;
     }
     SolveOptions reference{.method = find_method("srr")};
-    reference.rays = 8'000'000;
+    reference.limits.rays = 8'000'000;
     const Solution expected = solve(scene, ray_caster, reference);
     const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
     const std::vector<Solution> sample = solutions(scene);
@@ -180,7 +180,7 @@ TEST_P(EveryMethod, ErrorFallsWithTheRaysAndIsReported) {
         double square = 0, estimated_square = 0;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
             SolveOptions o = options(rays, seed);
-            o.points = points;
+            o.experimental.points = points;
             const Solution s = solve(scene, ray_caster, o);
             square += std::pow(relative_error(scene, s.irradiance, exact), 2) / seeds;
             estimated_square += std::pow(s.iterations.back().error_estimate, 2) / seeds;

@@ -38,8 +38,8 @@ SolveOptions default_options(const Flat& flat, std::int64_t rays, std::uint64_t 
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(flat.method);
     options.views = {{into_the_corner}};
-    options.points = flat.points;
-    options.rays = rays;
+    options.experimental.points = flat.points;
+    options.limits.rays = rays;
     options.seed = seed;
     return options;
 }
@@ -142,7 +142,7 @@ TEST(FurnaceOfPasses, IsRightAtAnyDistanceFromAnEdgeAndInElementsOfAnySize) {
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
         SolveOptions options{.method = find_method("srr")};
         options.method = find_method("hsrr");
-        options.rays = 2'000'000;
+        options.limits.rays = 2'000'000;
         options.seed = seed;
         const Solution s = solve(scene, ray_caster, options);
         std::array<std::array<double, 2>, distances.size()> distance_sums{};

@@ -86,7 +86,7 @@ Measured measure(const Placement& place, std::uint64_t seed) {
     const RayCaster ray_caster(scene);
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
-    options.rays = 150'000;
+    options.limits.rays = 150'000;
     options.seed = seed;
     const Solution solution = solve(scene, ray_caster, options);
     const Materials materials(scene, ray_caster);

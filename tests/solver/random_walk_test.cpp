@@ -41,7 +41,7 @@ SolveOptions walk_options(ImportanceUse importance, std::uint64_t seed) {
     options.method = find_method("random-walk");
     options.method.importance = importance;
     options.views = {{into_the_corner}};
-    options.rays = rays_per_run;
+    options.limits.rays = rays_per_run;
     options.seed = seed;
     return options;
 }
@@ -110,8 +110,8 @@ TEST(RandomWalk, HasTheSameMeanWhateverLeadsIt) {
     const auto led_by_v = [](std::uint64_t seed) { return walk_options(ImportanceUse::direct, seed); };
     const auto led_by_all = [](std::uint64_t seed) {
         SolveOptions options = walk_options(ImportanceUse::full, seed);
-        options.total_importance = true;
-        options.beta = 0;
+        options.experimental.total_importance = true;
+        options.experimental.beta = 0;
         return options;
     };
     for (const Runs& sample : {Runs(scene, led_by_v), Runs(scene, led_by_all)}) {
@@ -151,7 +151,7 @@ TEST(RandomWalk, ErrorFallsWithTheRaysAndIsReported) {
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
             SolveOptions options = walk_options(ImportanceUse::off, seed);
             options.views.clear();
-            options.rays = rays;
+            options.limits.rays = rays;
             const Solution s = solve(scene, ray_caster, options);
             square += std::pow(relative_error(scene, s.irradiance, exact), 2) / seeds;
             estimated_square += std::pow(s.iterations.back().error_estimate, 2) / seeds;
@@ -169,7 +169,7 @@ TEST(RandomWalk, ErrorFallsWithTheRaysAndIsReported) {
 TEST(RandomWalk, KeepsEnergy) {
     for (const Scene& scene : {colourful_box(), open_colourful_box()}) {
         SolveOptions options = walk_options(ImportanceUse::off, 1);
-        options.iterations = 1;
+        options.experimental.iterations = 1;
         const Solution s = solve(scene, RayCaster(scene), options);
         double received = 0, reflected = 0;
         for (std::uint32_t i = 0; i < s.forest->size(); ++i) {
@@ -204,7 +204,7 @@ TEST(RandomWalk, TracesTheRaysThatItIsAllowedAndCountsThem) {
     const IterationReport& last = s.iterations.back();
     EXPECT_NEAR(static_cast<double>(last.rays) / rays_per_run, 1, 0.02);
     EXPECT_EQ(last.power_rays + last.importance_rays, last.rays);
-    EXPECT_NEAR(static_cast<double>(last.importance_rays) / rays_per_run, s.options.alpha, 0.02);
+    EXPECT_NEAR(static_cast<double>(last.importance_rays) / rays_per_run, s.options.experimental.alpha, 0.02);
     double started = 0;
     for (const float rays : s.rays) started += rays;
     EXPECT_EQ(started, static_cast<double>(last.rays));
@@ -217,9 +217,9 @@ TEST(RandomWalk, EndsWhenItsOptionsAreExtreme) {
         for (const double beta : {0.0, 1.0})
             for (const std::int64_t rays : {1, 1000}) {
                 SolveOptions options = walk_options(ImportanceUse::full, 1);
-                options.alpha = alpha;
-                options.beta = beta;
-                options.rays = rays;
+                options.experimental.alpha = alpha;
+                options.experimental.beta = beta;
+                options.limits.rays = rays;
                 const Solution s = solve(scene, ray_caster, options);
                 const auto has_light = [](const Rgb& h) { return channel_sum(h) > 0; };
                 EXPECT_EQ(std::any_of(s.irradiance.begin(), s.irradiance.end(), has_light), alpha == 0);
@@ -274,7 +274,7 @@ std::vector<Picture> pictures_of(const Scene& scene, ImportanceUse use) {
     const Runs sample(scene, [&](std::uint64_t seed) {
         SolveOptions options = walk_options(use, seed);
         options.views = {{scene.views[0]}};
-        options.rays = 200'000;
+        options.limits.rays = 200'000;
         return options;
     });
     std::vector<Picture> pictures;

@@ -50,11 +50,11 @@ Scene furnished_room() {
 SolveOptions unbiased_options(PointSet points, std::uint64_t seed) {
     SolveOptions options{.method = find_method("srr")};
     options.seed = seed;
-    options.points = points;
-    options.complete_passes = false;
-    options.warm_up = 20;  // the rooms' mean reflectance is below 0.6: 0.6^20 = 4e-5
-    options.iterations = 8;
-    options.rays_per_iteration = 20'000;
+    options.experimental.points = points;
+    options.experimental.one_bounce = true;
+    options.experimental.warm_up = 20;  // the rooms' mean reflectance is below 0.6: 0.6^20 = 4e-5
+    options.experimental.iterations = 8;
+    options.experimental.rays_per_iteration = 20'000;
     return options;
 }
 

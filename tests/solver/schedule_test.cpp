@@ -25,9 +25,9 @@ std::vector<IterationPlan> all_plans(Schedule& schedule) {
 
 TEST(Schedule, AveragesWhatComesAfterTheWarmUp) {
     SolveOptions options{.method = find_method("srr")};
-    options.warm_up = 2;
-    options.iterations = 4;
-    options.rays_per_iteration = 1000;
+    options.experimental.warm_up = 2;
+    options.experimental.iterations = 4;
+    options.experimental.rays_per_iteration = 1000;
     Schedule schedule(options, patches);
     const std::vector<IterationPlan> plans = all_plans(schedule);
     ASSERT_EQ(plans.size(), 6u);
@@ -40,7 +40,7 @@ TEST(Schedule, AveragesWhatComesAfterTheWarmUp) {
 
 TEST(Schedule, CountsImportanceRaysOfTheStartButDoesNotAverageThem) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 10'000'000;
+    options.limits.rays = 10'000'000;
     Schedule schedule(options, patches);
     schedule.began_with(123'456, 44'000);
     EXPECT_EQ(schedule.rays(), 167'456);
@@ -56,9 +56,9 @@ TEST(Schedule, SpendsTheBudgetExactly) {
         for (const std::int64_t per_iteration : {0, 1, 1000})
             for (const int warm_up : {0, 3}) {
                 SolveOptions options{.method = find_method("srr")};
-                options.rays = rays;
-                options.rays_per_iteration = per_iteration;
-                options.warm_up = warm_up;
+                options.limits.rays = rays;
+                options.experimental.rays_per_iteration = per_iteration;
+                options.experimental.warm_up = warm_up;
                 if (per_iteration == 1 && rays > 1000) continue;  // too many iterations
                 Schedule schedule(options, patches);
                 all_plans(schedule);
@@ -68,7 +68,7 @@ TEST(Schedule, SpendsTheBudgetExactly) {
 
 TEST(Schedule, GrowsWithWhatIsAveraged) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 100'000'000;
+    options.limits.rays = 100'000'000;
     Schedule schedule(options, patches);
     schedule.began_with(100'000, 0);
     std::int64_t averaged = 100'000;
@@ -82,15 +82,15 @@ TEST(Schedule, GrowsWithWhatIsAveraged) {
 
 TEST(Schedule, HasNoTinyLastIteration) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 10'300;
-    options.rays_per_iteration = 1000;
+    options.limits.rays = 10'300;
+    options.experimental.rays_per_iteration = 1000;
     Schedule schedule(options, patches);
     EXPECT_EQ(all_plans(schedule).back().rays, 1300);
 }
 
 TEST(Schedule, EndsWithTheFinalIterationEvenIfLightRanOutBeforeTheRaysDid) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 1000;
+    options.limits.rays = 1000;
     Schedule schedule(options, patches);
     IterationPlan plan = schedule.next(0);
     for (; !plan.is_final; plan = schedule.next(0)) {
@@ -107,18 +107,18 @@ TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
     SolveOptions options{.method = find_method("srr")};
     EXPECT_EQ(Schedule(options, patches).start_rays(), 50'000);
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 400'000);
-    options.rays = 80'000;
+    options.limits.rays = 80'000;
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 10'000) << "an eighth of the budget";
-    options.rays_per_iteration = 77;
+    options.experimental.rays_per_iteration = 77;
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 77);
-    options.rays_per_iteration = 1'000'000;
+    options.experimental.rays_per_iteration = 1'000'000;
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 10'000) << "whatever an iteration has";
 }
 
 TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = std::numeric_limits<std::int64_t>::max();
-    options.seconds = 10;
+    options.limits.rays = std::numeric_limits<std::int64_t>::max();
+    options.limits.time = 10;
     Schedule schedule(options, patches);
     schedule.began_with(1'000'000, 0);
     IterationPlan plan = schedule.next(1);
@@ -134,21 +134,21 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
 
 TEST(Schedule, HasAShortIterationBeforeLongOnesUnlessTheirNumberIsAskedFor) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = options.rays_per_iteration = most_rays_per_iteration;
+    options.limits.rays = options.experimental.rays_per_iteration = most_rays_per_iteration;
     Schedule schedule(options, patches);
     const std::vector<IterationPlan> plans = all_plans(schedule);
     ASSERT_EQ(plans.size(), 2u);
     EXPECT_EQ(plans[0].rays, 50'000);
     EXPECT_EQ(schedule.rays(), most_rays_per_iteration);
-    options.iterations = 1;
+    options.experimental.iterations = 1;
     Schedule counted(options, patches);
     EXPECT_EQ(counted.next(0).rays, most_rays_per_iteration);
 }
 
 TEST(Schedule, FindsOutHowFastItIsBeforeALongIterationUnderALimitOfTime) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = options.rays_per_iteration = most_rays_per_iteration;
-    options.seconds = 10;
+    options.limits.rays = options.experimental.rays_per_iteration = most_rays_per_iteration;
+    options.limits.time = 10;
     Schedule schedule(options, patches);
     EXPECT_EQ(schedule.start_rays(), 1 << 18);
     IterationPlan plan = schedule.next(1);

@@ -26,8 +26,8 @@ double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const Scene scene = cuts ? cut_at_contacts(whole, {.least_extent = least_extent}) : whole;
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
-    options.rays = 1'000'000;
-    options.min_area = min_area;
+    options.limits.rays = 1'000'000;
+    options.refinement.min_area = min_area;
     const Solution s = solve(scene, RayCaster(scene), options);
     const float radians = rooms.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);

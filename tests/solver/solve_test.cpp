@@ -32,7 +32,7 @@ Solution solve(const Scene& scene, const SolveOptions& options, const Monitor& m
 
 SolveOptions with_rays(std::int64_t rays) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = rays;
+    options.limits.rays = rays;
     return options;
 }
 
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Points, Reproducible, testing::Values(PointSet::sobol, 
 TEST_P(Reproducible, SameSeedSameBitsForAnyNumberOfThreads) {
     const Scene scene = furnished_room();
     SolveOptions options = with_rays(150'000);
-    options.points = GetParam();
+    options.experimental.points = GetParam();
     const std::vector<Rgb> irradiance = solved_on_threads(1, scene, options).irradiance;
     for (const int threads : {2, 3})
         EXPECT_EQ(solved_on_threads(threads, scene, options).irradiance, irradiance) << threads;
@@ -87,7 +87,7 @@ TEST(ReproducibleMethod, SameSeedSameBitsForAnyNumberOfThreads) {
 TEST_P(Reproducible, AnotherSeedGivesOtherBits) {
     const Scene scene = furnished_room();
     SolveOptions options = with_rays(100'000);
-    options.points = GetParam();
+    options.experimental.points = GetParam();
     const std::vector<Rgb> irradiance = solve(scene, options).irradiance;
     options.seed = 2;
     EXPECT_NE(solve(scene, options).irradiance, irradiance);
@@ -101,8 +101,8 @@ TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
     const Scene scene = furnished_room();
     SolveOptions options = GetParam().options;
     options.views = {{{"room", {0.2f, 0.2f, 2}, {3.5f, 2.5f, 0.5f}, {0, 0, 1}, 60}}};
-    options.rays = 60'000;
-    options.warm_up = 1;
+    options.limits.rays = 60'000;
+    options.experimental.warm_up = 1;
     const Solution expected = solved_on_threads(1, scene, options);
     EXPECT_GT(expected.forest->size(), 10 * scene.patches.size()) << "the mesh has grown";
     for (const int threads : {2, 3}) {
@@ -122,11 +122,11 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     const Scene scene = furnished_room();
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("hsrr");
-    options.rays = 60'000;
-    options.max_elements = 3 * scene.patches.size();
+    options.limits.rays = 60'000;
+    options.refinement.max_elements = 3 * scene.patches.size();
     const Solution expected = solved_on_threads(1, scene, options);
-    EXPECT_LE(expected.forest->size(), options.max_elements);
-    EXPECT_GT(expected.forest->size() + 4, options.max_elements);
+    EXPECT_LE(expected.forest->size(), options.refinement.max_elements);
+    EXPECT_GT(expected.forest->size() + 4, options.refinement.max_elements);
     for (const int threads : {2, 3}) {
         const Solution s = solved_on_threads(threads, scene, options);
         ASSERT_EQ(s.forest->size(), expected.forest->size());
@@ -141,16 +141,16 @@ TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
     const Scene scene = colourful_box();
     for (const char* method : {"srr", "hsrr", "ihsrr"})
         for (const std::int64_t rays : {1, 2, 3, 4, 7, 12'345})
-            for (const bool complete_passes : {true, false})
+            for (const bool one_bounce : {false, true})
                 for (const std::int64_t per_iteration : {0, 500'000}) {
                     SolveOptions options = with_rays(rays);
                     options.method = find_method(method);
                     options.views = {{into_the_corner}};
-                    options.camera_rays = 1000;
-                    options.complete_passes = complete_passes;
-                    options.rays_per_iteration = per_iteration;
+                    options.importance.camera_rays = 1000;
+                    options.experimental.one_bounce = one_bounce;
+                    options.experimental.rays_per_iteration = per_iteration;
                     const Solution solution = solve(scene, options);
-                    EXPECT_EQ(solution.iterations.back().rays, rays) << method << ' ' << complete_passes;
+                    EXPECT_EQ(solution.iterations.back().rays, rays) << method << ' ' << one_bounce;
                     EXPECT_TRUE(all_finite(solution.irradiance)) << rays;
                     EXPECT_FALSE(solution.interrupted);
                 }
@@ -177,12 +177,12 @@ TEST(Solve, ReportsEveryIterationInOrder) {
 TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
     const Scene scene = furnished_room();
     for (const char* name : {"ihsrr", "hwdrs", "random-walk", "global-lines", "pr"})
-        for (const bool complete_passes : {true, false}) {
+        for (const bool one_bounce : {false, true}) {
             SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
             options.method = find_method(name);
-            options.complete_passes = complete_passes;
+            options.experimental.one_bounce = one_bounce;
             if (options.method.importance != ImportanceUse::off) options.views = {{into_the_corner}};
-            options.rays_per_iteration = 100'000;
+            options.experimental.rays_per_iteration = 100'000;
             std::atomic<bool> stop{false};
             std::jthread timer;
             const auto stop_soon = [&](const IterationReport& report) {
@@ -192,19 +192,19 @@ TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
             const Solution cut_short = solve(scene, options, {stop_soon, &stop});
             EXPECT_TRUE(cut_short.interrupted) << name;
 
-            options.iterations = cut_short.iterations.back().iteration;
+            options.experimental.iterations = cut_short.iterations.back().iteration;
             const Solution expected = solve(scene, options);
             EXPECT_FALSE(expected.interrupted);
-            EXPECT_EQ(cut_short.forest->size(), expected.forest->size()) << name << ' ' << complete_passes;
-            EXPECT_EQ(cut_short.irradiance, expected.irradiance) << name << ' ' << complete_passes;
+            EXPECT_EQ(cut_short.forest->size(), expected.forest->size()) << name << ' ' << one_bounce;
+            EXPECT_EQ(cut_short.irradiance, expected.irradiance) << name << ' ' << one_bounce;
         }
 }
 
 TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
     const std::atomic<bool> stop{true};
     SolveOptions options = with_rays(1000);
-    options.complete_passes = false;
-    options.rays_per_iteration = 1000;
+    options.experimental.one_bounce = true;
+    options.experimental.rays_per_iteration = 1000;
     std::atomic<bool> late{false};
     const Monitor monitor{[&](const IterationReport&) { late = true; }, &late};
     EXPECT_FALSE(solve(colourful_box(), options, monitor).interrupted);
@@ -213,7 +213,7 @@ TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
 
 TEST(Solve, KeepsToTheTimeLimit) {
     SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
-    options.seconds = 0.6;
+    options.limits.time = 0.6;
     const IterationReport last = solve(colourful_box(), options).iterations.back();
     EXPECT_GT(last.seconds, 0.2) << "an iteration that would end too late may be lost";
     EXPECT_LT(last.seconds, 1.2) << "a bounce later at most, on a busy machine";
@@ -221,19 +221,19 @@ TEST(Solve, KeepsToTheTimeLimit) {
 
 TEST(Solve, StopsOnceTheErrorIsSmallEnough) {
     SolveOptions options = with_rays(20'000'000);
-    options.until = 0.02;
+    options.limits.until = 0.02;
     const IterationReport last = solve(colourful_box(), options).iterations.back();
     EXPECT_LE(last.error_estimate, 0.02);
     EXPECT_GT(last.error_estimate, 0) << "infinite and zero are no estimates";
-    EXPECT_LT(last.rays, options.rays / 10);
+    EXPECT_LT(last.rays, options.limits.rays / 10);
 }
 
 TEST(Solve, DoesAsManyIterationsAsItIsTold) {
     SolveOptions options = with_rays(1'000'000);
-    options.complete_passes = false;
-    options.warm_up = 3;
-    options.iterations = 5;
-    options.rays_per_iteration = 1000;
+    options.experimental.one_bounce = true;
+    options.experimental.warm_up = 3;
+    options.experimental.iterations = 5;
+    options.experimental.rays_per_iteration = 1000;
     const Solution solution = solve(colourful_box(), options);
     ASSERT_EQ(solution.iterations.size(), 8u);
     EXPECT_EQ(solution.iterations.back().rays, 8000);
@@ -277,25 +277,25 @@ TEST(Solve, RefusesLightsBeyondSinglePrecision) {
 
 TEST(Solve, ListsAllOptionsOutOfRange) {
     SolveOptions options{.method = find_method("srr")};
-    options.rays = 0;
-    options.seconds = std::nan("");
-    options.until = 1;
-    options.warm_up = -1;
-    options.iterations = -1;
-    options.rays_per_iteration = -1;
-    options.epsilon = 0;
-    options.epsilon_decay = 2;
-    options.min_area = -1;
-    options.max_elements = 3;
-    options.alpha = 1.5;
-    options.beta = -0.1;
-    options.inherited_weight = 2;
-    options.importance_smoothing = options.importance_exponent = -0.5;
-    options.camera_rays = 0;
+    options.limits.rays = 0;
+    options.limits.time = std::nan("");
+    options.limits.until = 1;
+    options.experimental.warm_up = -1;
+    options.experimental.iterations = -1;
+    options.experimental.rays_per_iteration = -1;
+    options.experimental.epsilon = 0;
+    options.experimental.epsilon_decay = 2;
+    options.refinement.min_area = -1;
+    options.refinement.max_elements = 3;
+    options.experimental.alpha = 1.5;
+    options.experimental.beta = -0.1;
+    options.experimental.inherited_weight = 2;
+    options.importance.smoothing = options.importance.exponent = -0.5;
+    options.importance.camera_rays = 0;
     const std::string message = error_of(colourful_box(), options);
-    for (const char* name : {"rays:", "seconds:", "until:", "warm_up:", "iterations:", "rays_per_iteration:",
-                             "epsilon:", "epsilon_decay:", "min_area:", "max_elements:", "alpha:", "beta:",
-                             "inherited_weight:", "importance_smoothing:", "importance_exponent:", "camera_rays:"})
+    for (const char* name : {"rays:", "time:", "until:", "warm_up:", "iterations:", "rays_per_iteration:", "epsilon:",
+                             "epsilon_decay:", "min_area:", "max_elements:", "alpha:", "beta:", "inherited_weight:",
+                             "importance_smoothing:", "importance_exponent:", "camera_rays:"})
         EXPECT_THAT(message, HasSubstr(name));
 }
 
@@ -334,7 +334,7 @@ TEST(Solve, RefusesViewsThatCannotBeLookedAtTogether) {
 
 TEST(Solve, NamesTheLeastNumberOfElements) {
     SolveOptions options = with_rays(1000);
-    options.max_elements = 1;
+    options.refinement.max_elements = 1;
     const Scene scene = colourful_box();
     EXPECT_THAT(error_of(scene, options), HasSubstr("max_elements: 1, expected at least the number of patches, " +
                                                     std::to_string(scene.patches.size())));

@@ -49,10 +49,10 @@ SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t see
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
     options.views = {{first_chamber}};
-    options.refinement = Refinement::power;
-    options.epsilon_decay = 0;
-    options.epsilon = 2e-6;  // what the bounds below were found with
-    options.rays = rays;
+    options.refinement.criterion = RefinementCriterion::power;
+    options.experimental.epsilon_decay = 0;
+    options.experimental.epsilon = 2e-6;  // what the bounds below were found with
+    options.limits.rays = rays;
     options.seed = seed;
     return options;
 }

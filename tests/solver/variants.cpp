@@ -19,7 +19,7 @@ Variant plain(const char* method) {
 Variant flat(bool separate) {
     Variant variant = plain("isrr");
     variant.name += separate ? "_si" : "_ci";
-    variant.options.separate_iterations = separate;
+    variant.options.experimental.separate_iterations = separate;
     return variant;
 }
 
@@ -27,9 +27,9 @@ Variant flat(bool separate) {
 Variant hierarchical(bool separate, bool deferred, bool at_elements) {
     Variant variant = plain("ihsrr");
     variant.name += std::string(separate ? "_si" : "_ci") + (deferred ? "_dr" : "") + (at_elements ? "_hi" : "");
-    variant.options.separate_iterations = separate;
-    variant.options.defer_refinement = deferred;
-    variant.options.importance_at_elements = at_elements;
+    variant.options.experimental.separate_iterations = separate;
+    variant.options.experimental.defer_refinement = deferred;
+    variant.options.experimental.importance_at_patches = !at_elements;
     return variant;
 }
 
@@ -91,13 +91,13 @@ std::vector<Variant> extreme_variants() {
         variants.back().name = name;
         change(variants.back().options);
     };
-    add("alpha_0", [](SolveOptions& o) { o.alpha = 0; });
-    add("alpha_1", [](SolveOptions& o) { o.alpha = 1; });
-    add("beta_0", [](SolveOptions& o) { o.beta = 0; });
-    add("beta_1", [](SolveOptions& o) { o.beta = 1; });
-    add("inherited_trust_0", [](SolveOptions& o) { o.inherited_weight = 0; });
-    add("inherited_trust_1", [](SolveOptions& o) { o.inherited_weight = 1; });
-    add("total_importance", [](SolveOptions& o) { o.total_importance = true, o.beta = 0; });
+    add("alpha_0", [](SolveOptions& o) { o.experimental.alpha = 0; });
+    add("alpha_1", [](SolveOptions& o) { o.experimental.alpha = 1; });
+    add("beta_0", [](SolveOptions& o) { o.experimental.beta = 0; });
+    add("beta_1", [](SolveOptions& o) { o.experimental.beta = 1; });
+    add("inherited_trust_0", [](SolveOptions& o) { o.experimental.inherited_weight = 0; });
+    add("inherited_trust_1", [](SolveOptions& o) { o.experimental.inherited_weight = 1; });
+    add("total_importance", [](SolveOptions& o) { o.experimental.total_importance = true, o.experimental.beta = 0; });
     // Flat: to what is not seen nothing is important, so it receives as a whole.
     const auto direct = [](SolveOptions& o) { o.method.importance = ImportanceUse::direct; };
     add("direct_importance", direct, "isrr");
@@ -105,8 +105,8 @@ std::vector<Variant> extreme_variants() {
 }
 
 void divide_everything(SolveOptions& options, double min_area) {
-    options.epsilon = 1e-12;
-    options.min_area = min_area;
+    options.experimental.epsilon = 1e-12;
+    options.refinement.min_area = min_area;
 }
 
 SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
@@ -114,11 +114,11 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     options.views = {{into_the_corner}};
     options.seed = seed;
     // A kept ray has the colour that it was shot with, before any warm-up.
-    options.complete_passes = keeps_every_ray(variant);
-    options.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
-    options.iterations = 4;
-    options.rays_per_iteration = 10'000;
-    divide_everything(options, options.defer_refinement ? left_whole : divided_once);
+    options.experimental.one_bounce = !keeps_every_ray(variant);
+    options.experimental.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
+    options.experimental.iterations = 4;
+    options.experimental.rays_per_iteration = 10'000;
+    divide_everything(options, options.experimental.defer_refinement ? left_whole : divided_once);
     return options;
 }
 

@@ -65,7 +65,7 @@ TEST(ImportanceOfTheOracle, LeansOnTheParents) {
     Solution solution;
     solution.forest = forest;
     solution.options.method = find_method("ihsrr");
-    solution.options.importance_smoothing = 0.5;
+    solution.options.importance.smoothing = 0.5;
     solution.view_importance.assign(forest->size(), 1.0f);
     solution.indirect_importance.assign(forest->size(), 1.0f);
     solution.view_importance[child] = 0;
@@ -75,7 +75,7 @@ TEST(ImportanceOfTheOracle, LeansOnTheParents) {
     EXPECT_EQ(oracle.importance[wall_x0], 2);
     EXPECT_EQ(oracle.importance[child], 1.5f) << "half of 1, half of the parent's 2";
     EXPECT_EQ(oracle.importance[grandchild], 3.75f) << "half of 6, half of the parent's 1.5";
-    solution.options.importance_smoothing = 0;
+    solution.options.importance.smoothing = 0;
     EXPECT_EQ(make_oracle(solution, 1, 0).importance, total_importance(solution)) << "as in the paper";
 }
 

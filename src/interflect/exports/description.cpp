@@ -48,7 +48,7 @@ void read_result(const Json& json, int format_version, Solution& solution) {
         read_options(json.at("options"), solution.options);
         last = report_of(json.at("result"));
     } else {
-        solution.options.rays = last.rays = json.at("rays").get<std::int64_t>();
+        solution.options.limits.rays = last.rays = json.at("rays").get<std::int64_t>();
     }
 }
 

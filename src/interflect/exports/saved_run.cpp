@@ -17,7 +17,8 @@ namespace {
 
 /// Options that a solution file does not have: they depend on the machine that a run began on.
 void archive_options(StateArchive& archive, SolveOptions& options) {
-    options.max_elements = archive.by_value("options/max_elements", std::vector{options.max_elements}).at(0);
+    options.refinement.max_elements =
+        archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
 }
 
 }  // namespace

@@ -13,8 +13,14 @@ namespace interflect {
 
 namespace {
 
-template <class Value>
-using Choices = std::array<std::pair<const char*, Value>, 2>;
+template <class Value, std::size_t count>
+using Choices = std::array<std::pair<const char*, Value>, count>;
+
+constexpr Choices<PointSet, 2> point_sets{{{"sobol", PointSet::sobol}, {"random", PointSet::random}}};
+constexpr Choices<RefinementCriterion, 2> criteria{
+    {{"variance", RefinementCriterion::variance}, {"power", RefinementCriterion::power}}};
+constexpr Choices<ImportanceUse, 3> uses_of_importance{
+    {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}}};
 
 /// Writes fields to JSON.
 struct Writer {
@@ -30,8 +36,7 @@ struct Writer {
     }
     void vector(const char* name, const RgbD& value) const { json[name] = json_of(value); }
     template <class Value, std::size_t count>
-    void choice(const char* name, const Value& value,
-                const std::array<std::pair<const char*, Value>, count>& choices) const {
+    void choice(const char* name, const Value& value, const Choices<Value, count>& choices) const {
         for (const auto& [word, meaning] : choices)
             if (meaning == value) json[name] = word;
     }
@@ -51,7 +56,7 @@ struct Reader {
     }
     void vector(const char* name, RgbD& value) const { value = vector_of<RgbD>(json.at(name)); }
     template <class Value, std::size_t count>
-    void choice(const char* name, Value& value, const std::array<std::pair<const char*, Value>, count>& choices) const {
+    void choice(const char* name, Value& value, const Choices<Value, count>& choices) const {
         const auto found = json.at(name).get<std::string>();
         for (const auto& [word, meaning] : choices)
             if (word == found) {
@@ -64,37 +69,51 @@ struct Reader {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The one list of options and their names. @param access  Writer or Reader.
+/// The one list of options and their names: those of the members, after the group's name where they would not say
+/// enough alone. @param access  Writer or Reader.
 template <class Options, class Access>
-void for_each_option(Options& o, const Access& access) {
-    access.field_or_null("rays", o.rays, std::numeric_limits<std::int64_t>::max());
-    access.field_or_null("seconds", o.seconds, infinity);
-    access.field_or_null("until", o.until, 0.0);
-    access.choice("points", o.points, Choices<PointSet>{{{"sobol", PointSet::sobol}, {"random", PointSet::random}}});
-    access.field("complete_passes", o.complete_passes);
+void for_each_option(Options& options, const Access& access) {
+    auto& limits = options.limits;
+    access.field_or_null("rays", limits.rays, std::numeric_limits<std::int64_t>::max());
+    access.field_or_null("time", limits.time, infinity);
+    access.field_or_null("until", limits.until, 0.0);
+    auto& refinement = options.refinement;
+    access.choice("refinement_criterion", refinement.criterion, criteria);
+    access.field("min_area", refinement.min_area);
+    access.choice("importance", options.method.importance, uses_of_importance);
+    auto& importance = options.importance;
+    access.field("camera_rays", importance.camera_rays);
+    access.field("importance_smoothing", importance.smoothing);
+    access.field("importance_exponent", importance.exponent);
+    auto& o = options.experimental;
+    access.choice("points", o.points, point_sets);
+    access.field("one_bounce", o.one_bounce);
     access.field("warm_up", o.warm_up);
     access.field("iterations", o.iterations);
     access.field("rays_per_iteration", o.rays_per_iteration);
-    access.choice("refinement", o.refinement,
-                  Choices<Refinement>{{{"variance", Refinement::variance}, {"power", Refinement::power}}});
     access.field("shrinkage", o.shrinkage);
     access.field("epsilon", o.epsilon);
     access.field("epsilon_decay", o.epsilon_decay);
-    access.field("min_area", o.min_area);
     access.field("inherited_weight", o.inherited_weight);
     access.field("defer_refinement", o.defer_refinement);
-    access.choice(
-        "importance", o.method.importance,
-        std::array<std::pair<const char*, ImportanceUse>, 3>{
-            {{"none", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}}});
-    access.choice("iteration", o.separate_iterations, Choices<bool>{{{"separate", true}, {"combined", false}}});
-    access.choice("importance_storage", o.importance_at_elements, Choices<bool>{{{"element", true}, {"patch", false}}});
-    access.choice("importance_sampling", o.total_importance, Choices<bool>{{{"total", true}, {"indirect", false}}});
-    access.field("importance_smoothing", o.importance_smoothing);
-    access.field("importance_exponent", o.importance_exponent);
+    access.field("separate_iterations", o.separate_iterations);
+    access.field("importance_at_patches", o.importance_at_patches);
+    access.field("total_importance", o.total_importance);
     access.field("alpha", o.alpha);
     access.field("beta", o.beta);
-    access.field("camera_rays", o.camera_rays);
+}
+
+/// Of options as they were named before: under their present names.
+Json with_present_names(Json json) {
+    if (json.contains("time")) return json;
+    json["time"] = json.at("seconds");
+    json["refinement_criterion"] = json.at("refinement");
+    if (json.at("importance") == "none") json["importance"] = "off";
+    json["one_bounce"] = !json.at("complete_passes").get<bool>();
+    json["separate_iterations"] = json.at("iteration") == "separate";
+    json["importance_at_patches"] = json.at("importance_storage") == "patch";
+    json["total_importance"] = json.at("importance_sampling") == "total";
+    return json;
 }
 
 /// The one list of what is told of an iteration. @param access  Writer or Reader.
@@ -131,7 +150,8 @@ Json json_of(const SolveOptions& options) {
     return json;
 }
 
-void read_options(const Json& json, SolveOptions& options) {
+void read_options(const Json& stored, SolveOptions& options) {
+    const Json json = with_present_names(stored);
     for_each_option(options, Reader{json});
     for (const Json& v : json.at("views"))
         options.views.push_back(

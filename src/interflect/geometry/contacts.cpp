@@ -148,13 +148,13 @@ std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& fac
                                                          options.most_pieces_per_face));
         }
         if (!is_cut) continue;
-        if (count + patches - sides <= options.most_patches) {
+        if (count + patches - sides <= options.max_patches) {
             face.patches = patches;
             count += patches - sides;
         } else {
             warnings.add("contact-cuts", fmt::format("a face was not cut where others meet it, for there would be "
                                                      "more than {} patches",
-                                                     options.most_patches));
+                                                     options.max_patches));
         }
     }
     return faces;

@@ -71,7 +71,7 @@ void split_triangle(Scene& split, const Patch& patch, Pieces n, const Vertex& ve
 
 }  // namespace
 
-Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_patches) {
+Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches) {
     require_no_faults(scene_faults(scene), "cannot divide", scene);
     if (!(largest_edge > 0)) throw InputError(fmt::format("edges of {} m: expected more than 0", largest_edge));
     double count = 0;
@@ -79,11 +79,11 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t most_p
         const Pieces n = pieces_of(scene, patch, largest_edge);
         count += static_cast<double>(n.u) * static_cast<double>(n.v);
     }
-    if (count > static_cast<double>(most_patches))
+    if (count > static_cast<double>(max_patches))
         throw InputError(
             fmt::format("{}: a mesh size of {} m asks for {:.3g} patches, more than the limit of {}; use "
                         "a larger --mesh-size or raise --max-patches",
-                        scene.name, largest_edge, count, most_patches));
+                        scene.name, largest_edge, count, max_patches));
     Scene split = scene;
     split.vertices.clear();
     split.texture_coordinates.clear();

@@ -25,7 +25,9 @@ constexpr double least_decay = 0.25, most_decay = 0.7;
 /// Siblings are young as long as they have met a smaller share of the rays that their parent has.
 constexpr float young = 0.125f, highest_expected_decay = 0.5f;
 
-bool uses_shrinkage(const SolverState& state) { return state.options.shrinkage && refines_by_variance(state.options); }
+bool uses_shrinkage(const SolverState& state) {
+    return state.options.experimental.shrinkage && refines_by_variance(state.options);
+}
 
 /// The mean square errors that an element has beyond those of its parent.
 struct AddedError {

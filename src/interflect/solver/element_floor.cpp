@@ -16,8 +16,9 @@ constexpr float least_cosine = 0.1f;
 
 }  // namespace
 
-ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options) : is_given_(options.min_area > 0) {
-    unseen_ = static_cast<float>(is_given_ ? options.min_area : std::pow(default_element_size(scene), 2));
+ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options)
+    : is_given_(options.refinement.min_area > 0) {
+    unseen_ = static_cast<float>(is_given_ ? options.refinement.min_area : std::pow(default_element_size(scene), 2));
     for (const WeightedView& w : options.views) {
         const double height = 2 * std::tan(0.5 * static_cast<double>(w.view.fov) * std::numbers::pi / 180);
         eyes_.push_back({V3f(w.view.eye - scene.origin), static_cast<float>(height / w.pixel_rows)});

@@ -17,7 +17,7 @@ class ElementFloor {
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
     /// @param is_seen  By a view: then the area that a pixel of the nearest view shows there; else as below.
-    /// @return         [m^2]; SolveOptions::min_area wherever that is given.
+    /// @return         [m^2]; RefinementOptions::min_area wherever that is given.
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
     /// Where no view looks: the square of default_element_size().

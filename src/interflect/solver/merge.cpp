@@ -95,7 +95,8 @@ void merge_details(const SolverState& state, GroupLight& mean, const GroupLight&
 }
 
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new) {
-    const auto rays = static_cast<float>(plan.rays), inherited = static_cast<float>(state.options.inherited_weight);
+    const auto rays = static_cast<float>(plan.rays),
+               inherited = static_cast<float>(state.options.experimental.inherited_weight);
     parallel_for_ranges(state.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e)
             state.history[e] = plan.warms_up ? 0.0f : (state.history[e] + rays) * (e < first_new ? 1.0f : inherited);

@@ -16,25 +16,27 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
         if (!holds) faults.push_back(message);
     };
     require(!scene.patches.empty(), "the scene has no patches");
-    require(o.rays > 0, "rays: expected more than 0");
-    require(o.seconds > 0, "seconds: expected more than 0");
-    require(o.until >= 0 && o.until < 1, "until: expected a relative error from 0 to below 1");
-    require(o.warm_up >= 0, "warm_up: expected 0 or more");
-    require(o.iterations >= 0, "iterations: expected 0 or more");
-    require(o.rays_per_iteration >= 0 && o.rays_per_iteration <= most_rays_per_iteration,
+    require(o.limits.rays > 0, "rays: expected more than 0");
+    require(o.limits.time > 0, "time: expected more than 0");
+    require(o.limits.until >= 0 && o.limits.until < 1, "until: expected a relative error from 0 to below 1");
+    require(o.experimental.warm_up >= 0, "warm_up: expected 0 or more");
+    require(o.experimental.iterations >= 0, "iterations: expected 0 or more");
+    require(o.experimental.rays_per_iteration >= 0 && o.experimental.rays_per_iteration <= most_rays_per_iteration,
             "rays_per_iteration: expected 0 to 100 thousand million");
-    require(o.epsilon > 0, "epsilon: expected more than 0");
-    require(o.epsilon_decay >= 0 && o.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
-    require(o.min_area >= 0, "min_area: expected 0 or more");
-    require(o.max_elements >= scene.patches.size() && o.max_elements < 0xfffffff0u,
+    require(o.experimental.epsilon > 0, "epsilon: expected more than 0");
+    require(o.experimental.epsilon_decay >= 0 && o.experimental.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
+    require(o.refinement.min_area >= 0, "min_area: expected 0 or more");
+    require(o.refinement.max_elements >= scene.patches.size() && o.refinement.max_elements < 0xfffffff0u,
             fmt::format("max_elements: {}, expected at least the number of patches, {}, and less than 2^32 - 16",
-                        o.max_elements, scene.patches.size()));
-    require(o.alpha >= 0 && o.alpha <= 1, "alpha: expected 0 to 1");
-    require(o.beta >= 0 && o.beta <= 1, "beta: expected 0 to 1");
-    require(o.inherited_weight >= 0 && o.inherited_weight <= 1, "inherited_weight: expected 0 to 1");
-    require(o.importance_smoothing >= 0 && o.importance_smoothing <= 1, "importance_smoothing: expected 0 to 1");
-    require(o.importance_exponent >= 0 && o.importance_exponent <= 1, "importance_exponent: expected 0 to 1");
-    require(o.camera_rays > 0 && o.camera_rays <= most_camera_rays, "camera_rays: expected 1 to 2^22");
+                        o.refinement.max_elements, scene.patches.size()));
+    require(o.experimental.alpha >= 0 && o.experimental.alpha <= 1, "alpha: expected 0 to 1");
+    require(o.experimental.beta >= 0 && o.experimental.beta <= 1, "beta: expected 0 to 1");
+    require(o.experimental.inherited_weight >= 0 && o.experimental.inherited_weight <= 1,
+            "inherited_weight: expected 0 to 1");
+    require(o.importance.smoothing >= 0 && o.importance.smoothing <= 1, "importance_smoothing: expected 0 to 1");
+    require(o.importance.exponent >= 0 && o.importance.exponent <= 1, "importance_exponent: expected 0 to 1");
+    require(o.importance.camera_rays > 0 && o.importance.camera_rays <= most_camera_rays,
+            "camera_rays: expected 1 to 2^22");
     for (const WeightedView& v : o.views)
         require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");

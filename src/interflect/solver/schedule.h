@@ -38,8 +38,8 @@ class Schedule {
     /// Enters rays that are averaged with none.
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// Replaces SolveOptions::rays and ::seconds; what they made of the first iterations stays.
-    void set_limits(std::int64_t rays, double seconds);
+    /// Replaces SolveOptions::limits; what they made of the first iterations stays.
+    void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 
     std::int64_t rays() const { return rays_; }

@@ -67,16 +67,18 @@ void Solver::Run::dim(std::size_t group, float factor) {
     dim_sources();
 }
 
-void Solver::Run::limit_time() { state.stop.limit_time(state.start, state.options.seconds - state.earlier_seconds); }
+void Solver::Run::limit_time() {
+    state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
+}
 
 /// @param rays_asked_for  In all; a plan that is fulfilled is extended to them.
 IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     const IterationPlan next = method->plan(state);
     const bool is_more_asked_for = rays_asked_for < std::numeric_limits<std::int64_t>::max() &&
-                                   rays_asked_for > std::max(state.schedule.rays(), state.options.rays);
+                                   rays_asked_for > std::max(state.schedule.rays(), state.options.limits.rays);
     if (next.rays > 0 || !is_more_asked_for) return next;
-    state.solution.options.rays = rays_asked_for;
-    state.schedule.set_limits(rays_asked_for, state.options.seconds);
+    state.solution.options.limits.rays = rays_asked_for;
+    state.schedule.set_limits(state.options.limits);
     return method->plan(state);
 }
 
@@ -88,7 +90,7 @@ void Solver::Run::iterate_until(const Limits& limits) {
     if (!is_prepared) method->prepare(state);
     is_prepared = true;
     limit_time();
-    while (!(error <= std::max(limits.error, state.options.until)) && state.schedule.rays() < rays_asked_for) {
+    while (!(error <= std::max(limits.until, state.options.limits.until)) && state.schedule.rays() < rays_asked_for) {
         if (plan.rays == 0) plan = next_plan(rays_asked_for);
         is_finished = plan.rays == 0;
         if (is_finished) return;
@@ -100,7 +102,7 @@ void Solver::Run::iterate_until(const Limits& limits) {
         report(state, ++iteration, escaped_power);
         error = state.solution.iterations.back().error_estimate;
     }
-    is_finished = plan.rays == 0 && (error <= state.options.until || method->is_fulfilled(state));
+    is_finished = plan.rays == 0 && (error <= state.options.limits.until || method->is_fulfilled(state));
 }
 
 /// With a forest of its own, since that of the run grows.
@@ -151,7 +153,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     Run& run = *run_;
     SolverState& state = run.state;
     run.finished.reset();
-    state.begin_work(monitor, limits.seconds);
+    state.begin_work(monitor, limits.time);
     state.solution.interrupted = false;
     const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else it is dark, and exactly so
     try {
@@ -159,7 +161,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     } catch (const Interrupted&) {
         state.solution.interrupted = state.stop.is_asked_for();
     }
-    const bool is_out_of_time = state.seconds() >= state.options.seconds;
+    const bool is_out_of_time = state.seconds() >= state.options.limits.time;
     state.end_work();
     return {.error = is_lit ? run.error : 0,
             .rays = state.schedule.rays(),
@@ -195,13 +197,13 @@ void Solver::set_exitance(const std::string& group, float factor) {
     run.error = solution_error(run.state).total();
 }
 
-void Solver::set_plan(std::int64_t rays, double seconds, double until) {
+void Solver::set_plan(const Limits& limits) {
     Run& run = *run_;
     SolveOptions options = run.state.options;
-    options.rays = rays, options.seconds = seconds, options.until = until;
+    options.limits = limits;
     require_solvable(*run.scene, options);
     run.state.solution.options = std::move(options);
-    run.state.schedule.set_limits(rays, seconds);
+    run.state.schedule.set_limits(limits);
     run.is_finished = false;
 }
 

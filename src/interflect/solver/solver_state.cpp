@@ -28,10 +28,10 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     const std::size_t per_element =
         ElementForest::reserved_per_element + Arrivals::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
-    if (!options.method.is_stochastic) return options.max_elements;  // it knows what it makes
+    if (!options.method.is_stochastic) return options.refinement.max_elements;  // it knows what it makes
     const std::size_t fitting = free_address_space() / 2 / per_element;
-    return std::min(largest,
-                    options.max_elements + std::min(excess, fitting - std::min(fitting, options.max_elements)));
+    return std::min(largest, options.refinement.max_elements +
+                                 std::min(excess, fitting - std::min(fitting, options.refinement.max_elements)));
 }
 
 V3f centre_of(const ElementForest& forest, std::uint32_t element) {
@@ -50,7 +50,7 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
       forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
       view(o.views, o.seed),
       floor(scene, o),
-      streams(o.points, o.seed),
+      streams(o.experimental.points, o.seed),
       arrivals(forest->capacity(), groups.size()),
       schedule(o, scene.patches.size()),
       noise(scene.patches.size()) {
@@ -90,12 +90,13 @@ void look(SolverState& state) {
     state.part_importance.assign(state.emission.part_count(), {});
     state.view = ViewImportance(state.options.views, state.options.seed);
     state.floor = ElementFloor(state.scene, state.options);
-    state.view.trace_view_rays(*state.forest, state.ray_caster, state.options.camera_rays);
+    state.view.trace_view_rays(*state.forest, state.ray_caster, state.options.importance.camera_rays);
     state.solution.view_importance.clear();
     state.solution.indirect_importance.clear();
     if (state.view.empty()) return;
     if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
-    state.solution.view_importance = state.view.per_area(*state.forest, !state.options.importance_at_elements);
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
     state.solution.indirect_importance.assign(state.forest->size(), 0.0f);
 }
 
@@ -190,7 +191,7 @@ void SolverState::archive(StateArchive& archive) {
     require(solution.indirect_importance.size() == (view.empty() ? 0 : elements),
             "expected the importance of every element");
     require(view.fits(*forest), "expected points of views on patches of the scene");
-    if (!view.empty()) solution.view_importance = view.per_area(*forest, !options.importance_at_elements);
+    if (!view.empty()) solution.view_importance = view.per_area(*forest, options.experimental.importance_at_patches);
 }
 
 Received run_step(SolverState& state, TransportStep step) {
@@ -237,7 +238,8 @@ void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(*state.forest, first, state.history);
     if (state.view.empty()) return;
     inherit(*state.forest, first, state.solution.indirect_importance);
-    state.solution.view_importance = state.view.per_area(*state.forest, !state.options.importance_at_elements);
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
 }
 
 void refine_view_importance(SolverState& state) {
@@ -248,7 +250,8 @@ void refine_view_importance(SolverState& state) {
     if (wanted < 2 * state.view.rays()) return;
     state.view.trace_view_rays(*state.forest, state.ray_caster,
                                static_cast<int>((wanted - state.view.rays()) / state.view.views()));
-    state.solution.view_importance = state.view.per_area(*state.forest, !state.options.importance_at_elements);
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
 }
 
 void report(SolverState& state, int iteration, const RgbD& escaped_power) {

@@ -10,7 +10,7 @@ namespace interflect {
 
 namespace {
 
-/// SolveOptions::epsilon is the threshold after so many rays.
+/// ExperimentalOptions::epsilon is the threshold after so many rays.
 constexpr double rays_at_epsilon = 20e6;
 /// Of the rays that importance drives these go by that of the neighbourhood.
 constexpr double share_of_nearby = 0.2;
@@ -21,18 +21,19 @@ constexpr float taken_over = 0.3f;
 MixtureWeights power_step_shares(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
-    const double for_power = combined ? 1 - o.alpha : 1, driven = for_power * (1 - o.beta);
+    const double for_power = combined ? 1 - o.experimental.alpha : 1, driven = for_power * (1 - o.experimental.beta);
     const double by_nearby = nearby ? share_of_nearby * driven : 0;
-    return {.power = for_power * o.beta,
+    return {.power = for_power * o.experimental.beta,
             .weighted_power = driven - by_nearby,
-            .importance = combined ? o.alpha : 0,
+            .importance = combined ? o.experimental.alpha : 0,
             .power_nearby = by_nearby};
 }
 
 }  // namespace
 
 bool refines_by_variance(const SolveOptions& o) {
-    return o.method.refines && o.method.follows_variance && o.complete_passes && o.refinement == Refinement::variance;
+    return o.method.refines && o.method.follows_variance && !o.experimental.one_bounce &&
+           o.refinement.criterion == RefinementCriterion::variance;
 }
 
 ImportanceUse importance_use(const Solution& so_far) {
@@ -81,15 +82,15 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     const ElementForest& forest = *so_far.forest;
     if (power_step_shares(so_far, false, false).weighted_power == 0) return {};
     const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
-                           : o.total_importance                            ? importance_of(so_far)
+                           : o.experimental.total_importance               ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
     ImportanceWeights weights{
-        importance_weight(forest, psi, o.importance_smoothing, o.importance_exponent), {}, {}, {}};
-    weigh_parts(found, static_cast<float>(o.importance_exponent), weights);
-    if (neighbourhoods.empty() || o.importance_smoothing == 0) return weights;
+        importance_weight(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
+    weigh_parts(found, static_cast<float>(o.importance.exponent), weights);
+    if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
     neighbourhoods.smooth(forest, weights.nearby, taken_over);
-    for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance_exponent));
+    for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance.exponent));
     return weights;
 }
 
@@ -106,7 +107,7 @@ PowerStep power_step(const Materials& materials, const Emission& emission, const
                 shares);
     step.q = std::move(q);
     step.rays = rays;
-    step.importance_at_patches = !so_far.options.importance_at_elements;
+    step.importance_at_patches = so_far.options.experimental.importance_at_patches;
     return {std::move(step), power, weighted_power, lost_leaves};
 }
 
@@ -116,24 +117,25 @@ TransportStep importance_step(const Materials& materials, const Solution& so_far
     step.q = mixture({materials, *so_far.forest, {}, importance, {}}, {.importance = 1}).q;
     step.rays = rays;
     step.importance = importance;
-    step.importance_at_patches = !so_far.options.importance_at_elements;
+    step.importance_at_patches = so_far.options.experimental.importance_at_patches;
     return step;
 }
 
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
-    const double fall = std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.epsilon_decay);
+    const double fall =
+        std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.experimental.epsilon_decay);
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.epsilon * fall * reference_power(so_far);
+    oracle.threshold = so_far.options.experimental.epsilon * fall * reference_power(so_far);
     if (oracle.by_importance) {
         // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
         oracle.importance =
-            importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance_smoothing, 1);
+            importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance.smoothing, 1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
     }
     oracle.min_area = static_cast<float>(min_area);
-    oracle.max_elements = so_far.options.max_elements;
+    oracle.max_elements = so_far.options.refinement.max_elements;
     return oracle;
 }
 

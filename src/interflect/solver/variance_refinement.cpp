@@ -107,7 +107,7 @@ void refine_by_variance(SolverState& state) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e);
     });
-    for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.options.max_elements; ++e)
+    for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.options.refinement.max_elements; ++e)
         if (splits[e]) forest.subdivide(e);
     if (forest.size() == before) return;
     forest.put_in_order(before);

@@ -214,7 +214,7 @@ class GlobalLines final : public Passes {
         const auto trace_some = [&](std::size_t begin, std::size_t end) {
             LineBundle& bundle = bundles.local();
             bundle.lines.resize(end - begin);
-            make_lines(domain_, state.options.points, key, begin, bundle);
+            make_lines(domain_, state.options.experimental.points, key, begin, bundle);
             while (!bundle.lines.empty()) {
                 find_segments(forest, state.ray_caster, bundle);
                 for (const LineSegment& segment : bundle.segments) sums.add(segment);

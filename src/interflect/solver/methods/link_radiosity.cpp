@@ -129,7 +129,7 @@ void LinkedElements::find_patches_to_link() {
     const auto is_weak = [&](std::uint32_t i, std::uint32_t j) {
         return !emits(i) && !emits(j) &&
                largest_exchange(spheres[i], spheres[j], forest_.area(i), forest_.area(j)) <
-                   state_.options.epsilon * surface;
+                   state_.options.experimental.epsilon * surface;
     };
 
     std::vector<std::vector<LinkCandidate>> of_patch(forest_.patch_count());
@@ -233,7 +233,7 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const ImportanceUse use = importance_use(solution);
     const std::vector<float> psi =
         use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
-    const double threshold = solution.options.epsilon * reference_power(solution) *
+    const double threshold = solution.options.experimental.epsilon * reference_power(solution) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi));
     std::vector<RefinementCandidate> candidates;
     if (!(threshold > 0)) return candidates;
@@ -260,7 +260,7 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
 
 /// Where not all can be divided, keeps the worst.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
-    const std::int64_t rays = std::max<std::int64_t>(0, state_.options.rays - rays_);
+    const std::int64_t rays = std::max<std::int64_t>(0, state_.options.limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
     if (candidates.size() <= affordable) return;
     const auto comes_first = [](const RefinementCandidate& x, const RefinementCandidate& y) {
@@ -277,7 +277,7 @@ void LinkedElements::describe_new_elements(std::uint32_t first) {
     state_.materials.grow(forest_);
     if (state_.view.empty()) return;
     inherit(forest_, first, solution.indirect_importance);
-    solution.view_importance = state_.view.per_area(forest_, !state_.options.importance_at_elements);
+    solution.view_importance = state_.view.per_area(forest_, state_.options.experimental.importance_at_patches);
 }
 
 bool LinkedElements::refine() {
@@ -306,7 +306,8 @@ void LinkedElements::subdivide_links() {
 }
 
 bool LinkedElements::is_fulfilled(const SolverState& state) const {
-    return is_settled_ || (state.options.iterations > 0 && sweeps_ >= state.options.iterations);
+    return is_settled_ ||
+           (state.options.experimental.iterations > 0 && sweeps_ >= state.options.experimental.iterations);
 }
 
 IterationPlan LinkedElements::plan(SolverState& state) {

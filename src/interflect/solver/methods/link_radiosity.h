@@ -47,11 +47,12 @@ struct RefinementCandidate;
 /// many links that each are good enough err the same way. Meant for some thousands of patches: all pairs are looked at.
 ///
 /// The run ends when a sweep changes nearly nothing and no link asks for refinement. Refinement stays within
-/// options.rays (the first links are made at any price), max_elements and min_area; options.iterations, if not 0,
-/// and seconds limit the sweeps. Options of random sampling, and `until`, have no meaning here. IterationReport has one
-/// entry a sweep; `rays` are those of visibility, `escaped_power` is what left the surfaces and arrived at none: in a
-/// closed scene the error of the form factors' sum, of either sign. Solution::standard_error and ::rays are 0.
-/// Same seed, same bits, for any number of threads. Cost: O(patches^2 + links) time.
+/// options.limits.rays (the first links are made at any price), max_elements and min_area;
+/// options.experimental.iterations, if not 0, and seconds limit the sweeps. Options of random sampling, and `until`,
+/// have no meaning here. IterationReport has one entry a sweep; `rays` are those of visibility, `escaped_power` is what
+/// left the surfaces and arrived at none: in a closed scene the error of the form factors' sum, of either sign.
+/// Solution::standard_error and ::rays are 0. Same seed, same bits, for any number of threads. Cost: O(patches^2 +
+/// links) time.
 class LinkedElements : public IterationMethod {
   public:
     /// @param state       Must outlive this. @param link_limit  Most links at a time.

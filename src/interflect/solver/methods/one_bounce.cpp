@@ -15,9 +15,9 @@ namespace interflect {
 RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     Solution& solution = state.solution;
     const bool with_importance = importance_use(solution) == ImportanceUse::full;
-    const bool combined = with_importance && !state.options.separate_iterations;
+    const bool combined = with_importance && !state.options.experimental.separate_iterations;
     const std::int64_t for_importance =
-        with_importance ? std::llround(state.options.alpha * static_cast<double>(plan.rays)) : 0;
+        with_importance ? std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays)) : 0;
     if (!importance_step_is_done_) {
         elements_before_ = state.forest->size();
         if (with_importance && !combined && for_importance > 0) {
@@ -35,7 +35,7 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
         auto [step, power, weighted_power, lost_leaves] =
             power_step(state.materials, state.emission, solution, light, weights, combined, rays);
         step.groups = group_radiosity(state, solution.groups);
-        const bool deferred = state.options.defer_refinement && plan.warms_up;
+        const bool deferred = state.options.experimental.defer_refinement && plan.warms_up;
         if (state.options.method.refines && !deferred)
             step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
         Received received = run_step(state, std::move(step));

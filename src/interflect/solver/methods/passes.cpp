@@ -95,14 +95,14 @@ void Passes::begin_pass(SolverState& state, std::int64_t rays) {
 std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool oracle_refines) {
     Solution& solution = state.solution;
     // Importance is carried on by the first bounce alone, which has the most rays.
-    const bool carries_importance =
-        pass_.emits && importance_use(solution) == ImportanceUse::full && !state.options.separate_iterations;
+    const bool carries_importance = pass_.emits && importance_use(solution) == ImportanceUse::full &&
+                                    !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, pass_.unshot, pass_.emits);
     PowerStep bounce =
         power_step(state.materials, state.emission, solution, light, pass_.weights, carries_importance, 0);
     if (pass_.emits) pass_.first_power = bounce.power, pass_.first_weighted_power = bounce.weighted_power;
     BounceBudget budget = pass_.budget;
-    const double weight = unshot_weight(bounce, pass_, state.options.beta);
+    const double weight = unshot_weight(bounce, pass_, state.options.experimental.beta);
     const std::int64_t traced = bounce.power > 0 ? budget.next(weight) : 0;
     TransportStep& step = bounce.step;
     step.rays = traced;
@@ -120,7 +120,7 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     pass_.emits = false;
     solution.non_finite += bounce.lost_leaves;
     if (traced == 0) return 0;
-    const double share = carries_importance ? state.options.alpha : 0;
+    const double share = carries_importance ? state.options.experimental.alpha : 0;
     const std::int64_t for_importance = std::llround(share * static_cast<double>(traced));
     state.importance_rays += for_importance;
     state.power_rays += traced - for_importance;
@@ -161,7 +161,7 @@ FreshEstimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool ora
 }
 
 void Passes::prepare(SolverState& state) {
-    if (state.options.rays < fewest_rays_with_preparation) stage_ = Stage::done;
+    if (state.options.limits.rays < fewest_rays_with_preparation) stage_ = Stage::done;
     const std::int64_t rays = state.schedule.start_rays();
     if (stage_ == Stage::importance) {
         if (importance_use(state.solution) == ImportanceUse::full) start_importance(state, rays);
@@ -335,9 +335,9 @@ bool Passes::fits(const SolverState& state) const {
 
 RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
     const bool has_importance_step =
-        importance_use(state.solution) == ImportanceUse::full && state.options.separate_iterations;
+        importance_use(state.solution) == ImportanceUse::full && state.options.experimental.separate_iterations;
     const std::int64_t for_importance =
-        has_importance_step ? std::llround(state.options.alpha * static_cast<double>(plan.rays)) : 0;
+        has_importance_step ? std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays)) : 0;
     if (finds_importance_ && !importance_step_is_done_) adapt_to_views(state);
     if (!importance_step_is_done_) {
         escaped_power_ = RgbD(0, 0, 0);
@@ -373,8 +373,8 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
 }
 
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {
-    if (state.options.complete_passes) return std::make_unique<Passes>();
-    return std::make_unique<OneBounce>();
+    if (state.options.experimental.one_bounce) return std::make_unique<OneBounce>();
+    return std::make_unique<Passes>();
 }
 
 }  // namespace interflect

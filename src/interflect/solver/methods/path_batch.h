@@ -104,7 +104,7 @@ class PathBatch {
           emission_(state.emission),
           ray_caster_(state.ray_caster),
           stop_(state.stop),
-          first_points_(state.options.points),
+          first_points_(state.options.experimental.points),
           payload_(payload),
           paths_(paths),
           key_(key),

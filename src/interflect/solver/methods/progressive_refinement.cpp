@@ -95,7 +95,8 @@ class ProgressiveRefinement final : public IterationMethod {
   public:
     /// Importance, so that the first rays of power know where it matters.
     void prepare(SolverState& state) override {
-        shoot_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.rays)));
+        shoot_importance(state,
+                         std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
         state.schedule.began_with(0, state.importance_rays);
     }
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
@@ -130,7 +131,7 @@ class ProgressiveRefinement final : public IterationMethod {
 /// What importance lacks of its share alpha of the rays, where so many are planned in all.
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
-    const std::int64_t share = std::llround(state.options.alpha * static_cast<double>(planned));
+    const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - importance_history_);
 }
 
@@ -198,7 +199,7 @@ bool ProgressiveRefinement::shoot_some_power(SolverState& state) {
         power_step(state.materials, state.emission, state.solution, light, weights_, false, 0);
     if (!(power > 0)) return false;
     if (emits_) first_power_ = power, first_weighted_power_ = weighted_power;
-    const double beta = first_weighted_power_ > 0 ? state.options.beta : 1;
+    const double beta = first_weighted_power_ > 0 ? state.options.experimental.beta : 1;
     const double unshot = beta * ratio(power, first_power_) + (1 - beta) * ratio(weighted_power, first_weighted_power_);
     std::vector<float> chosen = step.q;
     if (emits_)  // all emitters, and all parts of the luminaires

@@ -78,7 +78,7 @@ std::vector<float> leading_importance(const Solution& so_far) {
         case ImportanceUse::full:
             break;
     }
-    return so_far.options.total_importance ? total_importance(so_far) : so_far.indirect_importance;
+    return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
 /// beta + (1 - beta) psi, where psi is relative to its mean over the emitted power: then the share beta of the paths
@@ -92,7 +92,7 @@ std::vector<float> particle_density(const Solution& so_far, const std::vector<Rg
         important += w * density[i];
     }
     if (!(important > 0)) return std::vector<float>(emitted.size(), 1.0f);
-    const double beta = so_far.options.beta;
+    const double beta = so_far.options.experimental.beta;
     for (float& d : density) d = static_cast<float>(beta + (1 - beta) * d * power / important);
     return density;
 }
@@ -129,14 +129,14 @@ RandomWalks::RandomWalks(const SolverState& state)
       importance_{sub_key(state.options.seed, WalkPurpose::importance)} {}
 
 void RandomWalks::prepare(SolverState& state) {
-    walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.rays)));
+    walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
     state.schedule.began_with(0, state.importance_rays);
 }
 
 /// What importance lacks of its share alpha of the rays, where so many are planned in all.
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
-    const std::int64_t share = std::llround(state.options.alpha * static_cast<double>(planned));
+    const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - importance_history_);
 }
 

@@ -15,7 +15,7 @@ WellDistributedRays::WellDistributedRays(const SolverState& state)
     : shot_(state.forest->size(), 0.0), arrived_(state.forest->size(), Rgb(0)) {}
 
 void WellDistributedRays::prepare(SolverState& state) {
-    if (state.options.complete_passes) passes_.make_first_estimate(state);
+    if (!state.options.experimental.one_bounce) passes_.make_first_estimate(state);
     shot_.assign(state.forest->size(), 0.0);
     shot_by_parts_.assign(state.emission.part_count(), 0.0);
     arrived_.assign(state.forest->size(), Rgb(0));
