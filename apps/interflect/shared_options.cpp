@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "interflect/contacts.h"
+#include "interflect/error.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"
 #include "interflect/raycast/camera.h"
@@ -25,9 +26,13 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
 }
 
 Scene SceneOptions::load() const {
-    Scene scene = load_scene(path, read);
-    log_warnings(scene.warnings);
-    return scene;
+    try {
+        Scene scene = load_scene(path, read);
+        log_warnings(scene.warnings);
+        return scene;
+    } catch (const TooManyPatches& e) {
+        throw InputError(fmt::format("{}; --max-patches raises it", e.what()));
+    }
 }
 
 void log_warnings(const Warnings& warnings) {
@@ -63,7 +68,11 @@ Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) co
     }
     if (size == whole_patches || (size == automatic_mesh_size && refines)) return scene;
     const float edge = size == automatic_mesh_size ? default_mesh_size(scene) : size;
-    return split_patches(scene, edge, read.max_patches);
+    try {
+        return split_patches(scene, edge, read.max_patches);
+    } catch (const TooManyPatches& e) {
+        throw InputError(fmt::format("{}; use a larger --mesh-size or raise --max-patches", e.what()));
+    }
 }
 
 void ViewOptions::add_to(CLI::App& app) {
@@ -88,6 +97,9 @@ void ViewOptions::add_to(CLI::App& app) {
 
 std::vector<View> ViewOptions::views(const Scene& scene) const {
     std::vector<View> views;
+    if (!names.empty() && scene.views.empty())
+        throw InputError(scene.name, 0,
+                         fmt::format("there is no view '{}'; it names none, give --eye and --look-at", names.front()));
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back({"command line", *eye, *look_at, up, fov});

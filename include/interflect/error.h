@@ -18,4 +18,10 @@ class InputError : public std::runtime_error {
     }
 };
 
+/// A scene would have more patches than a limit allows (ReadOptions::max_patches, which the message names).
+class TooManyPatches : public InputError {
+  public:
+    using InputError::InputError;
+};
+
 }  // namespace interflect

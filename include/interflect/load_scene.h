@@ -12,8 +12,9 @@ namespace interflect {
 ///
 /// In place of a file, `maze:ROOMS` or `maze:ROOMS:furniture` makes that maze in memory (make_maze(), its other options
 /// at their defaults), with its views: `maze:9:furniture` is the size of the scene in Prikryl et al. 2000.
-/// @throws InputError  for an unknown extension, as the readers do, for a maze that is not as above, and where it has
-///         more patches than options.max_patches.
+/// @throws InputError  for an unknown extension, as the readers do, and for a maze that is not as above; TooManyPatches
+/// where
+///         the scene has more than options.max_patches.
 Scene load_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect

@@ -39,7 +39,8 @@ TEST(LoadScene, MazeThatIsNotUnderstood) {
 }
 
 TEST(LoadScene, MazeBeyondTheLimitOfPatches) {
-    EXPECT_NE(fault_of("maze:4:furniture", {.max_patches = 1000}).find("--max-patches"), std::string::npos);
+    EXPECT_NE(fault_of("maze:4:furniture", {.max_patches = 1000}).find("max_patches"), std::string::npos);
+    EXPECT_THROW(load_scene("maze:4:furniture", {.max_patches = 1000}), TooManyPatches);
     EXPECT_EQ(fault_of("maze:4", {.max_patches = 1000}), "no error");
 }
 

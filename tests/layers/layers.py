@@ -1,4 +1,5 @@
-"""The rules of docs/design.md that a compiler does not check: who may include whom, and what a header may hold."""
+"""The rules of docs/design.md that a compiler does not check: who may include whom, what a header may hold, and what a
+message of the library may say."""
 
 import re
 from pathlib import Path
@@ -13,6 +14,8 @@ LAYERS = [
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
 USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)
 PRAGMA_ONCE = re.compile(r"^#pragma once$", re.MULTILINE)
+LITERAL = re.compile(r"""'\\?.'|"(?:[^"\\\n]|\\.)*\"""")
+OPTION = re.compile(r"--[a-z]")
 USES = re.compile(r"\bUSES\s+([a-z_ \n]+)")
 
 
@@ -28,6 +31,9 @@ def faults(root: Path) -> list[str]:
     for header in public:
         found += [f"{header}: includes interflect/{folder}/, which is not installed"
                   for folder in INCLUDE.findall(header.read_text())]
+    for source in sorted([*public, *library.rglob("*.h"), *library.rglob("*.cpp")]):
+        found += [f"{source}: {literal} names an option of the command line, which other programs do not have"
+                  for literal in LITERAL.findall(source.read_text()) if OPTION.search(literal)]
     for header in sorted([*public, *library.rglob("*.h"), *(root / "apps").rglob("*.h")]):
         found += header_faults(header)
     return found

@@ -61,6 +61,14 @@ class Checker(unittest.TestCase):
         self.write("gadgets/CMakeLists.txt", "interflect_folder(gadgets SOURCES gadget.cpp)")
         self.assert_only_fault("gadgets", "not one of the layers")
 
+    def test_message_with_an_option_of_the_command_line(self):
+        self.write("base/colour.cpp", 'throw InputError("too many; \\"x\\" --max-patches raises it");\n')
+        self.assert_only_fault("base/colour.cpp", "names an option of the command line")
+
+    def test_decrements_and_comments_are_no_messages(self):
+        self.write("base/colour.cpp", 'return f("a", --count, "b");  // see solve --stats\n')
+        self.assertEqual(faults(self.root), [])
+
     def test_header_without_guard(self):
         self.write("scene/view.h", "struct View;\n")
         self.assert_only_fault("scene/view.h", "#pragma once")

@@ -271,7 +271,7 @@ std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) 
 
 StateArchive read_state(const VerifiedFile& file) {
     if (!file.has_checksums || !file.arrays.has(state_group))
-        throw std::runtime_error("it has only the result of a run, not its state: see solve --checkpoint");
+        throw std::runtime_error("it has only the result of a run, not its state, which checkpoints have");
     const std::vector<char> text = file.arrays.read<char>(state_index);
     const Json index = parse_json_text({text.data(), text.size()});
     if (index.at("state_version") != state_version || index.at("version") != INTERFLECT_VERSION)

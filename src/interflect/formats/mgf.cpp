@@ -15,9 +15,9 @@ using Imath::V3d;
 
 ReadOptions checked(const ReadOptions& options) {
     if (options.curve_divisions < 1 || options.curve_divisions > 1000)
-        throw InputError("--curve-divisions", 0, fmt::format("must be 1 to 1000, not {}", options.curve_divisions));
+        throw InputError(fmt::format("curve_divisions: expected 1 to 1000, not {}", options.curve_divisions));
     if (options.max_patches > 4'000'000'000)
-        throw InputError("--max-patches", 0, fmt::format("must be at most 4 * 10^9, not {}", options.max_patches));
+        throw InputError(fmt::format("max_patches: expected at most 4 * 10^9, not {}", options.max_patches));
     return options;
 }
 

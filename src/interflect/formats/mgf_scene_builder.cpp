@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "interflect/error.h"
+#include "interflect/formats/mgf_arguments.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/geometry/polygon.h"
@@ -52,8 +53,7 @@ void MgfSceneBuilder::warn(const std::string& kind, const std::string& message, 
 
 void MgfSceneBuilder::require_room(double patches) const {
     if (static_cast<double>(scene_.patches.size() + left_out_) + patches > static_cast<double>(options_.max_patches))
-        throw std::invalid_argument(
-            fmt::format("this would give more than {} patches; --max-patches raises the limit", options_.max_patches));
+        throw MgfPatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));
 }
 
 V3f MgfSceneBuilder::position(const Imath::V3d& world) const {

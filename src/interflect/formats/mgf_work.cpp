@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
+#include "interflect/formats/mgf_arguments.h"
 
 namespace interflect {
 
@@ -17,11 +17,10 @@ constexpr std::uint64_t free_of_made = 50'000'000, words_per_made_patch = 1000;
 void RepeatedWork::add(std::uint64_t words, std::uint64_t patches) {
     words_ += words;
     if (words_ > free_of_limit + words_per_allowed_patch * max_patches_)
-        throw std::invalid_argument(
-            fmt::format("arrays and includes repeat more than {} patches could need; --max-patches raises the limit",
-                        max_patches_));
+        throw MgfPatchLimit(
+            fmt::format("arrays and includes repeat more than {} patches (max_patches) could need", max_patches_));
     if (words_ > free_of_made + words_per_made_patch * patches)
-        throw std::invalid_argument(
+        throw MgfFault(
             fmt::format("arrays and includes repeat {} million words, from which only {} patches were made: expected "
                         "files that include each other, or arrays in each other, fewer times",
                         words_ / 1'000'000, patches));

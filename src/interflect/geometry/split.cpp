@@ -80,10 +80,10 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
         count += static_cast<double>(n.u) * static_cast<double>(n.v);
     }
     if (count > static_cast<double>(max_patches))
-        throw InputError(
-            fmt::format("{}: a mesh size of {} m asks for {:.3g} patches, more than the limit of {}; use "
-                        "a larger --mesh-size or raise --max-patches",
-                        scene.name, largest_edge, count, max_patches));
+        throw TooManyPatches(
+            scene.name, 0,
+            fmt::format("a mesh size of {} m asks for {:.3g} patches, more than the limit of {} (max_patches)",
+                        largest_edge, count, max_patches));
     Scene split = scene;
     split.vertices.clear();
     split.texture_coordinates.clear();

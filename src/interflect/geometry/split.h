@@ -9,7 +9,8 @@ namespace interflect {
 /// patches that share an edge divide it alike. Sides stay neighbours, other_side included. Texture
 /// coordinates are interpolated.
 /// @param largest_edge  [m], > 0.
-/// @throws InputError where more than `max_patches` would result, for another edge, and for a scene with faults.
+/// @throws TooManyPatches where more than `max_patches` would result; InputError for another edge, and for a scene with
+/// faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches);
 
 /// An edge length that shows light and shadow over the scene at a moderate cost: the diagonal of its bounding box

@@ -60,8 +60,7 @@ const View& find_view(const Scene& scene, const std::string& name) {
     std::string known;
     for (const View& v : scene.views) known += (known.empty() ? "" : ", ") + v.name;
     throw InputError(scene.name, 0,
-                     "there is no view '" + name + "'; " +
-                         (known.empty() ? "the file names none, give --eye and --look-at" : "it names: " + known));
+                     "there is no view '" + name + "'; " + (known.empty() ? "it names none" : "it names: " + known));
 }
 
 View overview(const Scene& scene) {
