@@ -138,12 +138,18 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-Rgb Emission::irradiance(std::size_t part, float distance) const {
+Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance) const {
     const Emitter& emitter = emitters_[part / parts_per_emitter];
     const float squared = std::max(distance * distance, std::numeric_limits<float>::min());
-    if (std::holds_alternative<Beam>(emitter.shape)) return emitter.rating / squared;
+    if (std::holds_alternative<Beam>(emitter.shape)) return {ray.origin, V3f(0), emitter.rating};
     const Window& window = std::get<Window>(emitter.shape);
-    return window.is_diffuse ? emitter.rating * (window.part_area / (window.part_area + pi * squared)) : emitter.rating;
+    if (window.is_diffuse) {
+        const float form_factor = window.part_area / (window.part_area + pi * squared);  // of a disk of that area
+        return {ray.origin, window.direction, emitter.rating * (form_factor * squared)};
+    }
+    // So far away that direction and distance are the same for the whole scene.
+    const float far = 100 * (corners_.back() - corners_.front()).length();
+    return {ray.origin - far * window.direction, window.direction, emitter.rating * (far * far)};
 }
 
 }  // namespace interflect
