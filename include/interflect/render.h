@@ -10,9 +10,11 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect {
-
+namespace interflect::inline detail {
 class ElementForest;
+}  // namespace interflect::inline detail
+
+namespace interflect {
 
 /// What counts as one smooth surface.
 struct SmoothingOptions {

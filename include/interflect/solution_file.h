@@ -6,9 +6,11 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect {
-
+namespace interflect::inline detail {
 class StateArchive;
+}  // namespace interflect::inline detail
+
+namespace interflect {
 
 /// A solved scene: all that is needed to draw it again.
 struct SolvedScene {

@@ -14,9 +14,13 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect {
-
+namespace interflect::inline detail {
 class ElementForest;
+class IterationMethod;
+struct SolverState;
+}  // namespace interflect::inline detail
+
+namespace interflect {
 
 /// A view and how much it counts beside others.
 struct WeightedView {
@@ -39,8 +43,6 @@ enum class RefinementCriterion {
     power,     ///< Pairs of elements are split by the power that passes between them (Eq. 14, 15), as in the paper.
 };
 
-class IterationMethod;
-struct SolverState;
 /// Makes what does a method's iterations. The state must outlive it.
 using MakeIterationMethod = std::unique_ptr<IterationMethod>(SolverState& state);
 

@@ -11,9 +11,11 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect {
-
+namespace interflect::inline detail {
 class StateArchive;
+}  // namespace interflect::inline detail
+
+namespace interflect {
 
 /// Where a run stands.
 struct AdvanceReport {

@@ -14,6 +14,9 @@ LAYERS = [
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
 USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)
 PRAGMA_ONCE = re.compile(r"^#pragma once$", re.MULTILINE)
+NAMESPACE = re.compile(r"^namespace interflect\b(?!::inline detail\b).*", re.MULTILINE)
+DETAIL = re.compile(r"^namespace interflect::inline detail \{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
+FORWARD_DECLARATION = re.compile(r"(class|struct) \w+;")
 LITERAL = re.compile(r"""'\\?.'|"(?:[^"\\\n]|\\.)*\"""")
 OPTION = re.compile(r"--[a-z]")
 USES = re.compile(r"\bUSES\s+([a-z_ \n]+)")
@@ -31,6 +34,13 @@ def faults(root: Path) -> list[str]:
     for header in public:
         found += [f"{header}: includes interflect/{folder}/, which is not installed"
                   for folder in INCLUDE.findall(header.read_text())]
+    for header in public:
+        found += [f"{header}: '{line}' is internal: expected forward declarations alone"
+                  for block in DETAIL.findall(header.read_text())
+                  for line in block.splitlines() if not FORWARD_DECLARATION.fullmatch(line)]
+    for header in sorted(library.rglob("*.h")):
+        found += [f"{header}: '{line}' is for public headers: expected 'namespace interflect::inline detail'"
+                  for line in NAMESPACE.findall(header.read_text())]
     for source in sorted([*public, *library.rglob("*.h"), *library.rglob("*.cpp")]):
         found += [f"{source}: {literal} names an option of the command line, which other programs do not have"
                   for literal in LITERAL.findall(source.read_text()) if OPTION.search(literal)]

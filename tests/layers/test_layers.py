@@ -61,6 +61,17 @@ class Checker(unittest.TestCase):
         self.write("gadgets/CMakeLists.txt", "interflect_folder(gadgets SOURCES gadget.cpp)")
         self.assert_only_fault("gadgets", "not one of the layers")
 
+    def test_internal_header_with_public_names(self):
+        self.write("base/colour.h", "#pragma once\nnamespace interflect {\nstruct Colour;\n}\n")
+        self.assert_only_fault("base/colour.h", "is for public headers")
+
+    def test_public_header_with_internal_names(self):
+        declared = "namespace interflect::inline detail {\nclass Cell;\n}\n"
+        self.write("../../include/interflect/scene.h", f"#pragma once\n{declared}")
+        self.assertEqual(faults(self.root), [])
+        self.write("../../include/interflect/scene.h", f"#pragma once\n{declared.replace(';', ' { int x; };')}")
+        self.assert_only_fault("include/interflect/scene.h", "forward declarations alone")
+
     def test_message_with_an_option_of_the_command_line(self):
         self.write("base/colour.cpp", 'throw InputError("too many; \\"x\\" --max-patches raises it");\n')
         self.assert_only_fault("base/colour.cpp", "names an option of the command line")

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Addresses that the process may still reserve [bytes]: what RLIMIT_AS (ulimit -v) leaves of them; the largest number
 /// where there is no such limit.
@@ -15,4 +15,4 @@ class AddressSpaceError : public std::runtime_error {
     explicit AddressSpaceError(std::size_t bytes);
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// `text`, safe to print on a terminal and to put into JSON: each byte of a control character (U+0000 to U+001F, U+007F
 /// to U+009F, line breaks too), and each byte that is not part of valid UTF-8, becomes \xNN. A backslash that begins
@@ -13,4 +13,4 @@ std::string escaped(std::string_view text);
 /// What escaped() was given.
 std::string unescaped(std::string_view text);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 
 #include "interflect/colour.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Non-negative colours as integers in a common unit: their sums do not depend on the order of the terms, so any number
 /// of threads gets the same bits. The unit is chosen from the total that can at most arrive, so nothing overflows: with
@@ -42,4 +42,4 @@ inline void add_concurrently(FixedPoint::Value& sum, const FixedPoint::Value& te
     for (std::size_t c = 0; c < 3; ++c) add_concurrently(sum[c], term[c]);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

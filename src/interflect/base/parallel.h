@@ -24,7 +24,7 @@
 #include <thread>
 #endif
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// One T for each thread that asks for it. Its memory is malloc's: what TBB's own allocator hands from thread to thread
 /// ThreadSanitizer cannot follow.
@@ -88,4 +88,4 @@ void parallel_invoke(const A& a, const B& b) {
 #endif
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -17,7 +17,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace fs = std::filesystem;
 
@@ -188,4 +188,4 @@ void remove_temporary_files() noexcept {
         if (const char* const listed = path.load()) ::unlink(listed);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// An output file that appears under its name only when it is complete: written beside, then renamed. Made before long
 /// work begins, so that a path that cannot be written is an error at once, not after an hour. Of a symbolic link the
@@ -40,4 +40,4 @@ class PendingFile {
 /// the process must end then.
 void remove_temporary_files() noexcept;
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

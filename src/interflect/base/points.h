@@ -6,7 +6,7 @@
 
 #include "interflect/point_set.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Coordinates of consecutive 4D points, one array a dimension, so that what follows can be vectorised; all in (0, 1).
 struct PointBlock {
@@ -26,4 +26,4 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
 /// stratified in 4D.
 std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

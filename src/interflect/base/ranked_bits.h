@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A set of numbers below a bound, which knows how many of its members are less than any of them: the members are the
 /// keys of a table that holds nothing for the others. 2 bits for each number below the bound.
@@ -41,4 +41,4 @@ class RankedBits {
     std::vector<Word> words_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 
 #include "interflect/base/address_space.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// An array of up to `capacity` zeros that never moves: address space is reserved at once, memory comes page by page as
 /// it is touched. So threads may use new entries while others still read old ones.
@@ -55,4 +55,4 @@ class StableArray {
     std::size_t capacity_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The part of a patch's parameter domain that an element covers: a square of a quadrilateral, a triangle of a
 /// triangle. A local point (s, t) of the domain's own shape lies at (u + size s, v + size t); size is negative for the
@@ -33,4 +33,4 @@ struct Cell {
     }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -12,7 +12,7 @@
 #include "interflect/error.h"
 #include "interflect/scene/geometry_fingerprint.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -165,4 +165,4 @@ std::uint32_t ElementForest::drop_last_siblings() {
     return parent;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

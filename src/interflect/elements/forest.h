@@ -11,7 +11,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Elements of one task of a sweep over all of them (parallel_for_ranges).
 inline constexpr std::size_t elements_at_once = 1 << 13;
@@ -184,4 +184,4 @@ void pull(const ElementForest& forest, std::vector<T>& values) {
     });
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

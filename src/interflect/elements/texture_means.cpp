@@ -4,7 +4,7 @@
 
 #include "interflect/geometry/texture_mapping.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -74,4 +74,4 @@ Rgb TextureMeans::mean(std::uint32_t texture, const Patch& patch, const PatchGeo
     return Rgb(sum / area);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

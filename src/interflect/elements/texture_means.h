@@ -7,7 +7,7 @@
 #include "interflect/geometry/texture_integral.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Means of a scene's textures over parts of its patches, by area. A cell's is the area-weighted mean of its
 /// children's, to rounding, where texture coordinates are linear over the patch, as on triangles and images that are
@@ -25,4 +25,4 @@ class TextureMeans {
     std::vector<TextureIntegral> integrals_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

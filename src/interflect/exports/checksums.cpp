@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -158,4 +158,4 @@ void verify_checksums(const fs::path& path) {
             fmt::format("the file is damaged: it has {} bytes, expected {}", fs::file_size(path), end));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

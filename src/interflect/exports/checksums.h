@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Bytes at the beginning of a file that its checksums take: an HDF5 user block, which readers of HDF5 skip.
 inline constexpr std::uint64_t checksum_block_size = 4096;
@@ -30,4 +30,4 @@ bool has_checksums(const std::filesystem::path& path);
 /// @throws std::runtime_error that names the first range that is damaged.
 void verify_checksums(const std::filesystem::path& path);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/exports/solve_report.h"
 #include "interflect/exports/texture_records.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -108,4 +108,4 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
     return json.at("has_importance").get<bool>();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

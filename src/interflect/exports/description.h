@@ -5,7 +5,7 @@
 
 #include "interflect/solution_file.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What a solution file holds besides long arrays, as JSON text: docs/solution-file.md lists its keys.
 /// @throws std::runtime_error where a number is not finite.
@@ -15,4 +15,4 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
 /// @throws std::exception where something is missing, unknown or of another version.
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version, SolvedScene& solved);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

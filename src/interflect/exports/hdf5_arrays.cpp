@@ -8,7 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -150,4 +150,4 @@ FileRange Hdf5Writer::write_joined(const std::string& name, const std::vector<st
 
 void Hdf5Writer::flush() { require(H5Fflush(file_, H5F_SCOPE_LOCAL), "cannot write the file"); }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 
 #include "interflect/exports/checksums.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// An HDF5 identifier that closes itself.
 class Hdf5Handle {
@@ -62,4 +62,4 @@ class Hdf5Writer {
     Hdf5Handle file_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -4,7 +4,7 @@
 
 #include "interflect/exports/solve_report.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -57,4 +57,4 @@ Luminaire luminaire_of(const Json& json) {
     return luminaire;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

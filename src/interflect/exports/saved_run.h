@@ -5,7 +5,7 @@
 #include "interflect/solution_file.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A run that can go on.
 struct SavedRun {
@@ -17,4 +17,4 @@ struct SavedRun {
 /// state, or one of another version of Interflect, and as read_solution().
 SavedRun read_saved_run(const std::filesystem::path& path);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

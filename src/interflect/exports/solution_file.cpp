@@ -342,7 +342,7 @@ SolvedScene read_solution(const std::filesystem::path& path) {
     });
 }
 
-SavedRun read_saved_run(const std::filesystem::path& path) {
+SavedRun detail::read_saved_run(const std::filesystem::path& path) {
     require_solution_file(path);
     const VerifiedFile file = read_or_refuse(path, unreadable, [&] { return verified(path); });
     SolvedScene solved = read_or_refuse(path, unreadable, [&] { return read_solved_scene(file); });

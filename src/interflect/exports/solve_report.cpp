@@ -9,7 +9,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -183,4 +183,4 @@ View view_of(const Json& json) {
             vector_of<Imath::V3d>(json.at("look_at")), vector_of<V3f>(json.at("up")), json.at("fov").get<float>()};
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/solve.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// How a solution was asked for: the `options` of solution files and of `solve --stats`, under the names of the command
 /// line. A limit that was not given is null. Of SolveOptions it lacks the seed and the method's name, which stand
@@ -31,4 +31,4 @@ Vector vector_of(const Json& json) {
     return {json.at(0).get<Number>(), json.at(1).get<Number>(), json.at(2).get<Number>()};
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

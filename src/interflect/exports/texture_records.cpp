@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -70,4 +70,4 @@ void read_textures(const Hdf5Reader& file, Scene& scene) {
     if (file.has(coordinates_dataset)) scene.texture_coordinates = read_vectors<V2f>(file, coordinates_dataset);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 // Textures in a solution file: indices, names and sizes in its description, texels and coordinates as arrays.
 
@@ -25,4 +25,4 @@ std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
 /// The inverse. @param scene  Has its textures without their texels. @throws std::runtime_error
 void read_textures(const Hdf5Reader& file, Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -60,4 +60,4 @@ json parse_json(std::string_view text, const std::filesystem::path& path) {
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

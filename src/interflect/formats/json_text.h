@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Parses JSON. @param path  Named in the error. @throws InputError with file and line, where the text is no JSON or
 /// has a number beyond double precision.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Splits a text into lines of words. A backslash right before the end of a line joins the next line to it, and counts
 /// as white space. Words are views of the text; nothing is copied.
@@ -39,4 +39,4 @@ class LineReader {
     std::vector<std::string_view> words_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

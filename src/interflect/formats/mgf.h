@@ -6,7 +6,7 @@
 #include "interflect/read_options.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Reads a scene in the Materials and Geometry Format, version 2.0 (Ward 1996, http://radsite.lbl.gov/mgf/).
 ///
@@ -50,4 +50,4 @@ Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {
 /// The same from memory. @param path  Name for messages; its folder is where includes are looked for.
 Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 
 #include <ImathVec.h>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The words of a line of an MGF file, or its arguments.
 using MgfWords = std::span<const std::string_view>;
@@ -31,4 +31,4 @@ Imath::V3d vector_argument(MgfWords words);
 /// Whether the words hold three that differ from each other.
 bool has_three_distinct(MgfWords words);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

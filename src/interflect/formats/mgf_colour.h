@@ -4,7 +4,7 @@
 
 #include "interflect/colour.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// CIE 1931 chromaticity; that of a spectrum with negative values may lie outside the triangle of x, y >= 0. The
 /// default is MGF's neutral, that of a spectrum of equal energy (illuminant E).
@@ -67,4 +67,4 @@ struct LuminousColour {
 /// @param rgb  Linear Rec. 709, each channel >= 0 and finite; black gets the chromaticity of neutral.
 LuminousColour from_rec709(const RgbD& rgb);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -13,7 +13,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The named contexts of one kind (colours, materials or vertices), and which of them is current. A default-constructed
 /// Context is MGF's default. Names are views of the text that was read, which must outlive the table.
@@ -116,4 +116,4 @@ struct MgfVertex {
     }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -141,4 +141,4 @@ Mesh make_prism(std::span<const V3d> outline, double length) {
     return mesh;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A surface made of flat polygons that share points.
 struct Mesh {
@@ -39,4 +39,4 @@ Mesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner
 /// is in front, and all faces look inwards. @param outline  Three points or more that enclose an area.
 Mesh make_prism(std::span<const Imath::V3d> outline, double length);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

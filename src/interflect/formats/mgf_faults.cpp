@@ -2,7 +2,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 std::uint32_t MgfFaults::add(const Location& where, const std::string& message) {
     const auto [entry, is_new] =
@@ -23,4 +23,4 @@ void MgfFaults::refuse_faults_of(const MgfMaterial& material) const {
     if (material.ed > 0) refuse(material.ed_colour.fault);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

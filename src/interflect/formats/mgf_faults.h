@@ -8,7 +8,7 @@
 
 #include "interflect/formats/mgf_contexts.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The faults in colours and materials, which count only when a face uses them: real files define more than they use,
 /// and what nobody sees should not make them unreadable.
@@ -33,4 +33,4 @@ class MgfFaults {
     std::map<std::pair<const std::filesystem::path*, std::int64_t>, std::uint32_t> index_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

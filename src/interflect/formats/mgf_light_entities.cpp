@@ -7,7 +7,7 @@
 
 #include "interflect/formats/mgf_reader.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 using Imath::V3d;
 
@@ -46,4 +46,4 @@ void MgfReader::light(MgfWords words) {
     scene_.add_light(std::move(luminaire));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/number.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 // ---- Colours
 
@@ -107,4 +107,4 @@ void MgfReader::refraction(MgfWords words) {
     number_argument(words[1]);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

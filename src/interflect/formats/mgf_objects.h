@@ -10,7 +10,7 @@
 #include "interflect/formats/mgf_scene_builder.h"
 #include "interflect/read_options.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The objects (`o`, and one for each copy of an array) that are open where a file is being read.
 class MgfObjects {
@@ -45,4 +45,4 @@ class MgfObjects {
     std::vector<OpenObject> open_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 using Imath::V3d;
 
@@ -190,4 +190,4 @@ void MgfReader::object(MgfWords words) {
         scene_.warn("unbalanced-object", "this closes an object (o), but none is open here", here());
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -22,7 +22,7 @@
 #include "interflect/formats/mgf_work.h"
 #include "interflect/read_options.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A file in the middle of being read, with how much was open when it began: it can close no more than it opened.
 struct OpenMgfFile {
@@ -145,4 +145,4 @@ class MgfReader {
     MgfObjects objects_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

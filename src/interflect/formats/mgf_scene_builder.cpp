@@ -13,7 +13,7 @@
 #include "interflect/geometry/polygon.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -245,4 +245,4 @@ Scene MgfSceneBuilder::finish() {
     return std::move(scene_);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

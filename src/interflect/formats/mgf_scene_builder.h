@@ -14,7 +14,7 @@
 #include "interflect/scene.h"
 #include "interflect/scene/core.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Turns what an MGF file says, already in world coordinates, into a Scene relative to an origin: welds vertices,
 /// converts materials when a face first uses them, names objects, and counts what diffuse light transport leaves out.
@@ -98,4 +98,4 @@ class MgfSceneBuilder {
     std::vector<MgfMaterial> used_materials_;  // one for each of scene_.materials
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

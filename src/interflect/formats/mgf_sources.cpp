@@ -7,7 +7,7 @@
 #include "interflect/error.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace fs = std::filesystem;
 
@@ -30,4 +30,4 @@ std::pair<const SourceFile&, bool> MgfSources::find(std::string_view name, const
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The text of a file.
 struct SourceFile {
@@ -30,4 +30,4 @@ class MgfSources {
     std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by the path as it was written
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

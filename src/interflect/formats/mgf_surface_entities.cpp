@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 using Imath::M44d;
 using Imath::V3d;
@@ -145,4 +145,4 @@ void MgfReader::prism(MgfWords words) {
     add_mesh(make_prism(outline, number_argument(words.back())));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 
 #include "interflect/formats/number.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -143,4 +143,4 @@ M44d TransformSequence::matrix(std::span<const int> copy) const {
     return result;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The arguments of MGF's `xf`: -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N. They act on a point
 /// from left to right. -i repeats what follows it, up to the next -i or -a, N times; -a makes N copies, the k-th of
@@ -34,4 +34,4 @@ class TransformSequence {
     std::vector<int> array_sizes_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

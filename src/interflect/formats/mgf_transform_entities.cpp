@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 using Imath::M44d;
 
@@ -83,4 +83,4 @@ bool MgfReader::next_copy(OpenMgfTransform& transform) {
     return false;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

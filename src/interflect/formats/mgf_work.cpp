@@ -4,7 +4,7 @@
 
 #include "interflect/formats/mgf_arguments.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -26,4 +26,4 @@ void RepeatedWork::add(std::uint64_t words, std::uint64_t patches) {
                         words_ / 1'000'000, patches));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Counts the words that arrays and includes make the reader read again, and limits them: a file of a few lines can ask
 /// for 10^14. A two-sided quadrilateral that defines its own vertices takes 33 words.
@@ -22,4 +22,4 @@ class RepeatedWork {
     std::uint64_t max_patches_, words_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Reads a decimal number that takes up the whole of `text` and is finite in single precision; nothing otherwise, so
 /// also for nan, inf, 1e39, hexadecimal and trailing characters. A leading '+' is understood. Does not use the locale.
@@ -12,4 +12,4 @@ std::optional<double> parse_number(std::string_view text);
 /// The same for a whole number that fits an int.
 std::optional<int> parse_integer(std::string_view text);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

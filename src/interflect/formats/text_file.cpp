@@ -8,7 +8,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace fs = std::filesystem;
 
@@ -56,4 +56,4 @@ std::string read_text_file(const fs::path& path) {
     return text;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

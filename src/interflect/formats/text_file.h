@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Reads a whole file of text.
 /// @throws InputError where the path is missing, a folder or otherwise no regular file, cannot be read, or holds
@@ -18,4 +18,4 @@ void require_regular_file(const std::filesystem::path& path);
 /// The check for control characters alone. @param path  Named in the error.
 void require_text(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

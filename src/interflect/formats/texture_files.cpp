@@ -7,7 +7,7 @@
 #include "interflect/image/srgb.h"
 #include "interflect/image_files.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 Texture read_texture(const std::filesystem::path& path) {
     Image image = read_image(path, static_cast<std::int64_t>(most_texels));
@@ -34,4 +34,4 @@ void write_texture(const std::filesystem::path& path, const Texture& texture) {
     write_image(path, image);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

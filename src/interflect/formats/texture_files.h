@@ -5,7 +5,7 @@
 
 #include "interflect/texture.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Reads an image as a texture: .png (sRGB), .exr or .hdr (linear).
 /// @throws InputError with the path and the reason, as read_image() does, and for a texture with a fault.
@@ -18,4 +18,4 @@ std::string texture_extension(const Texture& texture);
 /// @throws InputError, std::runtime_error as write_image() does.
 void write_texture(const std::filesystem::path& path, const Texture& texture);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

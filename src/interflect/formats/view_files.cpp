@@ -14,7 +14,7 @@
 #include "interflect/formats/text_file.h"
 #include "interflect/scene/view.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace fs = std::filesystem;
 
@@ -190,4 +190,4 @@ View read_radiance_view(const fs::path& path) {
     return view;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

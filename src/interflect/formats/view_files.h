@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Where the named views of a scene are kept: /a/office.mgf has them in /a/office.views.json.
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
@@ -32,4 +32,4 @@ void write_view_list(std::span<const View> views, const std::filesystem::path& p
 ///         for unknown options, and for values that make no view.
 View read_radiance_view(const std::filesystem::path& path);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -14,7 +14,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/texture_files.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -225,4 +225,4 @@ std::vector<std::string> texture_files(const Scene& scene, const std::filesystem
     return files;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

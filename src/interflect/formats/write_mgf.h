@@ -8,7 +8,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Writes a scene in the Materials and Geometry Format, so that read_mgf() gives it back: the same patches in the same
 /// order, with materials and objects of the same names and vertices at exactly the same positions in the
@@ -31,4 +31,4 @@ void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<
 /// (texture_extension). write_texture() writes them.
 std::vector<std::string> texture_files(const Scene& scene, const std::filesystem::path& path);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

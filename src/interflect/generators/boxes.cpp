@@ -12,7 +12,7 @@
 #include "interflect/generators/building/shell.h"
 #include "interflect/generators/patterns.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -78,4 +78,4 @@ Scene make_boxes(const BoxesOptions& options) {
     return scene;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 struct BoxesOptions {
     static constexpr std::uint32_t most_boxes = 100'000;
@@ -21,4 +21,4 @@ struct BoxesOptions {
 /// @throws InputError where their number is out of range.
 Scene make_boxes(const BoxesOptions& options);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

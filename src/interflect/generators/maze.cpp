@@ -14,7 +14,7 @@
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options) 
     return static_cast<std::uint32_t>(rooms);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

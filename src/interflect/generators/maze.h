@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What a maze is like.
 struct MazeOptions {
@@ -34,4 +34,4 @@ Scene make_maze(const MazeOptions& options);
 /// @throws InputError where that is more than most_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -92,4 +92,4 @@ Scene make_office(const OfficeOptions& options) {
     return scene;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 // Images for made scenes, of 8 bit sRGB values, so that a .png keeps them as they are.
 
@@ -20,4 +20,4 @@ std::uint32_t add_texture(Scene& scene, Texture texture);
 /// [m] above 0, in squares of that side. The image's bottom is at the lowest edge.
 void lay_image(Scene& scene, std::uint32_t patch, float repeat = 0);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/error.h"
 #include "interflect/generators/building/solids.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -80,4 +80,4 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
     return scene;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 struct TwoRoomsOptions {
     float turn = 0;          ///< Of the wall between the rooms about the vertical [degrees], -40 to 40.
@@ -16,4 +16,4 @@ struct TwoRoomsOptions {
 /// @throws InputError where the turn is out of range.
 Scene make_two_rooms(const TwoRoomsOptions& options);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The box, larger by `margin` in all directions [m].
 inline Imath::Box3f widened(Imath::Box3f box, float margin) {
@@ -34,4 +34,4 @@ bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height
     return std::abs(height(centre)) <= reach + distance;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 
 #include "interflect/base/parallel.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// An element of a box tree: an object, by its index, and its bounding box.
 struct Boxed {
@@ -56,4 +56,4 @@ void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const V
     visit_box_tree(tree.subspan(middle + 1), reaches, visit);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -12,7 +12,7 @@
 #include "interflect/geometry/planar_polygon.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A segment on a facet, and for a part of the outline of a coplanar face the side on which that face lies.
 struct FoundSegment {
@@ -70,4 +70,4 @@ class ContactFinder {
     std::vector<FoundSegment> found_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The share of a patch's area, in [0, 1], that is left outside the polygons of `others`, faces in (nearly) its plane,
 /// which may overlap each other in any way.
@@ -15,4 +15,4 @@ namespace interflect {
 float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<const std::uint32_t> others,
                            float tolerance);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

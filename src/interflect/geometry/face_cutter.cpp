@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -270,4 +270,4 @@ void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, 
     for (const PlanarPolygon& part : best) divide_into_patches(part, shape, patches);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 #include "interflect/geometry/planar_polygon.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The part of `segment` that runs through the polygon's interior: at least `tolerance` long, and not within
 /// `tolerance` of one edge all along.
@@ -36,4 +36,4 @@ struct PieceShape {
 /// quadrilaterals across, into 16 at most: the quadtree's elements have the shape of their patch.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Two faces that coincide somewhere; each named by its patch, of a two-sided one by the first.
 struct FacePair {
@@ -29,4 +29,4 @@ inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pa
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

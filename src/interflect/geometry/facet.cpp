@@ -6,7 +6,7 @@
 #include "interflect/geometry/bounds.h"
 #include "interflect/scene/patch_area.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -73,4 +73,4 @@ PlaneFrame::PlaneFrame(const Facet& facet) : origin_(facet.corners[0]), normal_(
     y_ = normal_.cross(x_).normalized();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

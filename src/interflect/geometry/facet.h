@@ -10,7 +10,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A planar convex polygon of three or four corners: a face, or one of the two triangles of a warped quadrilateral.
 struct Facet {
@@ -53,4 +53,4 @@ class PlaneFrame {
     Imath::V3d origin_, normal_, x_, y_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

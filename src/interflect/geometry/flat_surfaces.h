@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The flat surface that each patch is part of, named by its lowest patch, whose side is the front: patches of one
 /// material and object that are joined by whole edges in (nearly) one plane, or have one Patch::surface, so that what a
@@ -18,4 +18,4 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene);
 ///          index. A two-sided face counts once, and its sides are neighbours in rank, the front first. O(n log n).
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

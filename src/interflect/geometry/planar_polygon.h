@@ -8,7 +8,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A corner of a planar polygon.
 struct PlanarCorner {
@@ -40,4 +40,4 @@ inline double perimeter(const PlanarPolygon& polygon) {
     return sum;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -236,4 +236,4 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
     return patches.result();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

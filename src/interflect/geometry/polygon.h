@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Result of add_polygon().
 enum class PolygonResult {
@@ -33,4 +33,4 @@ enum class PolygonResult {
 PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                           std::uint32_t object, bool two_sided);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -12,7 +12,7 @@
 #include "interflect/geometry/vertex_weld.h"
 #include "interflect/scene/core.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -135,4 +135,4 @@ float default_mesh_size(const Scene& scene) {
     return std::max(box.size().length() / pieces_of_diagonal, static_cast<float>(std::sqrt(area / moderate_patches)));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

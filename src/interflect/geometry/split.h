@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The scene with every patch divided into a grid of patches whose edges are at most `largest_edge` long: the fixed
 /// mesh of a method that does not refine by itself. Quadrilaterals become grids, triangles become n^2 triangles;
@@ -22,4 +22,4 @@ float default_mesh_size(const Scene& scene);
 /// does not depend on the size of the world [m].
 double default_element_size(const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -4,7 +4,7 @@
 
 #include "interflect/colour.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Two unit vectors that make a right-handed frame s, t, n with the unit vector n (Duff et al. 2017).
 struct TangentFrame {
@@ -16,4 +16,4 @@ struct TangentFrame {
     }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 
 #include "interflect/texture.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Means of a texture, filtered and repeated as texel_at() has it, over triangles of its plane. They are exact, by
 /// Green's theorem: the integral of f over a triangle is that of F dy along its border, where dF/dx = f; between two
@@ -41,4 +41,4 @@ class TextureIntegral {
     RgbD mean_{0, 0, 0};
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -1,6 +1,6 @@
 #include "interflect/geometry/texture_mapping.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -27,4 +27,4 @@ Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p) {
     return times_texel(scene, patch, p, material.exitance, material.exitance_texture);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

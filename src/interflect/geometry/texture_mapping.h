@@ -5,7 +5,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Texture coordinates at a point of a patch: linear on a triangle, bilinear on a quadrilateral, between its vertices.
 /// @param scene  Has texture coordinates.
@@ -21,4 +21,4 @@ inline std::optional<V2f> coordinate_at(const Scene& scene, const Patch& patch, 
 Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -4,7 +4,7 @@
 
 #include "interflect/base/random.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -50,4 +50,4 @@ std::uint32_t VertexWeld::vertex(const V3f& position, const std::optional<V2f>& 
     return slot;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

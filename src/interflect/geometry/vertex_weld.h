@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Gives one vertex to each distinct position with its texture coordinates: what meets in a point shares a vertex
 /// there. Numbers are compared as they are, in single precision; -0 counts as 0. Holds at most 16 bytes a vertex: a
@@ -32,4 +32,4 @@ class VertexWeld {
     std::size_t used_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -19,7 +19,7 @@
 #include "interflect/base/escapes.h"
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::codecs {
+namespace interflect::inline detail::codecs {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<float> read_exr_field_of_view(const std::filesystem::path& path) {
     return fov->value();
 }
 
-}  // namespace interflect::codecs
+}  // namespace interflect::inline detail::codecs

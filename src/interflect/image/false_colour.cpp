@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -49,4 +49,4 @@ ColourScale fit_scale(std::vector<float> values, Spacing spacing) {
     return low < high ? ColourScale{low, high, spacing} : ColourScale{high / 10, high, spacing};
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

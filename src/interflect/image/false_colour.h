@@ -4,7 +4,7 @@
 
 #include "interflect/colour.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A colour for a number in [0, 1] (others are clamped): violet, teal, yellow. Lightness rises evenly and equal steps
 /// look about equally large, so that a picture reads right in grey and to colour-blind eyes too.
@@ -31,4 +31,4 @@ struct ColourScale {
 /// where none is left.
 ColourScale fit_scale(std::vector<float> values, Spacing spacing);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

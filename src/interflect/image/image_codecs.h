@@ -10,7 +10,7 @@
 
 /// One pair of functions a file format, for image_files.cpp alone. Decoders throw std::runtime_error with the reason
 /// only; whoever knows the file's name adds it.
-namespace interflect::codecs {
+namespace interflect::inline detail::codecs {
 
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
@@ -26,4 +26,4 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata);
 Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);
 
-}  // namespace interflect::codecs
+}  // namespace interflect::inline detail::codecs

@@ -117,7 +117,7 @@ void write_image(const fs::path& path, const Image& image, const ImageMetadata& 
     write_bytes(path, encode(format, image, metadata), path);
 }
 
-void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata) {
+void detail::write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata) {
     const ImageFormat format = require_image_format(file.final_path());
     require_pixels(image);
     write_bytes(file.temporary_path(), encode(format, image, metadata), file.final_path());

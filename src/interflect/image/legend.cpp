@@ -11,7 +11,7 @@
 #include "interflect/error.h"
 #include "interflect/image_files.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -178,4 +178,4 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
     return image;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

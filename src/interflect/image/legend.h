@@ -6,7 +6,7 @@
 #include "interflect/image.h"
 #include "interflect/image/false_colour.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The picture with a legend below: what it shows, over a strip of the colours with round values.
 /// @param picture  As a display shows it: linear Rec. 709 in [0, 1].
@@ -28,4 +28,4 @@ bool legend_fits(int width, int height, const std::string& title);
 /// @throws InputError for fewer, and for a scale whose ends are not as ColourScale says.
 std::vector<float> round_values(const ColourScale& scale, int most);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,9 +3,9 @@
 #include "interflect/base/pending_file.h"
 #include "interflect/image_files.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// write_image() into a file that appears under its name once it is complete: commits it. Errors have its final name.
 void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata());
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

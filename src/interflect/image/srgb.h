@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The transfer function of sRGB (IEC 61966-2-1): a linear value in [0, 1] to the value that a display is sent.
 inline float srgb_encode(float linear) {
@@ -21,4 +21,4 @@ inline std::uint8_t srgb_byte(float linear) {
     return static_cast<std::uint8_t>(std::lround(255 * srgb_encode(std::clamp(linear, 0.0f, 1.0f))));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

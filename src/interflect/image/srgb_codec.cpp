@@ -17,7 +17,7 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 
-namespace interflect::codecs {
+namespace interflect::inline detail::codecs {
 
 namespace {
 
@@ -110,4 +110,4 @@ Image decode_png(std::string_view bytes, std::int64_t most_pixels) {
     return image;
 }
 
-}  // namespace interflect::codecs
+}  // namespace interflect::inline detail::codecs

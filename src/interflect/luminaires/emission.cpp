@@ -11,7 +11,7 @@
 #include "interflect/base/points.h"
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -152,4 +152,4 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     return {ray.origin - far * window.direction, window.direction, emitter.rating * (far * far)};
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Rays from the luminaires of a scene. What a luminaire emits is divided into parts of equal power, by direction
 /// (point and spot lights) or by place (a directional light, a sky): each part gets rays of its own, so that importance
@@ -81,4 +81,4 @@ class Emission {
     std::vector<Emitter> emitters_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -44,4 +44,4 @@ Rgb sky_radiance(const Scene& scene) {
     return sum;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

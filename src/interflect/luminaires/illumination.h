@@ -3,7 +3,7 @@
 #include "interflect/colour.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Light that reaches a point straight from a luminaire, if nothing is in its way.
 struct Illumination {
@@ -17,4 +17,4 @@ Illumination illumination(const Luminaire& luminaire, const V3f& x);
 /// What is seen where nothing is in the way: the radiance of all skies [cd/m^2 or W/(m^2 sr)].
 Rgb sky_radiance(const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

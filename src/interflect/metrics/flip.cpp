@@ -15,7 +15,7 @@
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -280,4 +280,4 @@ Image show_flip_map(const Image& map) {
     return with_legend(picture, scale, "FLIP: 0 looks the same, 1 as different as can be");
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

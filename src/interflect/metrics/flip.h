@@ -4,7 +4,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// How the pictures are looked at.
 struct FlipOptions {
@@ -27,4 +27,4 @@ Image flip_map(const Image& image, const Image& reference, const FlipOptions& op
 /// A flip_map() for people: in false colours, with a legend below.
 Image show_flip_map(const Image& map);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

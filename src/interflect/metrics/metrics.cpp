@@ -13,7 +13,7 @@
 #include "interflect/metrics/perceptual.h"
 #include "interflect/tone_map.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -137,4 +137,4 @@ ImageDifference compare(const Image& full_size_image, const Image& reference, co
     return difference;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

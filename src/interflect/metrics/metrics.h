@@ -5,7 +5,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Difference of luminances after averaging over square blocks of pixels, which reduces noise.
 struct BlockDifference {
@@ -48,4 +48,4 @@ struct CompareOptions {
 /// @throws InputError where the image's size is no whole multiple of the reference's, or an option is out of range.
 ImageDifference compare(const Image& image, const Image& reference, const CompareOptions& options = {});
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -89,4 +89,4 @@ double perceptual_distance(const Image& image, const Image& reference, double fi
     return std::sqrt(weighted_power(values, width, image.height / field_of_view));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// How well the eye sees a sine grating: A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
 /// Best at 8 cycles per degree, 0.98; 0.05 for what does not vary, 0.02 at 50.
@@ -29,4 +29,4 @@ double contrast_sensitivity(double cycles_per_degree);
 /// pixel.
 double perceptual_distance(const Image& image, const Image& reference, double field_of_view);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

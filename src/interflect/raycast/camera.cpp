@@ -10,7 +10,7 @@
 #include "interflect/image_files.h"
 #include "interflect/scene/view.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -44,4 +44,4 @@ Camera::Camera(const View& view, int width, int height, const V3d& origin) : eye
     pixel_down_ = V3f(up * -pixel);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Makes camera rays: from the eye of a View through the pixels of an image. A pinhole camera with square pixels; `fov`
 /// is the angle from the top edge of the image to its bottom edge.
@@ -26,4 +26,4 @@ class Camera {
     V3f pixel_right_, pixel_down_;  // one pixel's steps on that plane
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 #include "interflect/geometry/box_tree.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Faces that lie in one place, as a sheet of paper in the plane of its desk or two boxes with a common side, and which
 /// of them answers a ray there. A ray tracer takes the one that it happens to test first: light could arrive at one
@@ -104,4 +104,4 @@ class CoincidentFaces {
     std::vector<Reach> reaches_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -19,7 +19,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/coincident.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A ray as Embree takes it, from its origin to infinity.
 inline RTCRayHit embree_query(const Ray& ray) {
@@ -82,7 +82,9 @@ struct Faces {
     bool triangles = false, two_sided = false;
 };
 
-struct RayCaster::Embree {
+}  // namespace interflect::inline detail
+
+struct interflect::RayCaster::Embree {
     std::atomic<std::int64_t> bytes{0};
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
@@ -98,5 +100,3 @@ struct RayCaster::Embree {
     void commit();
     Hit hit_of(const Ray& ray, const RTCRayHit& query) const;
 };
-
-}  // namespace interflect

@@ -11,7 +11,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -87,4 +87,4 @@ void require_values_of_elements(const ElementForest& forest, std::size_t value_c
                                      value_count, forest.size()));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 #include "interflect/render.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The camera rays of a picture.
 struct CameraSampling {
@@ -60,4 +60,4 @@ inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, co
 /// @throws InputError unless there are as many values as elements. @param what  The values' name for the message.
 void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -309,4 +309,4 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
     return means;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/render/smooth_surfaces.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The vertices that the elements of a forest have on the scene's smooth surfaces. Elements that meet in a point of one
 /// smooth surface share the vertex there, whichever their patches and levels; at creases, at borders of materials and
@@ -63,4 +63,4 @@ class ElementVertices {
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> values);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/elements/texture_means.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -276,4 +276,4 @@ float LightTree::probability(std::uint32_t patch, const V3f& x, const V3f& n) co
     return probability;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Chooses emitting patches in proportion to an estimate of the irradiance that they cause at a point: a binary tree
 /// over them, each node with the power, the bounding box and a cone around the normals of its patches. A walk from the
@@ -69,4 +69,4 @@ class LightTree {
     std::vector<std::uint32_t> leaf_;  // of each patch; none where it does not emit
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/raycast/camera.h"
 #include "interflect/render/camera_samples.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -55,4 +55,4 @@ Image draw_outlines(const Image& picture, const Scene& scene, const ElementFores
     return outlined;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/render/camera_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// How the borders of leaves are drawn.
 struct OutlineOptions {
@@ -25,4 +25,4 @@ Image draw_outlines(const Image& picture, const Scene& scene, const ElementFores
                     const View& view, int samples, std::uint64_t seed, const OutlineOptions& options = {},
                     const PictureMonitor& monitor = {});
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include "interflect/base/random.h"
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -42,4 +42,4 @@ float light_density(const PatchGeometry& lamp, float probability, const V3f& dir
     return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

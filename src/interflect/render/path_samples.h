@@ -5,7 +5,7 @@
 #include "interflect/colour.h"
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A direction with density cosine / pi over the hemisphere of n, for a and b uniform in (0, 1): Malley's method.
 V3f cosine_direction(const V3f& n, float a, float b);
@@ -32,4 +32,4 @@ float light_density(const PatchGeometry& lamp, float probability, const V3f& dir
 /// The balance heuristic: the weight of a sample of density p where another technique has density q.
 inline float balance(float p, float q) { return p / (p + q); }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -181,4 +181,4 @@ void PathWavefront::trace_shadow_rays() {
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -14,7 +14,7 @@
 #include "interflect/render/path_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What all paths of a picture share.
 struct PathScene {
@@ -100,4 +100,4 @@ class PathWavefront {
     RayCounts counts_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include "interflect/path_tracer.h"
 #include "interflect/render/path_wavefront.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Mean of the channels.
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
@@ -38,4 +38,4 @@ double relative_error(const std::vector<PixelStatistics>& pixels);
 /// How many batches each pixel should have in all for the target, options.until, by the variance around it.
 std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include "interflect/raycast/camera.h"
 #include "interflect/render/camera_samples.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -65,4 +65,4 @@ QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest,
     return result;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/render/camera_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A number for each element, and how it is shown.
 struct Quantity {
@@ -40,4 +40,4 @@ QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest,
                                 const View& view, const Quantity& quantity, const CameraSampling& sampling,
                                 const PictureMonitor& monitor = {});
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/render/element_vertices.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A quantity of elements, such as irradiance, as a function on the scene's surfaces that is continuous wherever
 /// they are smooth: interpolated from the corners of leaves, linearly on a triangle and bilinearly on a quadrilateral,
@@ -30,4 +30,4 @@ class SmoothField {
     std::vector<Rgb> value_;  // of each vertex
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

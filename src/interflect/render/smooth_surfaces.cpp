@@ -20,7 +20,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -368,4 +368,4 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     return {number_groups(scene, joined_corners), number_groups(scene, joined_edges), std::move(seams)};
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include "interflect/render.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Which corners and edges of patches are one and the same in one smooth surface, and so share their values.
 struct SmoothSurfaces {
@@ -40,4 +40,4 @@ struct SmoothSurfaces {
 /// patches n.
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options = {});
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

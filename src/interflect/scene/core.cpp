@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -87,4 +87,4 @@ Imath::Box3f core_bounds(const Scene& scene) {
     return bounds;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A face as the search for the core of a scene sees it.
 struct FaceExtent {
@@ -50,4 +50,4 @@ Imath::V3d origin_for(const Core& core);
 /// from the middle than 64 times the reach. Relative to the scene's origin [m]. O(patches).
 Imath::Box3f core_bounds(const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

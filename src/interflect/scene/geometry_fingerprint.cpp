@@ -7,7 +7,7 @@
 #include "interflect/base/random.h"
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -49,4 +49,4 @@ void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char*
                          "', or the scene has changed since");
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

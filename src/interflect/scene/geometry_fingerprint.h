@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Tells scenes apart by their geometry: a hash of the origin, of each patch's corners and of which patches are sides
 /// of one face. Two different scenes have the same with a chance of 2^-64. Materials, names and views do not count.
@@ -16,4 +16,4 @@ std::uint64_t geometry_fingerprint(const Scene& scene);
 /// @throws InputError where that is another scene.
 void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char* what);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 
 #include "interflect/scene/patch_area.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -81,4 +81,4 @@ float brightest_source(const Scene& scene) {
     return strongest;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

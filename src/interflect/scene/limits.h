@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 // What can be computed: geometry and light are in single precision, which ends at 3 * 10^38 and loses digits below
 // 10^-38. Variances of what an element receives go with the square of its irradiance, and with the inverse square of
@@ -54,4 +54,4 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
 /// emits. @param scene  Its materials' textures exist. O(texels).
 float brightest_source(const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

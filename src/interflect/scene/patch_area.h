@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The cross product of two edges of a triangle, or of the diagonals of a convex, (nearly) planar quadrilateral: twice
 /// its area [m^2] times its unit normal.
@@ -20,4 +20,4 @@ Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {
 /// Area of a patch [m^2].
 float patch_area(const Scene& scene, const Patch& patch);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 #include "interflect/scene/core.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -75,4 +75,4 @@ View overview(const Scene& scene) {
     return view;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

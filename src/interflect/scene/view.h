@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What is wrong with a view, in words without its name; empty where it shows something: eye, look-at and up are
 /// finite, eye and look-at no farther out than farthest_coordinate (limits.h) and far enough apart for the direction
@@ -18,4 +18,4 @@ const View& find_view(const Scene& scene, const std::string& name);
 /// its middle; `up` is the z axis.
 View overview(const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

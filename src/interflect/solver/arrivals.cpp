@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 void Arrivals::begin(std::size_t elements) {
     elements_ = elements;
@@ -38,4 +38,4 @@ void Arrivals::ScatterBuffer::add_groups(const Bin& bin) {
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 
 #include "interflect/base/stable_array.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What the rays of a step bring to elements, as integers in units of the step's, so that the order of arrival does not
 /// matter: three channels of power, the square of its luminance, then importance. Every thread collects arrivals in a
@@ -129,4 +129,4 @@ class Arrivals {
     std::array<std::mutex, regions> region_locks_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include "interflect/base/parallel.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 Totals all_carried(const TransportStep& step, const RayAllocation& allocation, const Carried& carried) {
     constexpr std::size_t blocks_at_once = 16;
@@ -29,4 +29,4 @@ Totals all_carried(const TransportStep& step, const RayAllocation& allocation, c
     });
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

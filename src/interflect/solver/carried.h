@@ -12,7 +12,7 @@
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/transport.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What one ray of each source of a step carries: A_s / (N q_s) of a leaf's radiosity and of its reflected importance,
 /// 1 / (N q_s) of what a part of a luminaire emits.
@@ -108,4 +108,4 @@ struct Units {
     }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

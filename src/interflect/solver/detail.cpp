@@ -9,7 +9,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -345,4 +345,4 @@ void finish_solution(SolverState& state) {
     solution.groups = std::move(reduced_groups);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/solver_state.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What four siblings tell of how irradiance varies over their parent, in luminance [(lm/m^2)^2 or (W/m^2)^2].
 struct Detail {
@@ -55,4 +55,4 @@ double error_reference(const SolverState& state);
 /// is known of each element beside its irradiance.
 void finish_solution(SolverState& state);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 
 #include "interflect/geometry/split.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -40,4 +40,4 @@ float ElementFloor::min_area(const V3f& centre, const V3f& normal, bool is_seen)
     return !is_seen || is_given_ || eyes_.empty() ? unseen_ : pixel_area(centre, normal);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

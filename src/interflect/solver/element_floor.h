@@ -5,7 +5,7 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The smallest area that elements are divided to. Depends on the views and on how large the scene's surfaces are, not
 /// on the size of the world.
@@ -33,4 +33,4 @@ class ElementFloor {
     bool is_given_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 #include "interflect/solver/materials.h"
 #include "interflect/solver/radiosity.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Importance that rays find where they arrive, added up for the leaves, or parts of luminaires, that they left: the
 /// mean over a leaf's rays estimates the same transported importance as the rays that bring it there (Eq. 7), but from
@@ -29,4 +29,4 @@ class GatheredImportance {
     StableArray<std::int64_t> sums_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

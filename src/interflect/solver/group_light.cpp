@@ -3,7 +3,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 void accumulate(GroupLight& sum, const GroupLight& more) {
     if (sum.empty()) {
@@ -28,4 +28,4 @@ void scale(GroupLight& light, float factor) {
         for (Rgb& c : of_group) c *= factor;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

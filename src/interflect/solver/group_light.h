@@ -9,7 +9,7 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/solver/materials.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A colour of every element for each light group, [group][element]: parts of what all light together has. Empty
 /// without groups.
@@ -51,4 +51,4 @@ struct GroupRadiosity {
     }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

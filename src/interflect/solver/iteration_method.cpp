@@ -2,7 +2,7 @@
 
 #include "interflect/solver/detail.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 IterationPlan IterationMethod::plan(SolverState& state) {
     const IterationPlan plan = state.schedule.next(state.seconds());
@@ -18,4 +18,4 @@ void IterationMethod::retarget(SolverState& state) {
     state.schedule.restart();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

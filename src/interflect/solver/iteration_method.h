@@ -3,7 +3,7 @@
 #include "interflect/solver/solver_state.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// How one family of methods does its iterations, with the state that is its own. What throws Interrupted may be called
 /// again, and goes on with the step of rays that was cut short.
@@ -33,4 +33,4 @@ class IterationMethod {
     virtual bool fits(const SolverState&) const { return true; }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

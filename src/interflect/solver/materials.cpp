@@ -6,7 +6,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -88,4 +88,4 @@ RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values) {
     return sum;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/scene.h"
 #include "interflect/solver/textured_elements.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What the surfaces of a scene do with light, by patch and, where they are textured, by element: textures count by
 /// their means. Refers to the scene, which must outlive it.
@@ -74,4 +74,4 @@ std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& fore
 /// Sum of area times value over the roots, in index order and double precision: the same for any number of threads.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/solver/textured_elements.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     constexpr std::size_t program = 100 << 20;
@@ -37,4 +37,4 @@ std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Sce
     return (bytes - need.without_elements()) / need.per_element;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

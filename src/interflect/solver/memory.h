@@ -5,7 +5,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What a run holds at its peak [bytes].
 struct MemoryNeed {
@@ -34,4 +34,4 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
 /// @throws InputError where not even the patches do: says how much they need.
 std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

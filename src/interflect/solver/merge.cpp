@@ -6,7 +6,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -103,4 +103,4 @@ void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t
     });
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 #include "interflect/solver/solver_state.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. A patch has
 /// the same tau as all others. Children made later have a larger one, but only for how they share what their parent
@@ -31,4 +31,4 @@ void merge_details(const SolverState& state, GroupLight& mean, const GroupLight&
 /// inherited a mean that is too smooth, less of them count.
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

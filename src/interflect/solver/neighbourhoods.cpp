@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -72,4 +72,4 @@ void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values
     hand_down(hand_down, 0, patches_.size(), sums[0].value / sums[0].area);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

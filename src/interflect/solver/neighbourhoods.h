@@ -6,7 +6,7 @@
 
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Patches that are close to each other: a binary tree, halved again and again along the longest axis of the box around
 /// their centres until every patch is alone. 4 bytes a patch.
@@ -26,4 +26,4 @@ class Neighbourhoods {
     std::vector<std::uint32_t> patches_;  // a neighbourhood is a range of them, its halves are the next smaller ones
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

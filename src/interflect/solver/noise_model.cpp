@@ -5,7 +5,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -66,4 +66,4 @@ void NoiseModel::add(const ElementForest& forest, const FreshEstimate& fresh, st
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -12,7 +12,7 @@
 #include "interflect/solver/group_light.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// An estimate of irradiance that an iteration made, before it is merged.
 struct FreshEstimate {
@@ -92,4 +92,4 @@ class NoiseModel {
     int iterations_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 
 #include "interflect/colour.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// One end of an interaction, as the oracle sees it.
 struct ElementProxy {
@@ -61,4 +61,4 @@ struct Oracle {
     }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

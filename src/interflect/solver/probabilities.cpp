@@ -7,7 +7,7 @@
 #include "interflect/base/stable_array.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::vector<float> importance_weight(const ElementForest& forest, const Importan
     return weights;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

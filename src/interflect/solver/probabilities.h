@@ -8,7 +8,7 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/solver/radiosity.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What the leaves of a forest may be sampled by. Weights are not normalised; numbers of equations in Prikryl et al.
 /// 2000.
@@ -63,4 +63,4 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares);
 std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
                                      double exponent);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

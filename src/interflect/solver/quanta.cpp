@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 void Quanta::add(double power, std::int64_t rays) {
     if (!(power > 0) || rays == 0) return;
@@ -38,4 +38,4 @@ double Quanta::quantile_over_mean(double share) const {
     return std::min(upper_end, largest_) / power_ * static_cast<double>(count_);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// How much power rays carry, counted in bins of a quarter of an octave.
 class Quanta {
@@ -32,4 +32,4 @@ class Quanta {
     std::int64_t count_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

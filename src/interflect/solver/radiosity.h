@@ -9,7 +9,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/materials.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What leaves the elements of a forest: B = M + rho H [lm/m^2 or W/m^2], found for each when it is asked for. Refers
 /// to the surfaces and to H.
@@ -81,4 +81,4 @@ class Importance {
     std::span<const float> a_, b_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 #include "interflect/base/parallel.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 RayAllocation::RayAllocation(std::span<const float> q, std::int64_t rays, double offset)
     : q_(q), rays_(rays), offset_(offset), blocks_((q.size() + block_sources - 1) / block_sources) {
@@ -32,4 +32,4 @@ RayAllocation::RayAllocation(std::span<const float> q, std::int64_t rays, double
     for (SourceBlock& block : blocks_) block.first_ray = rays_before(block.q_before);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Splits N rays systematically among sources: source s gets N q_s / sum q of them, rounded up or down, and that number
 /// in the mean over `offset`. The rays of a source follow those of the sources before it. 16 bytes for 256 sources: the
@@ -73,4 +73,4 @@ class RayAllocation {
     std::vector<SourceBlock> blocks_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

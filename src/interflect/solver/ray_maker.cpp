@@ -5,7 +5,7 @@
 #include "interflect/base/random.h"
 #include "interflect/solver/ray_source.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -63,4 +63,4 @@ void RayMaker::shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::s
                      std::span(batch.rays).subspan(offset, length));
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

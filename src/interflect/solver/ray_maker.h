@@ -10,7 +10,7 @@
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/transport.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The rays of one task that start on the same leaf or part of a luminaire: batch.rays[begin ... end - 1].
 struct SourceRays {
@@ -52,4 +52,4 @@ class RayMaker {
     RayAllocation allocation_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

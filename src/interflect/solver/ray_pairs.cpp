@@ -3,7 +3,7 @@
 #include "interflect/elements/forest.h"
 
 // Lanes that are not in use are judged as well: all at once take less time than a choice. No branch depends on a lane.
-namespace interflect {
+namespace interflect::inline detail {
 
 void RayPairs::evaluate_oracle(const Oracle& oracle) {
     const float smallest = 4 * oracle.min_area;
@@ -49,4 +49,4 @@ void RayPairs::go_down() {
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

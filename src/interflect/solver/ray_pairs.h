@@ -7,7 +7,7 @@
 #include "interflect/colour.h"
 #include "interflect/solver/oracle.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The two ends of every ray in flight, an array for each number, so that the oracle judges all of them at once.
 struct alignas(64) RayPairs {
@@ -50,4 +50,4 @@ struct alignas(64) RayPairs {
     void go_down();
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/base/points.h"
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -49,4 +49,4 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, Poin
     }
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

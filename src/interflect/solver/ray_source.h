@@ -8,7 +8,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/ray_caster.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Makes the rays that samples first_sample, first_sample + 1, ... of a patch stand for: origins uniform on its area
 /// and `offset` above it, directions with density cos(theta) / pi about its normal.
@@ -18,4 +18,4 @@ namespace interflect {
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 void Receiver::take(std::uint32_t source, const Arrivals::Contribution& contribution,
                     std::span<const std::int64_t> of_groups, std::span<const Ray> rays,
@@ -158,4 +158,4 @@ inline void Receiver::gather(std::uint32_t left, std::uint32_t patch, std::uint3
     left_[left].found += static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -17,7 +17,7 @@
 #include "interflect/solver/shooters.h"
 #include "interflect/solver/transport.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What left the scene.
 struct Escaped {
@@ -109,4 +109,4 @@ class Receiver {
     Shooters::Path path_;  // of the rays being taken
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 
 #include "interflect/error.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 void require_solvable(const Scene& scene, const SolveOptions& o) {
     std::vector<std::string> faults = scene_faults(scene);
@@ -52,4 +52,4 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require_sources_of_groups(scene);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Squared errors of reduced differences: what Detail::risk() expected, and what later iterations told.
 struct RiskCheck {
@@ -22,4 +22,4 @@ struct RiskCheck {
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

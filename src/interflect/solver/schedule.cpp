@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -100,4 +100,4 @@ void Schedule::done(const IterationPlan& plan) {
     averaged_rays_ = warming_up ? 0 : averaged_rays_ + plan.rays;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// One iteration to come.
 struct IterationPlan {
@@ -60,4 +60,4 @@ class Schedule {
     std::int64_t planned_after_ = 0;  // and after how many rays
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 Shooters::Path Shooters::append_leaf(std::uint32_t leaf) {
     const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
@@ -59,4 +59,4 @@ bool Shooters::subdivide(RayPairs& pairs, std::size_t i, const Parameters& start
     return true;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 #include "interflect/solver/ray_pairs.h"
 #include "interflect/solver/transport.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What the rays in flight left, as the oracle sees it: the ancestor path of every leaf that shot them, of which each
 /// pair takes the element that suits its receiver.
@@ -84,4 +84,4 @@ inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t ele
     return child == none && may_grow ? forest.subdivide(element) : child;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

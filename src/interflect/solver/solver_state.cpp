@@ -16,7 +16,7 @@
 #include "interflect/solver/steps.h"
 #include "interflect/solver/view_importance.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -277,4 +277,4 @@ void report(SolverState& state, int iteration, const RgbD& escaped_power) {
     if (state.on_report) state.on_report(r);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

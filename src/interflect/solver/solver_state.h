@@ -20,7 +20,7 @@
 #include "interflect/solver/transport.h"
 #include "interflect/solver/view_importance.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The state of a run: everything that one iteration hands to the next.
 struct SolverState {
@@ -101,4 +101,4 @@ void refine_view_importance(SolverState& state);
 /// Adds a report of where the run stands. @param escaped_power  What the iteration lost.
 void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

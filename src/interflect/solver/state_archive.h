@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What a run needs in order to go on, as named arrays of bytes. Every class with state lists its members once, in an
 /// archive() of its own, for writing as well as for reading. The arrays are in the machine's own layout: they are read
@@ -91,4 +91,4 @@ void archive_groups(StateArchive& archive, const std::string& name, std::vector<
     for (std::size_t g = 0; g < groups.size(); ++g) archive(name + "/" + std::to_string(g), groups[g]);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/probabilities.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -163,4 +163,4 @@ double reference_importance(const Solution& so_far, const std::vector<float>& ps
     return area > 0 ? sum / area : 0;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 #include "interflect/solver/neighbourhoods.h"
 #include "interflect/solver/transport.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What steers a run: what its method asks for, and nothing where there is no view.
 ImportanceUse importance_use(const Solution& so_far);
@@ -68,4 +68,4 @@ double reference_power(const Solution& so_far);
 /// psi_max of Eq. 15: the area-weighted mean of psi over the patches that the view sees [1/m^2].
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -7,7 +7,7 @@
 
 #include "interflect/base/parallel.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Thrown where a run has to end in the middle of an iteration, the work of which is lost.
 struct Interrupted {};
@@ -51,4 +51,4 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest
     if (is_over) throw Interrupted();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 TexturedElements::TexturedElements(const Scene& scene, std::vector<float> exitance_share)
     : scene_(&scene),
@@ -47,4 +47,4 @@ void TexturedElements::grow(const ElementForest& forest) {
     });
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/elements/texture_means.h"
 #include "interflect/scene.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// What a surface does with light on the average over a patch or an element.
 struct MeanSurface {
@@ -50,4 +50,4 @@ class TexturedElements {
     std::vector<MeanSurface> surfaces_;         // four a slot
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

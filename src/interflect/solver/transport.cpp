@@ -16,7 +16,7 @@
 #include "interflect/solver/ray_maker.h"
 #include "interflect/solver/receiving.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -293,4 +293,4 @@ std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ra
     return rays;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

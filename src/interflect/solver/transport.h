@@ -16,7 +16,7 @@
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/stop_request.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The random numbers of a run: each leaf draws from a sequence of its own, which goes on from iteration to iteration.
 struct SampleStreams {
@@ -119,4 +119,4 @@ inline void pull_variance(const ElementForest& forest, std::vector<float>& varia
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
                                 const SampleStreams& streams);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -115,4 +115,4 @@ void refine_by_variance(SolverState& state) {
     std::fill(state.history.begin() + before, state.history.end(), 0.0f);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include "interflect/scene.h"
 #include "interflect/solver/solver_state.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Splits every leaf within which irradiance is expected to vary by more than the noise that its children will have:
 /// the variation is extrapolated from how the leaf and its siblings differ, beyond their noise (detail.h). Not where
@@ -12,4 +12,4 @@ namespace interflect {
 /// To be called between iterations.
 void refine_by_variance(SolverState& state);
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -9,7 +9,7 @@
 #include "interflect/raycast/camera.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at
     return v;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -11,7 +11,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
 /// that they can be handed to elements anew whenever the mesh has changed.
@@ -51,4 +51,4 @@ class ViewImportance {
     std::vector<Point> points_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

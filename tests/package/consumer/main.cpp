@@ -33,7 +33,7 @@ void dim_a_lamp() {
     interflect::Scene scene = glowing_cube(2, 0.5f);
     scene.luminaires = {{"lamp", 0, interflect::PointLight{{0.5f, 0.5f, 0.6f}, interflect::Rgb(1)}}};
     scene.light_groups = {{"walls", "glow"}, {"lamps", "lamp*"}};
-    interflect::Solver solver(scene, {.rays = 200'000});
+    interflect::Solver solver(scene, {.limits = {.rays = 200'000}});
     solver.advance({.rays = 100'000});
     solver.set_exitance("lamps", 0);
     solver.save("dimmed.h5");
@@ -57,7 +57,7 @@ int main() {
     ray_caster.trace({&down, 1}, {&hit, 1});
     expect(hit.patch == 4 && std::abs(hit.distance - 0.5f) < 1e-6f, "a ray downwards to hit the floor, 0.5 m away");
 
-    const interflect::Solution solution = interflect::solve(scene, ray_caster, {.rays = 100'000});
+    const interflect::Solution solution = interflect::solve(scene, ray_caster, {.limits = {.rays = 100'000}});
     const float expected = exitance / (1 - reflectance);  // of a closed box: B = M + rho B = H
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         expect(std::abs(solution.irradiance[i].x / expected - 1) < 0.05f, "the irradiance of a furnace within 5%");
@@ -65,7 +65,7 @@ int main() {
     interflect::write_solution("cube.h5", scene, solution);
     expect(interflect::read_solution("cube.h5").solution.irradiance == solution.irradiance, "to read what was written");
 
-    interflect::Solver solver(scene, {.rays = 100'000});
+    interflect::Solver solver(scene, {.limits = {.rays = 100'000}});
     while (!solver.advance({.rays = 10'000}).is_finished) solver.save("run.h5");
     solver = interflect::Solver::open("run.h5");
     solver.advance({});

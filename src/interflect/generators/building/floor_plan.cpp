@@ -6,7 +6,7 @@
 
 #include "interflect/generators/building/random_sequence.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 namespace {
 
@@ -110,4 +110,4 @@ FloorPlan make_floor_plan(const PlanOptions& options) {
     return plan;
 }
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

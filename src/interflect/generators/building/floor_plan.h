@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 struct Interval {
     float low = 0, high = 0;  ///< [m]
@@ -62,4 +62,4 @@ struct PlanOptions {
 /// edges, carried through the room, never cut each other. Time and memory are linear in the rooms.
 FloorPlan make_floor_plan(const PlanOptions& options);
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

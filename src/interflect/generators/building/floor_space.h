@@ -10,7 +10,7 @@
 #include "interflect/generators/building/random_sequence.h"
 #include "interflect/generators/building/solids.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// What of a room's floor is still free for furniture.
 class FloorSpace {
@@ -33,4 +33,4 @@ class FloorSpace {
     std::vector<Imath::Box2f> taken_;
 };
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

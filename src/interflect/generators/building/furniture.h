@@ -6,7 +6,7 @@
 #include "interflect/generators/building/random_sequence.h"
 #include "interflect/generators/building/solids.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// A kind of furniture, with what belongs to it: a desk with its chair and what lies on it. In its own coordinates x
 /// goes to the right, y to the front and z up; (0, 0, 0) is the middle of its back, on the floor. Everything lies in
@@ -32,4 +32,4 @@ extern const Furniture waste_bin;
 /// is the middle of its place on the ceiling.
 void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random);
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

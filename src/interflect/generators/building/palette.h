@@ -7,7 +7,7 @@
 #include "interflect/generators/building/shell.h"
 #include "interflect/scene.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// Materials that rooms and furniture are made of, as indices into Scene::materials; a list where there is a choice.
 struct Palette {
@@ -23,4 +23,4 @@ Palette add_palette(Scene& scene);
 /// The finish of one room, drawn from the palette.
 Finish draw_finish(const Palette& palette, RandomSequence& random);
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

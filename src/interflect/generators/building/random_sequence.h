@@ -6,7 +6,7 @@
 
 #include "interflect/base/random.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// Random choices one after the other; the same key gives the same ones everywhere.
 class RandomSequence {
@@ -36,4 +36,4 @@ class RandomSequence {
     std::size_t used_ = 4;
 };
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

@@ -5,7 +5,7 @@
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/scene.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// From where to look at a room: a corner, and the floor around the eye that furniture must leave free.
 struct LookOut {
@@ -23,4 +23,4 @@ View bird_view(const FloorPlan& plan);
 /// Views are named in at most this many rooms, "room-0" and so on.
 inline constexpr std::uint32_t most_room_views = 64;
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

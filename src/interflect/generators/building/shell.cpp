@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 namespace {
 
@@ -141,4 +141,4 @@ void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> fini
     }
 }
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

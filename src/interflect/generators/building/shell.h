@@ -5,7 +5,7 @@
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/scene.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// Materials of a room's surfaces.
 struct Finish {
@@ -19,4 +19,4 @@ struct Finish {
 /// @param finishes  One for each room.
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::building {
+namespace interflect::inline detail::building {
 
 /// What is kept between any two solids, and between solids and walls [m]. Nothing touches, so no two faces coincide;
 /// and it is more than RayCaster::ray_offset() in the largest scenes made here (2.5 mm at 330 m from the origin), so
@@ -56,4 +56,4 @@ class Solids {
     std::uint32_t object_;
 };
 
-}  // namespace interflect::building
+}  // namespace interflect::inline detail::building

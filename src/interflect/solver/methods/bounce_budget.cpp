@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::int64_t BounceBudget::next(double unshot) {
     return taken;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Shares the rays of a pass among its bounces.
 class BounceBudget {
@@ -41,4 +41,4 @@ class BounceBudget {
     bool is_last_ = false;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -204,4 +204,4 @@ Exchange ExchangeEstimator::estimate(const ElementPair& pair, Effort effort, std
     return exchange;
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

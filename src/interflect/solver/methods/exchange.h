@@ -10,7 +10,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 using V3d = Imath::V3d;
 
@@ -63,4 +63,4 @@ class ExchangeEstimator {
     std::uint64_t seed_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -16,7 +16,7 @@
 #include "interflect/solver/methods/passes.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -242,4 +242,4 @@ class GlobalLines final : public Passes {
 
 std::unique_ptr<IterationMethod> make_global_lines(SolverState& state) { return std::make_unique<GlobalLines>(state); }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

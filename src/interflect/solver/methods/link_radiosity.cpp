@@ -14,7 +14,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A link whose error bound exceeds the threshold, and which of its elements is to be subdivided.
 struct RefinementCandidate {
@@ -365,4 +365,4 @@ std::unique_ptr<IterationMethod> make_linked_elements(SolverState& state) {
     return std::make_unique<LinkedElements>(state);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

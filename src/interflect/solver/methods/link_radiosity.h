@@ -9,7 +9,7 @@
 #include "interflect/solver/methods/exchange.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// As many as fit the memory of a common computer: 24 bytes each.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
@@ -97,4 +97,4 @@ class LinkedElements : public IterationMethod {
     bool refines_next_ = false, is_settled_ = false;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -10,7 +10,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     Solution& solution = state.solution;
@@ -60,4 +60,4 @@ void OneBounce::archive(StateArchive& archive) {
     archive("one_bounce/elements_before", elements_before_);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -3,7 +3,7 @@
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Iterations of one bounce each, as in the paper: what is received of the present estimate is merged with the running
 /// mean.
@@ -17,4 +17,4 @@ class OneBounce : public IterationMethod {
     std::uint32_t elements_before_ = 0;  // this iteration
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -12,7 +12,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/variance_refinement.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -377,4 +377,4 @@ std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {
     return std::make_unique<Passes>();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// A pass under way: what one bounce leaves to the next.
 struct Pass {
@@ -84,4 +84,4 @@ class Passes : public IterationMethod {
     std::uint32_t elements_before_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -18,7 +18,7 @@
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/solver_state.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Paths of one task of a PathBatch, which traces one bounce of all of them at a time: enough that Embree gets long
 /// batches.
@@ -225,4 +225,4 @@ class PathBatch {
     std::optional<RayAllocation> allocation_;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

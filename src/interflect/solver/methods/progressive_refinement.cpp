@@ -12,7 +12,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -308,4 +308,4 @@ std::unique_ptr<IterationMethod> make_progressive_refinement(SolverState&) {
     return std::make_unique<ProgressiveRefinement>();
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

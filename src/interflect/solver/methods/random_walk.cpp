@@ -9,7 +9,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 namespace {
 
@@ -198,4 +198,4 @@ RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
 
 std::unique_ptr<IterationMethod> make_random_walks(SolverState& state) { return std::make_unique<RandomWalks>(state); }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// Batches of paths of one kind: of light, or of importance.
 struct PathSeries {
@@ -54,4 +54,4 @@ class RandomWalks : public IterationMethod {
     std::int64_t for_importance_ = 0, rays_before_ = 0;
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -2,11 +2,15 @@
 
 #include "interflect/solve.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 // Each is defined in the file of its method.
 MakeIterationMethod make_ray_radiosity, make_well_distributed_rays, make_random_walks, make_linked_elements,
     make_global_lines, make_progressive_refinement;
+
+}  // namespace interflect::inline detail
+
+namespace interflect {
 
 namespace {
 

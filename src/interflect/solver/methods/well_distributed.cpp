@@ -9,7 +9,7 @@
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/steps.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 WellDistributedRays::WellDistributedRays(const SolverState& state)
     : shot_(state.forest->size(), 0.0), arrived_(state.forest->size(), Rgb(0)) {}
@@ -117,4 +117,4 @@ std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state) 
     return std::make_unique<WellDistributedRays>(state);
 }
 
-}  // namespace interflect
+}  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 #include "interflect/solver/methods/passes.h"
 #include "interflect/solver/state_archive.h"
 
-namespace interflect {
+namespace interflect::inline detail {
 
 /// The rays of a run in which every ray is kept: all that were ever shot stand for the present estimate together, as a
 /// well-distributed ray set (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot
@@ -46,4 +46,4 @@ class WellDistributedRays : public IterationMethod {
     std::int64_t total_ = 0;             // N: rays of all leaves
 };
 
-}  // namespace interflect
+}  // namespace interflect::inline detail
