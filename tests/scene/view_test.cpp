@@ -33,7 +33,8 @@ TEST(FindView, FindsAViewByItsName) {
 TEST(FindView, ListsTheViewsThereAre) {
     Scene scene;
     scene.name = "room.mgf";
-    EXPECT_THAT(error_of(scene, "desk"), AllOf(HasSubstr("room.mgf: "), HasSubstr("'desk'"), HasSubstr("--eye")));
+    EXPECT_THAT(error_of(scene, "desk"),
+                AllOf(HasSubstr("room.mgf: "), HasSubstr("'desk'"), HasSubstr("it names none")));
     scene.views.resize(2);
     scene.views[0].name = "door";
     scene.views[1].name = "window";
