@@ -49,6 +49,8 @@ struct PathTracing {
     /// units of render(). No approximation: the expected value is the exact solution's. A pixel that an interrupted run
     /// has not reached is black.
     Image image;
+    /// Of that, what comes straight from where it is emitted: emission itself, and light that is reflected once.
+    Image direct;
     /// Of each pixel and channel, in the same unit: from the spread of batches of paths, which are independent.
     Image standard_error;
     /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (means over

@@ -19,6 +19,10 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// one.
 constexpr float roulette_threshold = 0.5f;
 
+/// A path goes on where its ray has hit an element of more than this solid angle, A / d^2 [sr]: one value for all of it
+/// would show.
+constexpr float largest_gathered_angle = 0.25f;
+
 /// Where a ray leaves the patch that another has hit at x: on the patch's surface, up by the ray caster's offset.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
@@ -33,7 +37,8 @@ void PathWavefront::trace(std::span<BatchOfPaths> batches) {
     for (std::size_t i = 0; i < light_.size(); ++i) {
         BatchOfPaths& batch = batches[i / s_.batch_size];
         batch.emitted += RgbD(light_[i].emitted);
-        batch.reflected += RgbD(light_[i].reflected);
+        batch.direct += RgbD(light_[i].direct);
+        batch.indirect += RgbD(light_[i].indirect);
         batch.done = true;
     }
 }
@@ -78,8 +83,7 @@ void PathWavefront::advance_paths() {
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     if (hit.patch == none) {
         ++counts_.escaped_rays;
-        PathLight& light = light_[path.index];
-        (vertex_ == 1 ? light.emitted : light.reflected) += path.throughput * s_.sky;
+        add(path.index, vertex_ - 1, path.throughput * s_.sky);
         return false;
     }
     const Material& material = s_.material(hit.patch);
@@ -93,7 +97,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
     path.throughput *= reflectance;
-    if (largest_channel(path.throughput) <= 0) return false;
+    if (largest_channel(path.throughput) <= 0 || end_at_known_light(hit, ray, path)) return false;
     const std::uint32_t size = static_cast<std::uint32_t>(s_.batch_size);
     const VertexSample sample = vertex_sample(keys_[path.index / size], vertex_, path.index % size);
     ray.origin = offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction);
@@ -110,10 +114,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
 
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
     const Rgb radiance = path.throughput * exitance / pi;
-    if (vertex_ == 1) {
-        light_[path.index].emitted += radiance;
-        return;
-    }
+    if (vertex_ == 1) return add(path.index, 0, radiance);
     float weight = 1;
     if (s_.sampling == EmitterSampling::lights) weight = 0;
     if (s_.sampling == EmitterSampling::combined) {
@@ -122,7 +123,25 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
             light_density(s_.geometry[hit.patch], probability, ray.direction, hit.distance * hit.distance);
         weight = balance(path.normal.dot(ray.direction) / pi, of_light);
     }
-    light_[path.index].reflected += radiance * weight;
+    add(path.index, vertex_ - 1, radiance * weight);
+}
+
+bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Path& path) {
+    if (!s_.known || vertex_ == 1) return false;
+    const ElementForest& forest = s_.known->forest;
+    std::uint32_t leaf = hit.patch;
+    if (!forest.is_leaf(leaf)) {
+        const V3f x = ray.origin + hit.distance * ray.direction;
+        leaf = forest.leaf_at(hit.patch, s_.geometry[hit.patch].parameters_of(x));
+    }
+    if (forest.area(leaf) > largest_gathered_angle * hit.distance * hit.distance) return false;
+    add(path.index, vertex_, path.throughput * s_.known->irradiance[leaf] / pi);
+    return true;
+}
+
+void PathWavefront::add(std::uint32_t index, std::uint32_t at, const Rgb& radiance) {
+    PathLight& light = light_[index];
+    (at == 0 ? light.emitted : at == 1 ? light.direct : light.indirect) += radiance;
 }
 
 void PathWavefront::connect_to_light(const V3f& x, const Path& path, const VertexSample& sample) {
@@ -177,7 +196,7 @@ void PathWavefront::trace_shadow_rays() {
     for (std::size_t i = 0; i < connections_.size(); ++i) {
         const Connection& c = connections_[i];
         const bool is_reached = hits_[i].patch == c.patch || (c.patch == none && hits_[i].distance > c.distance);
-        if (is_reached) light_[c.index].reflected += c.radiance;
+        if (is_reached) add(c.index, vertex_, c.radiance);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interflect/colour.h"
+#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
@@ -15,6 +16,12 @@
 #include "interflect/scene.h"
 
 namespace interflect {
+
+/// A solution, which paths end at: irradiance of every element.
+struct KnownLight {
+    const ElementForest& forest;
+    std::span<const Rgb> irradiance;
+};
 
 /// What all paths of a picture share.
 struct PathScene {
@@ -28,6 +35,7 @@ struct PathScene {
     std::uint64_t seed;
     int width;
     std::size_t batch_size;
+    const KnownLight* known = nullptr;  // null: paths go on until roulette ends them
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
@@ -36,8 +44,9 @@ struct PathScene {
 struct BatchOfPaths {
     std::uint32_t pixel = 0, batch = 0;
     bool done = false;
-    RgbD emitted{0, 0, 0};  // seen directly
-    RgbD reflected{0, 0, 0};
+    RgbD emitted{0, 0, 0};   // seen directly
+    RgbD direct{0, 0, 0};    // reflected once, from where it was emitted to the camera
+    RgbD indirect{0, 0, 0};  // reflected more often
 };
 
 /// Counts of rays, summed over batches.
@@ -67,7 +76,7 @@ class PathWavefront {
         V3f normal;           // of the surface that its ray leaves
     };
     struct PathLight {
-        Rgb emitted{0, 0, 0}, reflected{0, 0, 0};
+        Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
     };
     /// The contribution of a shadow ray if it hits the patch that it is sent to, or nothing nearer than a luminaire.
     struct Connection {
@@ -88,6 +97,11 @@ class PathWavefront {
     /// The same for luminaires: one of them, chosen by what it would bring if nothing were in its way.
     void connect_to_luminaire(const V3f& x, const Path& path, double uniform);
     void trace_shadow_rays();
+    /// Ends a path at the solution's light, unless the element that its ray hit is too near.
+    /// @return Whether it has ended.
+    bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
+    /// Light that a path's ray brings to its vertex `at`, counted from the camera.
+    void add(std::uint32_t index, std::uint32_t at, const Rgb& radiance);
 
     const PathScene& s_;
     std::uint32_t vertex_ = 1;         // which vertex of the paths comes next; the camera is vertex 0

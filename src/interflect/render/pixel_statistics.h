@@ -15,16 +15,18 @@ inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 /// Mean and variance of a pixel's batches, gathered one by one (Welford 1962).
 struct PixelStatistics {
     RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared differences from the mean
+    RgbD direct{0, 0, 0};                  // mean of what comes straight from where it is emitted
     double reflected = 0;                  // mean over the batches of the channels' mean
     std::uint32_t batches = 0;
 
     void add(const BatchOfPaths& b, double batch_size) {
         ++batches;
         const double count = batches;
-        const RgbD value = (b.emitted + b.reflected) / batch_size, difference = value - mean;
+        const RgbD value = (b.emitted + b.direct + b.indirect) / batch_size, difference = value - mean;
         mean += difference / count;
         squares += difference * (value - mean);
-        reflected += (mean_channel(b.reflected) / batch_size - reflected) / count;
+        direct += ((b.emitted + b.direct) / batch_size - direct) / count;
+        reflected += (mean_channel(b.direct + b.indirect) / batch_size - reflected) / count;
     }
     /// Of one batch.
     RgbD variance() const { return batches > 1 ? squares / (batches - 1.0) : RgbD(0, 0, 0); }
