@@ -9,7 +9,7 @@ PathTracing gather(const Scene& scene, const ElementForest& forest, const RayCas
                    std::span<const Rgb> irradiance, const PathOptions& options, const PathMonitor& monitor) {
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
-    const KnownLight known{forest, irradiance};
+    const KnownIrradiance known{forest, irradiance};
     return trace_picture(scene, ray_caster, view, options, monitor, &known);
 }
 

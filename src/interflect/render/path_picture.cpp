@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "interflect/base/parallel.h"
@@ -165,23 +166,24 @@ std::size_t batch_size_for(int samples) {
 }  // namespace
 
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
-                          const PathMonitor& monitor, const KnownLight* known) {
+                          const PathMonitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
-    const Camera camera(view, options.width, options.height, scene.origin);
-    std::vector<PatchGeometry> geometry = geometry_of(scene);
-    LightTree lights(scene, geometry);
+    const std::vector<PatchGeometry> geometry = geometry_of(scene);
+    const LightTree lights(scene, geometry, emitted_powers(scene, geometry));
+    std::optional<KnownLight> known_light;
+    if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
     const PathScene path_scene{scene,
                                ray_caster,
-                               camera,
-                               std::move(geometry),
-                               std::move(lights),
+                               Camera(view, options.width, options.height, scene.origin),
+                               geometry,
+                               lights,
                                sky_radiance(scene),
                                options.emitter_sampling,
                                options.seed,
                                options.width,
                                batch_size_for(options.samples),
-                               known};
+                               known_light ? &*known_light : nullptr};
     PathPicture picture(path_scene, options, monitor);
     picture.trace();
     return picture.result();

@@ -1,13 +1,21 @@
 #pragma once
 
+#include <span>
+
+#include "interflect/elements/forest.h"
 #include "interflect/path_tracer.h"
-#include "interflect/render/path_wavefront.h"
 
 namespace interflect {
 
+/// Irradiance of every element, at which final gathering ends its paths.
+struct KnownIrradiance {
+    const ElementForest& forest;
+    std::span<const Rgb> irradiance;
+};
+
 /// Traces the paths of a picture, in rounds where there is a target: what trace_paths() and gather() have in common.
-/// @param known  The solution that paths end at; null: none.
+/// @param known  Null: paths go on until roulette ends them.
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
-                          const PathMonitor& monitor, const KnownLight* known);
+                          const PathMonitor& monitor, const KnownIrradiance* known);
 
 }  // namespace interflect

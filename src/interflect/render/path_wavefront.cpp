@@ -19,10 +19,6 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// one.
 constexpr float roulette_threshold = 0.5f;
 
-/// A path goes on where its ray has hit an element of more than this solid angle, A / d^2 [sr]: one value for all of it
-/// would show.
-constexpr float largest_gathered_angle = 0.25f;
-
 /// Where a ray leaves the patch that another has hit at x: on the patch's surface, up by the ray caster's offset.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
@@ -96,13 +92,15 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     }
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
+    if (end_at_known_light(hit, ray, path)) return false;
     path.throughput *= reflectance;
-    if (largest_channel(path.throughput) <= 0 || end_at_known_light(hit, ray, path)) return false;
+    if (largest_channel(path.throughput) <= 0) return false;
     const std::uint32_t size = static_cast<std::uint32_t>(s_.batch_size);
     const VertexSample sample = vertex_sample(keys_[path.index / size], vertex_, path.index % size);
     ray.origin = offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction);
     path.normal = s_.geometry[hit.patch].normal();
     if (s_.sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
+    if (s_.known) connect_to_known_light(ray.origin, path);
     if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample.light);
 
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
@@ -128,20 +126,43 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
 
 bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Path& path) {
     if (!s_.known || vertex_ == 1) return false;
-    const ElementForest& forest = s_.known->forest;
-    std::uint32_t leaf = hit.patch;
-    if (!forest.is_leaf(leaf)) {
-        const V3f x = ray.origin + hit.distance * ray.direction;
-        leaf = forest.leaf_at(hit.patch, s_.geometry[hit.patch].parameters_of(x));
-    }
-    if (forest.area(leaf) > largest_gathered_angle * hit.distance * hit.distance) return false;
-    add(path.index, vertex_, path.throughput * s_.known->irradiance[leaf] / pi);
+    const KnownLight::Place place = s_.known->place(hit.patch, ray.origin + hit.distance * ray.direction);
+    const float distance2 = hit.distance * hit.distance;
+    if (!s_.known->is_far(place, distance2)) return false;
+    const float of_light = density_towards(place, ray.origin, path.normal, ray.direction, distance2);
+    const float weight = balance(path.normal.dot(ray.direction) / pi, of_light);
+    add(path.index, vertex_, path.throughput * s_.known->radiance(place) * weight);
     return true;
 }
 
-void PathWavefront::add(std::uint32_t index, std::uint32_t at, const Rgb& radiance) {
+void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
+    const auto size = static_cast<std::uint32_t>(s_.batch_size);
+    const PlaceSample sample = place_sample(keys_[path.index / size], vertex_, path.index % size);
+    const KnownLight::Place place = s_.known->sample(x, path.normal, sample.patch, sample.u, sample.v);
+    if (place.patch == none) return;
+    const V3f to_light = s_.geometry[place.patch].point(place.parameters) - x;
+    const float distance2 = to_light.length2();
+    if (!(distance2 > 0) || !s_.known->is_far(place, distance2)) return;
+    const V3f direction = to_light / std::sqrt(distance2);
+    const float of_direction = path.normal.dot(direction) / pi;
+    const float of_light = density_towards(place, x, path.normal, direction, distance2);
+    if (!(of_direction > 0 && of_light > 0)) return;
+    const float weight = balance(of_light, of_direction);
+    shadow_rays_.push_back({x, direction});
+    connections_.push_back({place.patch, path.index,
+                            path.throughput * s_.known->radiance(place) * (of_direction / of_light * weight), 0,
+                            vertex_ + 1});
+}
+
+float PathWavefront::density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
+                                     float distance2) const {
+    const float cosine = -s_.geometry[place.patch].normal().dot(direction);
+    return cosine > 0 ? s_.known->density(place, x, n) * distance2 / cosine : 0;
+}
+
+void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance) {
     PathLight& light = light_[index];
-    (at == 0 ? light.emitted : at == 1 ? light.direct : light.indirect) += radiance;
+    (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += radiance;
 }
 
 void PathWavefront::connect_to_light(const V3f& x, const Path& path, const VertexSample& sample) {
@@ -161,7 +182,7 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
     const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.patch], on_lamp) / pi;
     shadow_rays_.push_back({x, direction});
     connections_.push_back(
-        {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0});
+        {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
 }
 
 void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double uniform) {
@@ -183,7 +204,7 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double 
         if (!(share > 0) || uniform > chosen) continue;
         shadow_rays_.push_back({x, towards});
         connections_.push_back(
-            {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance});
+            {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance, vertex_});
         return;
     }
 }
@@ -196,7 +217,7 @@ void PathWavefront::trace_shadow_rays() {
     for (std::size_t i = 0; i < connections_.size(); ++i) {
         const Connection& c = connections_[i];
         const bool is_reached = hits_[i].patch == c.patch || (c.patch == none && hits_[i].distance > c.distance);
-        if (is_reached) add(c.index, vertex_, c.radiance);
+        if (is_reached) add(c.index, c.bounces, c.radiance);
     }
 }
 

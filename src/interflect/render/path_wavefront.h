@@ -6,36 +6,30 @@
 #include <vector>
 
 #include "interflect/colour.h"
-#include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/render/known_light.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/path_samples.h"
 #include "interflect/scene.h"
 
 namespace interflect {
 
-/// A solution, which paths end at: irradiance of every element.
-struct KnownLight {
-    const ElementForest& forest;
-    std::span<const Rgb> irradiance;
-};
-
 /// What all paths of a picture share.
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
     Camera camera;
-    std::vector<PatchGeometry> geometry;  // of each patch
-    LightTree lights;
+    std::span<const PatchGeometry> geometry;  // of each patch
+    const LightTree& lights;
     Rgb sky;  // its radiance
     EmitterSampling sampling;
     std::uint64_t seed;
     int width;
     std::size_t batch_size;
-    const KnownLight* known = nullptr;  // null: paths go on until roulette ends them
+    const KnownLight* known = nullptr;  // that paths end at; null: they go on until roulette ends them
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
@@ -82,7 +76,8 @@ class PathWavefront {
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;  // to the luminaire [m]
+        float distance;         // to the luminaire [m]
+        std::uint32_t bounces;  // of the light that it brings
     };
 
     void start_paths(std::span<const BatchOfPaths> batches);
@@ -100,8 +95,13 @@ class PathWavefront {
     /// Ends a path at the solution's light, unless the element that its ray hit is too near.
     /// @return Whether it has ended.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Light that a path's ray brings to its vertex `at`, counted from the camera.
-    void add(std::uint32_t index, std::uint32_t at, const Rgb& radiance);
+    /// Density per solid angle with which KnownLight::sample() takes the direction from x to a place.
+    float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
+                          float distance2) const;
+    /// A shadow ray to what is bright in the solution.
+    void connect_to_known_light(const V3f& x, const Path& path);
+    /// @param bounces  Of the light, until it reaches the camera.
+    void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 
     const PathScene& s_;
     std::uint32_t vertex_ = 1;         // which vertex of the paths comes next; the camera is vertex 0
