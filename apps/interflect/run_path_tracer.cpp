@@ -10,6 +10,7 @@
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
 #include "interflect/base/pending_file.h"
+#include "interflect/denoise.h"
 #include "interflect/error.h"
 #include "interflect/gather.h"
 #include "interflect/image_files.h"
@@ -40,6 +41,8 @@ void PathTracerArguments::add_to(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24))
         ->group(path_group);
+    app.add_flag("--denoise", denoise, "Filter noise from the light, but not from textures and edges")
+        ->group(path_group);
     app.add_option("--error-image", error_image, "Write the standard error of each pixel: .exr .hdr")
         ->type_name("FILE")
         ->group(path_group);
@@ -65,6 +68,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         traced = solution ? gather(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);
     }
+    if (arguments.denoise) traced.image = denoise(traced.layers);
     log_outcome(solution ? "final gathering" : "path tracing", traced, seconds());
     if (error_image) {
         write_image(*error_image, traced.standard_error,

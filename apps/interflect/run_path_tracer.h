@@ -15,6 +15,7 @@ inline constexpr const char* path_group = "Gathering and path tracing";
 struct PathTracerArguments {
     int max_samples = PathOptions().max_samples;
     std::filesystem::path error_image;  ///< Empty: none.
+    bool denoise = false;
 
     void add_to(CLI::App& app);
 };

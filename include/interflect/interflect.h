@@ -3,6 +3,7 @@
 #pragma once
 
 #include "interflect/contacts.h"
+#include "interflect/denoise.h"
 #include "interflect/dimming.h"
 #include "interflect/error.h"
 #include "interflect/gather.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -61,14 +62,13 @@ class PathPicture {
     PathTracing result() const {
         PathTracing result;
         result.image = Image(options_.width, options_.height);
-        result.direct = Image(options_.width, options_.height);
         result.standard_error = Image(options_.width, options_.height);
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
             const RgbD e = pixels_[i].squared_error();
             result.image.pixels[i] = Rgb(pixels_[i].mean);
-            result.direct.pixels[i] = Rgb(pixels_[i].direct);
             result.standard_error.pixels[i] = Rgb(RgbD(std::sqrt(e.x), std::sqrt(e.y), std::sqrt(e.z)));
         }
+        result.layers = layers();
         result.relative_error = relative_error(pixels_);
         result.rays = counts_.rays;
         result.shadow_rays = counts_.shadow_rays;
@@ -80,6 +80,29 @@ class PathPicture {
     }
 
   private:
+    PictureLayers layers() const {
+        PictureLayers layers;
+        layers.pixel_angle = s_.pixel_angle;
+        for (Image* image :
+             {&layers.emitted, &layers.direct, &layers.indirect, &layers.albedo, &layers.normal, &layers.position})
+            *image = Image(options_.width, options_.height);
+        for (std::vector<float>* numbers : {&layers.direct_variance, &layers.indirect_variance, &layers.depth})
+            numbers->resize(pixels_.size());
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const PixelStatistics& p = pixels_[i];
+            layers.emitted.pixels[i] = Rgb(p.emitted);
+            layers.direct.pixels[i] = Rgb(p.direct);
+            layers.indirect.pixels[i] = Rgb(p.indirect);
+            layers.direct_variance[i] = static_cast<float>(p.squared_error(p.direct_squares));
+            layers.indirect_variance[i] = static_cast<float>(p.squared_error(p.indirect_squares));
+            layers.albedo.pixels[i] = Rgb(p.first.albedo);
+            layers.normal.pixels[i] = Rgb(V3f(p.first.normal));
+            layers.position.pixels[i] = Rgb(V3f(p.first.position));
+            layers.depth[i] = static_cast<float>(p.first.distance);
+        }
+        return layers;
+    }
+
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
 
     /// @return Whether a pixel needs more than it has.
@@ -173,17 +196,19 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const LightTree lights(scene, geometry, emitted_powers(scene, geometry));
     std::optional<KnownLight> known_light;
     if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
-    const PathScene path_scene{scene,
-                               ray_caster,
-                               Camera(view, options.width, options.height, scene.origin),
-                               geometry,
-                               lights,
-                               sky_radiance(scene),
-                               options.emitter_sampling,
-                               options.seed,
-                               options.width,
-                               batch_size_for(options.samples),
-                               known_light ? &*known_light : nullptr};
+    const PathScene path_scene{
+        scene,
+        ray_caster,
+        Camera(view, options.width, options.height, scene.origin),
+        geometry,
+        lights,
+        sky_radiance(scene),
+        options.emitter_sampling,
+        options.seed,
+        options.width,
+        2 * std::tan(view.fov * (std::numbers::pi_v<float> / 360)) / static_cast<float>(options.height),
+        batch_size_for(options.samples),
+        known_light ? &*known_light : nullptr};
     PathPicture picture(path_scene, options, monitor);
     picture.trace();
     return picture.result();

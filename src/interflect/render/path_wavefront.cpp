@@ -35,6 +35,7 @@ void PathWavefront::trace(std::span<BatchOfPaths> batches) {
         batch.emitted += RgbD(light_[i].emitted);
         batch.direct += RgbD(light_[i].direct);
         batch.indirect += RgbD(light_[i].indirect);
+        batch.first += light_[i].first;
         batch.done = true;
     }
 }
@@ -90,6 +91,9 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
         exitance = exitance_at(s_.scene, patch, p);
         reflectance = reflectance_at(s_.scene, patch, p);
     }
+    if (vertex_ == 1)
+        light_[path.index].first = {RgbD(reflectance), Imath::V3d(s_.geometry[hit.patch].normal()),
+                                    Imath::V3d(ray.origin + hit.distance * ray.direction), hit.distance};
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
     if (end_at_known_light(hit, ray, path)) return false;

@@ -28,10 +28,23 @@ struct PathScene {
     EmitterSampling sampling;
     std::uint64_t seed;
     int width;
+    float pixel_angle;  // that a pixel's side fills in the middle of the picture [rad]
     std::size_t batch_size;
     const KnownLight* known = nullptr;  // that paths end at; null: they go on until roulette ends them
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
+};
+
+/// What a camera ray hits first; all 0 where it escapes.
+struct FirstHit {
+    RgbD albedo{0, 0, 0};  // its reflectance
+    Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
+    double distance = 0;  // from the eye [m]
+
+    FirstHit& operator+=(const FirstHit& o) {
+        albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance;
+        return *this;
+    }
 };
 
 /// One batch of a pixel, and its outcome: sums over the batch's paths.
@@ -41,6 +54,7 @@ struct BatchOfPaths {
     RgbD emitted{0, 0, 0};   // seen directly
     RgbD direct{0, 0, 0};    // reflected once, from where it was emitted to the camera
     RgbD indirect{0, 0, 0};  // reflected more often
+    FirstHit first{};
 };
 
 /// Counts of rays, summed over batches.
@@ -71,6 +85,7 @@ class PathWavefront {
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
+        FirstHit first{};
     };
     /// The contribution of a shadow ray if it hits the patch that it is sent to, or nothing nearer than a luminaire.
     struct Connection {
