@@ -52,7 +52,7 @@ struct RenderArguments {
     PathTracerArguments path;
     std::filesystem::path output;
     Size size;
-    PictureShading shading = PictureShading::gather;
+    PictureShading shading = PictureShading::smooth;
     std::optional<int> samples;
     RenderOptions render;
     Exposure exposure;
@@ -263,7 +263,7 @@ void add_render(CLI::App& app, int& exit_code) {
         ->default_str("1280x720");
     command
         .add_option("--samples", options->samples,
-                    "Camera rays a pixel (default: 64; with --shading smooth and flat 16)")
+                    "Camera rays a pixel (default: 16; with --shading gather and path 64)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,
@@ -273,7 +273,7 @@ void add_render(CLI::App& app, int& exit_code) {
          {"path", PictureShading::path}},
         "gather: each pixel finds its own light, from the solution; smooth: interpolated over each surface; "
         "flat: one value an element; path: path tracing, without solving")
-        ->default_str("gather");
+        ->default_str("smooth");
     options->path.add_to(command);
     add_parsed(command, "--exposure", options->exposure, parse_exposure,
                "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as by itself")

@@ -84,12 +84,12 @@ TEST(LightTree, NeverTakesWhatIsBehindOrFacesAway) {
     Scene scene;
     const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
     add_rectangle(scene, V3f(-1, -1, 1), V3f(0, 2, 0), V3f(2, 0, 0), light);  // faces down
-    const LightTree one(scene, geometry_of(scene));
+    const LightTree one = tree_of(scene);
     EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, 0u);
     EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, -1), 0.5).patch, none) << "behind";
     EXPECT_EQ(one.choose(V3f(0, 0, 9), V3f(0, 0, -1), 0.5).patch, none) << "facing away";
     add_rectangle(scene, V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0), light);  // faces up
-    const LightTree two(scene, geometry_of(scene));
+    const LightTree two = tree_of(scene);
     EXPECT_FLOAT_EQ(two.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 1);
     EXPECT_FLOAT_EQ(two.probability(1, V3f(0, 0, 0), V3f(0, 0, -1)), 1);
 }
