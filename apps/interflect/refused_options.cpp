@@ -44,7 +44,7 @@ void refuse_solver_options(const CLI::App& command) {
 void refuse_path_options(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options())
         if (option->get_group() == path_group && is_given(option))
-            throw InputError(fmt::format("{}: only --shading path takes it", option->get_name()));
+            throw InputError(fmt::format("{}: only --shading gather and path take it", option->get_name()));
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {
