@@ -131,6 +131,60 @@ INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), [](c
     return name;
 });
 
+/// A lamp close to one large face, which begins as a single element. Its rays go to all sides of it, and from each
+/// the oracle must see how near the lamp is: what it accepts is spread over the whole element. Seen to fail when the
+/// lamp is taken to face each ray.
+TEST(PointLightNearALargeFace, IsReceivedWhereItFalls) {
+    Scene scene;
+    scene.objects = {""};
+    add_rectangle(scene, {-1, -1, 0.5f}, {4, 0, 0}, {0, 3, 0}, add_material(scene, Rgb(0.5f), Rgb(0)));
+    const V3d position(0.1, 0.4, 1.1);
+    scene.luminaires = {{"", 0, PointLight{V3f(position), Rgb(200)}}};
+    SolveOptions options{.method = find_method("hsrr"), .rays = 4'000'000};
+    options.refinement = Refinement::power;
+    options.epsilon = 1e-6;
+    const Solution solution = solve(scene, RayCaster(scene), options);
+    constexpr int blocks = 16, points = 8;
+    double squares = 0;
+    for (int i = 0; i < blocks; ++i)
+        for (int k = 0; k < blocks; ++k) {
+            double found = 0, expected = 0;
+            for (int a = 0; a < points * points; ++a) {
+                const double u = (i + (a / points + 0.5) / points) / blocks,
+                             v = (k + (a % points + 0.5) / points) / blocks;
+                const V3d d = position - V3d(-1 + 4 * u, -1 + 3 * v, 0.5);
+                expected += 200 * d.z / std::pow(d.length(), 3);
+                found += static_cast<double>(
+                    solution.irradiance[solution.forest->leaf_at(0, {static_cast<float>(u), static_cast<float>(v)})].x);
+            }
+            squares += std::pow(found / expected - 1, 2) / (blocks * blocks);
+        }
+    EXPECT_LT(std::sqrt(squares), 0.1);
+}
+
+/// However fine the mesh, the rays that are kept give each source its share: with far more elements than the room
+/// needs, what the sky brings to the outsides, which nothing else lights, is exact. Seen to fail when leaves that shot
+/// too much are not made up for by others of their patch.
+TEST(WellDistributedRaysOnAFineMesh, GiveTheSkyItsShare) {
+    Scene scene = room_with_window(Rgb(1000));
+    scene.materials[0].reflectance = Rgb(0.5f);
+    SolveOptions options{.method = find_method("hwdrs"), .rays = 200'000};
+    options.epsilon = 1e-12;
+    options.min_area = 1e-6;
+    const Solution solution = solve(scene, RayCaster(scene), options);
+    double brightest = 0;
+    for (std::uint32_t i = 0; i < solution.forest->patch_count(); ++i)
+        brightest = std::max(brightest, static_cast<double>(solution.irradiance[i].x));
+    double sum = 0, area = 0;
+    for (std::uint32_t i = 0; i < solution.forest->patch_count(); ++i) {
+        if (solution.irradiance[i].x < 0.9 * brightest) continue;
+        sum += static_cast<double>(solution.irradiance[i].x) * solution.forest->area(i);
+        area += solution.forest->area(i);
+    }
+    EXPECT_GT(area, 90);
+    EXPECT_NEAR(sum / area / (1000 * pi), 1, 0.005);
+}
+
 TEST(UniformSkyLight, IsPiTimesRadianceToAThousandth) {
     const Scene scene = open_floor({"", 0, UniformSky{Rgb(1000)}});
     SolveOptions options{.method = find_method("srr")};

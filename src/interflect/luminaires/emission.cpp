@@ -122,9 +122,8 @@ void Emission::add(const MeasuredLight& light) {
     for (const V3f& corner : {corners_.front(), corners_.back()})
         for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(corner[k]));
     constexpr float relative_offset = 0x1p-17f;  // as RayCaster::ray_offset()
-    emitters_.push_back(
-        {Web{sampler, light.web->opening, LuminaireFrame(light), light.position, relative_offset * reach},
-         light.factor * light.web->peak(), RgbD(light.factor) * (sampler->flux() / double{parts_per_emitter})});
+    emitters_.push_back({Web{sampler, light.web, LuminaireFrame(light), light.position, relative_offset * reach},
+                         light.factor, RgbD(light.factor) * (sampler->flux() / double{parts_per_emitter})});
 }
 
 Ray Emission::Beam::ray(float u, float v, float, float) const {
@@ -137,7 +136,7 @@ Ray Emission::Window::ray(float u, float v, float c, float d) const {
 
 Ray Emission::Web::ray(float u, float v, float c, float d) const {
     const V3f from_luminaire = sampler->direction(u, v), towards = frame.to_scene(from_luminaire).normalized();
-    const V3f start = sample_opening(opening, from_luminaire, c, d).position;
+    const V3f start = sample_opening(light->opening, from_luminaire, c, d).position;
     return {position + frame.to_scene(start) + towards * offset, towards};
 }
 
@@ -157,14 +156,20 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-Rgb Emission::irradiance(std::size_t part, float distance) const {
+Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance) const {
     const Emitter& emitter = emitters_[part / parts_per_emitter];
     const float squared = std::max(distance * distance, std::numeric_limits<float>::min());
-    if (std::holds_alternative<Beam>(emitter.shape)) return emitter.rating / squared;
-    if (const Web* web = std::get_if<Web>(&emitter.shape))  // not nearer than a disk of the opening's size
-        return emitter.rating / std::max(squared, web->opening.size.length2() / 4);
+    if (std::holds_alternative<Beam>(emitter.shape)) return {ray.origin, V3f(0), emitter.rating};
+    if (const Web* web = std::get_if<Web>(&emitter.shape))
+        return {ray.origin, V3f(0), emitter.rating * web->light->intensity(web->frame.to_luminaire(ray.direction))};
     const Window& window = std::get<Window>(emitter.shape);
-    return window.is_diffuse ? emitter.rating * (window.part_area / (window.part_area + pi * squared)) : emitter.rating;
+    if (window.is_diffuse) {
+        const float form_factor = window.part_area / (window.part_area + pi * squared);  // of a disk of that area
+        return {ray.origin, window.direction, emitter.rating * (form_factor * squared)};
+    }
+    // So far away that direction and distance are the same for the whole scene.
+    const float far = 100 * (corners_.back() - corners_.front()).length();
+    return {ray.origin - far * window.direction, window.direction, emitter.rating * (far * far)};
 }
 
 }  // namespace interflect

@@ -43,9 +43,15 @@ class Emission {
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// What the part causes where one of its rays arrives, on a surface that faces the ray [lm/m^2 or W/m^2].
-    /// @param distance  That the ray has gone [m].
-    Rgb irradiance(std::size_t part, float distance) const;
+    /// What stands for a part near one of its rays, for estimates of what others receive of it.
+    struct Proxy {
+        V3f position{0, 0, 0};  ///< [m]
+        V3f normal{0, 0, 0};    ///< It emits in proportion to the cosine with that; 0: alike in all directions.
+        Rgb intensity{0, 0,
+                      0};  ///< Along the normal: what it causes at a distance d is intensity / d^2 [lm/sr or W/sr].
+    };
+    /// @param distance  That the ray has gone to where it arrives [m].
+    Proxy proxy(std::size_t part, const Ray& ray, float distance) const;
 
   private:
     /// Into the cone around `axis` from cosine 1 to `outer`.
@@ -67,7 +73,7 @@ class Emission {
     /// set in.
     struct Web {
         std::shared_ptr<const WebSampler> sampler;
-        LuminousOpening opening;
+        std::shared_ptr<const PhotometricWeb> light;
         LuminaireFrame frame;
         V3f position;
         float offset;
@@ -85,7 +91,7 @@ class Emission {
     void add(const DirectionalLight& light);
     void add(const UniformSky& sky);
     void add(const MeasuredLight& light);
-    void add_beam(const Beam& cone, const Rgb& intensity);
+    void add_beam(const Beam& beam, const Rgb& intensity);
     void add_window(Window window, const Rgb& exitance);
 
     std::vector<V3f> corners_;  // of the box around the scene; empty without patches

@@ -15,6 +15,8 @@ struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};  ///< Unit length.
     float area = 0;       ///< [m^2]
+    /// No cosine to the normal is taken below that: 1 for what shines alike in all directions.
+    float least_cosine = 0;
 };
 
 /// Cheap upper estimate of the form factor from receiver to shooter: the solid angle of a disk of the shooter's area,
@@ -29,7 +31,8 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     const float f = shooter.area / (std::numbers::pi_v<float> * d2 + shooter.area);
     const float per_distance = 1 / std::sqrt(larger(d2, std::numeric_limits<float>::min()));
     const float least = smaller(1, 2 * f);
-    const float from_shooter = smaller(1, larger(least, shooter.normal.dot(d) * per_distance));
+    const float from_shooter =
+        smaller(1, larger(larger(least, shooter.least_cosine), shooter.normal.dot(d) * per_distance));
     const float to_receiver = smaller(1, larger(least, -receiver.normal.dot(d) * per_distance));
     return f * from_shooter * to_receiver;
 }

@@ -32,12 +32,25 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Lets every source shoot what it lacks of its share of `all` rays. @param step  Its weights are the shares.
+/// Lets every source shoot what it lacks of its share of `all` rays. A leaf may have shot more than its share, by
+/// chance or before it was known well: others of its patch then shoot less, so that the patch's share is right.
+/// @param step  Its weights are the shares.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const {
+    struct Balance {
+        double lacks = 0, lacking = 0;  // with and without what is beyond the shares of leaves
+    };
+    std::vector<Balance> patches(forest.patch_count());
+    const auto lacks = [&](std::uint32_t e) { return static_cast<double>(all) * step.q[e] - shot_[e]; };
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        if (!forest.is_leaf(e)) continue;
+        patches[forest.patch(e)].lacks += lacks(e);
+        patches[forest.patch(e)].lacking += std::max(0.0, lacks(e));
+    }
     double lacking = 0;
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const double lacks = static_cast<double>(all) * step.q[e] - shot_[e];
-        step.q[e] = forest.is_leaf(e) ? static_cast<float>(std::max(0.0, lacks)) : 0.0f;
+        const Balance& patch = patches[forest.patch(e)];
+        const bool shoots = forest.is_leaf(e) && patch.lacks > 0;
+        step.q[e] = shoots ? static_cast<float>(std::max(0.0, lacks(e)) * (patch.lacks / patch.lacking)) : 0.0f;
         lacking += step.q[e];
     }
     for (std::size_t i = 0; i < step.part_count(); ++i) {

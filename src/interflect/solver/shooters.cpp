@@ -1,0 +1,62 @@
+#include "interflect/solver/shooters.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numbers>
+
+namespace interflect {
+
+Shooters::Path Shooters::append_leaf(std::uint32_t leaf) {
+    const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
+    const PatchGeometry& geometry = forest_.geometry(patch);
+    const V3f normal = geometry.normal();
+    std::uint32_t element = patch;
+    Cell cell;
+    const auto first = static_cast<std::uint32_t>(shooters_.size());
+    for (int digit = std::bit_width(path) - 1;;) {
+        const V3f centre = geometry.point(cell.centre(geometry.is_triangle()));
+        shooters_.push_back({element, cell, centre, normal, forest_.area(element), 0,
+                             step_.light_for_oracle().of_element(patch, element)});
+        if (digit == 0) break;
+        digit -= 2;
+        const unsigned k = path >> digit & 3u;
+        element = forest_.first_child(element) + k;
+        cell = cell.child(k, geometry.is_triangle());
+    }
+    return {first, static_cast<std::uint32_t>(shooters_.size() - 1)};
+}
+
+/// To the oracle a small disk that causes as much at the receiver as the part does.
+Shooters::Path Shooters::append_part(std::uint32_t part, const Ray& ray, const Hit& hit) {
+    constexpr float share_of_view = 1e-6f;  // so small that it is never the larger end of a pair
+    constexpr float tiny = std::numeric_limits<float>::min();
+    const Emission::Proxy proxy = step_.emission->proxy(part, ray, hit.distance);
+    const float squared = hit.distance * hit.distance;
+    const float area = std::max(share_of_view * std::min(squared, 4 * step_.oracle.min_area), tiny);
+    Rgb radiosity = proxy.intensity * (std::numbers::pi_v<float> / area);
+    for (int c = 0; c < 3; ++c) radiosity[c] = std::min(radiosity[c], std::numeric_limits<float>::max());
+    const float least_cosine = proxy.normal == V3f(0) ? 1.0f : 0.0f;
+    shooters_.push_back({none, Cell(), proxy.position, proxy.normal, area, least_cosine, radiosity});
+    const auto number = static_cast<std::uint32_t>(shooters_.size() - 1);
+    return {number, number};
+}
+
+bool Shooters::subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance,
+                         bool may_grow) {
+    Shooter shooter = shooters_[pairs.shooter[i]];
+    const PatchGeometry& geometry = forest_.geometry(forest_.patch(shooter.element));
+    const std::uint32_t children = children_on_demand(forest_, shooter.element, may_grow);
+    if (children == none) return false;
+    const unsigned k = shooter.cell.child_at(start, geometry.is_triangle());
+    shooter.cell = shooter.cell.child(k, geometry.is_triangle());
+    shooter.element = children + k;
+    shooter.centre = geometry.point(shooter.cell.centre(geometry.is_triangle()));
+    shooter.area = forest_.area(shooter.element);
+    shooters_.push_back(shooter);
+    pairs.lowest_shooter[i] = static_cast<std::uint32_t>(shooters_.size() - 1);
+    take(pairs, i, pairs.lowest_shooter[i], reflectance);
+    return true;
+}
+
+}  // namespace interflect
