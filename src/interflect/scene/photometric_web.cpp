@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "interflect/scene/limits.h"
 #include "interflect/scene/web_angles.h"
