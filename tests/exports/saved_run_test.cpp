@@ -56,6 +56,14 @@ Scene open_room_with_lights() {
                         {"spot", 0, SpotLight{{1, 1, 2.2f}, {1, 1, -3}, {50, 50, 90}, 10, 40}},
                         {"sun", 0, DirectionalLight{{1, 1, -3}, {80, 70, 60}}},
                         {"sky", 0, UniformSky{{9, 10, 12}}}};
+    auto web = std::make_shared<PhotometricWeb>();
+    web->polar = {0, 70.3f, 100}, web->azimuth = {-30, 60, 150};
+    web->intensities = {10, 20, 0, 30, 5.1f, 0, 8, 9, 1};
+    web->opening = {LuminousOpening::Shape::cylinder, {0.3f, 0.2f, 0.1f}, 1};
+    web->pole = PhotometricWeb::Pole::c90;
+    for (const float x : {1.2f, 2.4f})
+        scene.luminaires.push_back(
+            {"measured", 0, MeasuredLight{web, {x, 2, 2.1f}, {0.1f, 0, -1}, {1, 1, 0}, x > 2, {1, 0.9f, 0.7f}}});
     scene.light_groups = {{"daylight", "s*"}};
     return scene;
 }
@@ -341,6 +349,32 @@ TEST(ChangeOfViews, RefusesWhatIsNoView) {
     EXPECT_EQ(solver.options().views.front().view.look_at, into_the_room.look_at);
 }
 
+TEST(SolutionOfMeasuredLight, HasItsWebOnceAndAsItWas) {
+    const TemporaryFolder folder;
+    const Scene scene = open_room_with_lights();
+    const Solution solution = solve(scene, RayCaster(scene), {.method = find_method("srr"), .rays = 10'000});
+    write_solution(folder.path() / "out.h5", scene, solution);
+    const Scene read = read_solution(folder.path() / "out.h5").scene;
+    const auto light = [](const Scene& s, std::size_t i) { return std::get<MeasuredLight>(s.luminaires.at(i).kind); };
+    for (const std::size_t i : {4, 5}) {
+        const MeasuredLight found = light(read, i), written = light(scene, i);
+        EXPECT_EQ(found.position, written.position);
+        EXPECT_EQ(found.direction, written.direction);
+        EXPECT_EQ(found.c0, written.c0);
+        EXPECT_EQ(found.mirrored, written.mirrored);
+        EXPECT_EQ(found.factor, written.factor);
+    }
+    EXPECT_EQ(light(read, 4).web, light(read, 5).web);
+    const PhotometricWeb &found = *light(read, 4).web, &written = *light(scene, 4).web;
+    EXPECT_EQ(found.pole, written.pole);
+    EXPECT_EQ(found.polar, written.polar);
+    EXPECT_EQ(found.azimuth, written.azimuth);
+    EXPECT_EQ(found.intensities, written.intensities);
+    EXPECT_EQ(found.opening.shape, written.opening.shape);
+    EXPECT_EQ(found.opening.size, written.opening.size);
+    EXPECT_EQ(found.opening.axis, written.opening.axis);
+}
+
 /// What is saved with a dimmed group shows as it is lit now, and goes on as if it had never been saved.
 TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
     const TemporaryFolder folder;
@@ -359,6 +393,7 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
         EXPECT_EQ(read.solution.dimming, (std::vector<float>{1, 1}));
         EXPECT_EQ(std::get<UniformSky>(read.scene.luminaires[3].kind).radiance, 0.25f * Rgb(9, 10, 12));
         EXPECT_EQ(rating(read.scene.luminaires[0]), Rgb(0));
+        EXPECT_EQ(rating(read.scene.luminaires[4]), Rgb(0));
     }
     Solver opened = Solver::open(run);
     for (Solver* s : {&solver, &opened}) {

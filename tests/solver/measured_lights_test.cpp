@@ -119,7 +119,7 @@ struct SurfacePoint {
 
 /// The surface in small pieces; of a line its length.
 std::vector<SurfacePoint> surface_of(const LuminousOpening& o) {
-    constexpr int n = 60;
+    constexpr int n = 40;
     const V3d half = V3d(o.size) / 2;
     std::vector<SurfacePoint> points;
     const auto axes = [](int k) { return std::pair((k + 1) % 3, (k + 2) % 3); };
