@@ -28,8 +28,8 @@ struct PhotometricWeb {
         nadir,  ///< Types C and A: the azimuth runs from x to y.
         c90     ///< Type B: the pole is y, and the azimuth runs from the nadir to x.
     };
-    std::string name;                ///< The file that it was read from.
-    Pole pole = Pole::nadir;         //
+    std::string name;  ///< The file that it was read from.
+    Pole pole = Pole::nadir;
     std::vector<float> polar;        ///< [degrees], at least two, ascending within [0, 180].
     std::vector<float> azimuth;      ///< [degrees], at least two, ascending, over at most 360.
     std::vector<float> intensities;  ///< [cd] or [W/sr], >= 0: [azimuth * polar.size() + polar].

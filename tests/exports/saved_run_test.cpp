@@ -349,32 +349,6 @@ TEST(ChangeOfViews, RefusesWhatIsNoView) {
     EXPECT_EQ(solver.options().views.front().view.look_at, into_the_room.look_at);
 }
 
-TEST(SolutionOfMeasuredLight, HasItsWebOnceAndAsItWas) {
-    const TemporaryFolder folder;
-    const Scene scene = open_room_with_lights();
-    const Solution solution = solve(scene, RayCaster(scene), {.method = find_method("srr"), .rays = 10'000});
-    write_solution(folder.path() / "out.h5", scene, solution);
-    const Scene read = read_solution(folder.path() / "out.h5").scene;
-    const auto light = [](const Scene& s, std::size_t i) { return std::get<MeasuredLight>(s.luminaires.at(i).kind); };
-    for (const std::size_t i : {4, 5}) {
-        const MeasuredLight found = light(read, i), written = light(scene, i);
-        EXPECT_EQ(found.position, written.position);
-        EXPECT_EQ(found.direction, written.direction);
-        EXPECT_EQ(found.c0, written.c0);
-        EXPECT_EQ(found.mirrored, written.mirrored);
-        EXPECT_EQ(found.factor, written.factor);
-    }
-    EXPECT_EQ(light(read, 4).web, light(read, 5).web);
-    const PhotometricWeb &found = *light(read, 4).web, &written = *light(scene, 4).web;
-    EXPECT_EQ(found.pole, written.pole);
-    EXPECT_EQ(found.polar, written.polar);
-    EXPECT_EQ(found.azimuth, written.azimuth);
-    EXPECT_EQ(found.intensities, written.intensities);
-    EXPECT_EQ(found.opening.shape, written.opening.shape);
-    EXPECT_EQ(found.opening.size, written.opening.size);
-    EXPECT_EQ(found.opening.axis, written.opening.axis);
-}
-
 /// What is saved with a dimmed group shows as it is lit now, and goes on as if it had never been saved.
 TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
     const TemporaryFolder folder;

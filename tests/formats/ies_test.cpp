@@ -78,6 +78,15 @@ TEST_P(IesOpening, HasItsShapeAndSize) {
               1e-6f);
 }
 
+TEST(Ies, TwoPlanesAreEnoughOfAHalf) {
+    for (const std::vector<double>& horizontal : {std::vector<double>{0, 180}, {90, 270}}) {
+        const Read found = read(IesText{.horizontal = horizontal}.str());
+        EXPECT_TRUE(found.warnings.entries().empty());
+        EXPECT_EQ(found.web.azimuth.size(), 3u);
+        EXPECT_FLOAT_EQ(found.web.intensity({-0.3f, 0.7f, -1}), 100);
+    }
+}
+
 TEST(Ies, LineBreaksAndSeparatorsAreFree) {
     const auto expect_same = [](const std::string& text) {
         const Read found = read(text);

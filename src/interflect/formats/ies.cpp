@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "interflect/error.h"
@@ -76,7 +78,7 @@ class IesReader {
     PhotometricWeb read();
 
   private:
-    enum Type { c = 1, b = 2, a = 3 };  // LM-63's numbers
+    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // LM-63's numbers
 
     void read_labels();
     void read_version(std::string_view first_line);
@@ -186,7 +188,7 @@ void IesReader::read_photometry() {
     const std::size_t most = options_.max_photometric_values;
     const std::size_t vertical_count = text_.count("the number of vertical angles", 2, most);
     const std::size_t horizontal_count = text_.count("the number of horizontal angles", 1, most / vertical_count);
-    const auto type = static_cast<Type>(text_.count("the photometric type", c, a));
+    const auto type = static_cast<Type>(text_.count("the photometric type", type_c, type_a));
     read_opening(text_.count("the unit of length", 1, 2) == 1 ? feet : 1);
     factor_ *= positive("the ballast factor");
     const double last_factor = positive("the ballast-lamp photometric factor");
@@ -195,22 +197,22 @@ void IesReader::read_photometry() {
     else if (year_ == year_of_reserved && last_factor != 1)
         warn("ies-reserved", "a number that IES LM-63-2002 reserves for future use is not 1; it is ignored");
     text_.number("the input power");
-    const bool is_c = type == c;
+    const bool is_c = type == type_c;
     constexpr auto half = static_cast<float>(half_turn);
     auto vertical = angles(vertical_count, "vertical",
-                           is_c        ? 0
-                           : type == a ? -right_angle
-                                       : -half,
-                           is_c        ? half
-                           : type == a ? right_angle
-                                       : half);
+                           is_c             ? 0
+                           : type == type_a ? -right_angle
+                                            : -half,
+                           is_c             ? half
+                           : type == type_a ? right_angle
+                                            : half);
     auto horizontal = angles(horizontal_count, "horizontal",
-                             is_c        ? -2 * half
-                             : type == a ? -half
-                                         : -right_angle,
-                             is_c        ? 2 * half
-                             : type == a ? half
-                                         : right_angle);
+                             is_c             ? -2 * half
+                             : type == type_a ? -half
+                                              : -right_angle,
+                             is_c             ? 2 * half
+                             : type == type_a ? half
+                                              : right_angle);
     if (is_c)
         read_type_c(std::move(vertical), std::move(horizontal));
     else
@@ -259,7 +261,7 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
     if (!is_complete) warn("ies-angles", "vertical angles do not reach 0, 90 or 180; beyond them there is no light");
     const float first = horizontal.front(), span = horizontal.back() - first;
     const float step = horizontal.size() > 1 ? span / static_cast<float>(horizontal.size() - 1) : 0;
-    const bool is_open = span < turn && span + 1.5f * step > turn;
+    const bool is_open = span > half && span < turn && span + 1.5f * step > turn;
     const bool is_single = horizontal.size() == 1;
     if (!is_single && !is_open &&
         (std::fmod(first, right_angle) != 0 || std::fmod(span, right_angle) != 0 || span == half + right_angle ||
@@ -285,7 +287,7 @@ void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float>
     const bool is_symmetric = horizontal.front() == 0;
     PhotometricPlanes all = planes(std::move(horizontal), vertical.size());
     if (is_symmetric) all.mirror_at_first();
-    if (type == a) {
+    if (type == type_a) {
         all.reverse();
         for (float& angle : vertical) angle += right_angle;
         web_.polar = std::move(vertical);

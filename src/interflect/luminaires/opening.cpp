@@ -1,6 +1,6 @@
 #include "interflect/luminaires/opening.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
