@@ -48,7 +48,7 @@ void refuse_path_options(const CLI::App& command) {
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {
-    constexpr std::array<std::string_view, 2> of_reading = {"--curve-divisions", "--max-patches"};
+    constexpr std::array<std::string_view, 3> of_reading = {"--curve-divisions", "--max-patches", "--luminaire"};
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (!is_given(option) || !(is_of_solving(*option) || has(of_reading, name))) continue;

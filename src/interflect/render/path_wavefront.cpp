@@ -105,7 +105,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     path.normal = s_.geometry[hit.patch].normal();
     if (s_.sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
     if (s_.known) connect_to_known_light(ray.origin, path);
-    if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample.light);
+    if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
 
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
@@ -189,9 +189,9 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
         {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
 }
 
-void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double uniform) {
+void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample) {
     const auto irradiance_from = [&](const Luminaire& luminaire, V3f& towards, float& distance) {
-        const Illumination light = illumination(luminaire, x);
+        const Illumination light = illumination(luminaire, x, sample.light_u, sample.light_v);
         towards = light.towards, distance = light.distance;
         return light.irradiance * std::max(0.0f, path.normal.dot(light.towards));
     };
@@ -205,7 +205,7 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double 
         const Rgb irradiance = irradiance_from(luminaire, towards, distance);
         const double share = channel_sum(irradiance) / all;
         chosen += share;
-        if (!(share > 0) || uniform > chosen) continue;
+        if (!(share > 0) || sample.light > chosen) continue;
         shadow_rays_.push_back({x, towards});
         connections_.push_back(
             {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance, vertex_});

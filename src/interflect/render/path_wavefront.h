@@ -105,7 +105,7 @@ class PathWavefront {
     /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample);
     /// The same for luminaires: one of them, chosen by what it would bring if nothing were in its way.
-    void connect_to_luminaire(const V3f& x, const Path& path, double uniform);
+    void connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample);
     void trace_shadow_rays();
     /// Ends a path at the solution's light, unless the element that its ray hit is too near.
     /// @return Whether it has ended.
