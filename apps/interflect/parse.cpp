@@ -104,6 +104,40 @@ Imath::V3d parse_vector(const std::string& text) {
     return v;
 }
 
+PlacedLuminaire parse_luminaire(const std::string& text) {
+    constexpr const char* expected =
+        "FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR], such as lamp.ies@2,1.5,2.7";
+    const std::size_t at = text.rfind('@');
+    if (at == 0 || at == text.npos) refuse(text, expected);
+    PlacedLuminaire placed{.file = text.substr(0, at)};
+    std::string_view rest = std::string_view(text).substr(at);
+    std::vector<double> places;
+    for (double number = 0; !rest.empty(); places.push_back(number)) {
+        std::string_view after = rest.substr(1);
+        if (rest.front() != (places.empty() ? '@' : ',') || !take_number(after, number)) break;
+        rest = after;
+    }
+    constexpr std::size_t position_alone = 3, with_aim = 6;
+    if (places.size() != position_alone && places.size() != with_aim) refuse(text, expected);
+    placed.position = {places[0], places[1], places[2]};
+    if (places.size() == with_aim) placed.aim = Imath::V3d(places[3], places[4], places[5]);
+    const auto take_value = [&](std::string_view name, double& value) {
+        if (!rest.starts_with(name)) return false;
+        rest.remove_prefix(name.size());
+        if (!take_number(rest, value)) refuse(text, expected);
+        return true;
+    };
+    while (!rest.empty()) {
+        double lumens = 0;
+        if (take_value(",lumens=", lumens))
+            placed.lumens = lumens;
+        else if (!take_value(",turn=", placed.turn) && !take_value(",maintenance=", placed.maintenance))
+            refuse(text, expected);
+    }
+    if (placed.lumens.value_or(0) < 0 || placed.maintenance < 0) refuse(text, "lumens and maintenance of at least 0");
+    return placed;
+}
+
 Size parse_size(const std::string& text) {
     std::string_view rest = text;
     double width = 0, height = 0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "interflect/colour.h"
+#include "interflect/load_luminaire.h"
 
 namespace interflect::command {
 
@@ -30,6 +31,9 @@ std::uint64_t parse_seed(const std::string& text);
 double parse_share(const std::string& text);
 /// "1,2.5,-3" -> (1, 2.5, -3), finite also in single precision.
 Imath::V3d parse_vector(const std::string& text);
+/// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
+/// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
+PlacedLuminaire parse_luminaire(const std::string& text);
 /// "640x360" -> {640, 360}, each from 1 to 32768.
 struct Size {
     int width = 1280, height = 720;

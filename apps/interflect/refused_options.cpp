@@ -44,11 +44,11 @@ void refuse_solver_options(const CLI::App& command) {
 void refuse_path_options(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options())
         if (option->get_group() == path_group && is_given(option))
-            throw InputError(fmt::format("{}: only --shading path takes it", option->get_name()));
+            throw InputError(fmt::format("{}: only --shading gather and path take it", option->get_name()));
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {
-    constexpr std::array<std::string_view, 2> of_reading = {"--curve-divisions", "--max-patches"};
+    constexpr std::array<std::string_view, 3> of_reading = {"--curve-divisions", "--max-patches", "--luminaire"};
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (!is_given(option) || !(is_of_solving(*option) || has(of_reading, name))) continue;

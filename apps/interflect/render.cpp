@@ -37,7 +37,8 @@ namespace {
 
 /// Where the light in the picture comes from.
 enum class PictureShading {
-    smooth,  ///< A solution, see Shading.
+    gather,  ///< Final gathering from a solution.
+    smooth,  ///< A solution as it is, see Shading.
     flat,
     path,  ///< Path tracing, with no solution.
 };
@@ -92,6 +93,23 @@ Picture picture_of_light(const Image& light, std::int64_t non_finite_pixels, con
     picture.image = is_for_people(options) ? tone_map(light, *picture.exposure, options.tonemap) : light;
     if (is_black(light)) spdlog::warn("the view shows no light: the picture is black");
     return picture;
+}
+
+PathOptions path_options(const RenderArguments& options) {
+    PathOptions result;
+    result.width = options.size.width;
+    result.height = options.size.height;
+    result.samples = options.samples.value_or(result.samples);
+    result.until = options.solver.until();
+    result.seed = options.solver.seed();
+    return result;
+}
+
+Picture draw_gathered(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                      const RenderArguments& options) {
+    const PathTracing gathered =
+        run_path_tracer(solved.scene, &solved.solution, ray_caster, view, path_options(options), options.path);
+    return picture_of_light(gathered.image, gathered.non_finite_pixels, options);
 }
 
 Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
@@ -176,7 +194,9 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     options.render.height = options.size.height;
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
+    const bool is_gathered = options.shading == PictureShading::gather && options.shown == Shown::light;
     const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                            : is_gathered              ? draw_gathered(solved, ray_caster, view, options)
                                                        : draw_light(solved, ray_caster, view, options);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
@@ -186,18 +206,12 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
 void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
     const Scene scene = read(options, command).scene;
     const View view = view_to_draw(scene, options.view);
-    PathOptions path_options;
-    path_options.width = options.size.width;
-    path_options.height = options.size.height;
-    path_options.samples = options.samples.value_or(path_options.samples);
-    path_options.until = options.solver.until();
-    path_options.seed = options.solver.seed();
     const RayCaster ray_caster(scene);
     warn_of_camera_outside(scene, ray_caster, view,
                            static_cast<float>(options.size.width) / static_cast<float>(options.size.height));
-    const PathTracing traced = run_path_tracer(scene, ray_caster, view, path_options, options.path);
+    const PathTracing traced = run_path_tracer(scene, nullptr, ray_caster, view, path_options(options), options.path);
     const Picture picture = picture_of_light(traced.image, traced.non_finite_pixels, options);
-    write_picture(output, picture, view, scene, path_options.seed, options);
+    write_picture(output, picture, view, scene, options.solver.seed(), options);
 }
 
 /// Curves and exposure are for light on a display.
@@ -218,7 +232,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     require_image_format(options.output);
     if (options.shading == PictureShading::path)
         refuse_solver_options(command);
-    else
+    else if (options.shading != PictureShading::gather)
         refuse_path_options(command);
     warn_of_tone_options(options, command);
     require_distinct_files(input_files(options.scene, options.view),
@@ -247,12 +261,18 @@ void add_render(CLI::App& app, int& exit_code) {
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command.add_option("--samples", options->samples, "Camera rays a pixel (default: 16; with --shading path 64)")
+    command
+        .add_option("--samples", options->samples,
+                    "Camera rays a pixel (default: 16; with --shading gather and path 64)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,
-        {{"smooth", PictureShading::smooth}, {"flat", PictureShading::flat}, {"path", PictureShading::path}},
-        "smooth: interpolated over each surface; flat: one value an element; path: path tracing, without solving")
+        {{"gather", PictureShading::gather},
+         {"smooth", PictureShading::smooth},
+         {"flat", PictureShading::flat},
+         {"path", PictureShading::path}},
+        "gather: each pixel finds its own light, from the solution; smooth: interpolated over each surface; "
+        "flat: one value an element; path: path tracing, without solving")
         ->default_str("smooth");
     options->path.add_to(command);
     add_parsed(command, "--exposure", options->exposure, parse_exposure,

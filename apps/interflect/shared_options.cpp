@@ -23,11 +23,24 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
                "Refuse a scene of more patches (files can ask for any number)")
         ->type_name("COUNT")
         ->default_str("50M");
+    const auto place = [this](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) try {
+                luminaires.push_back(parse_luminaire(text));
+            } catch (const std::invalid_argument& e) {
+                throw CLI::ValidationError("--luminaire", e.what());
+            }
+    };
+    app.add_option_function<std::vector<std::string>>("--luminaire", place,
+                                                      "Place measured light (.ies, .ldt) at X,Y,Z [m], aimed at the "
+                                                      "point AX,AY,AZ (default: straight down, -z), and "
+                                                      "turned about its axis; lumens: of its lamps (may be repeated)")
+        ->type_name("FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR]")
+        ->allow_extra_args(false);
 }
 
 Scene SceneOptions::load() const {
     try {
-        Scene scene = load_scene(path, read);
+        Scene scene = load_scene(path, read, luminaires);
         log_warnings(scene.warnings);
         return scene;
     } catch (const TooManyPatches& e) {
@@ -110,6 +123,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view) {
     std::vector<NamedFile> files = {{"the scene", scene.path}, {"the scene's views", view_list_path(scene.path)}};
     for (const std::filesystem::path& file : view.files) files.push_back({"--view-file", file});
+    for (const PlacedLuminaire& placed : scene.luminaires) files.push_back({"--luminaire", placed.file});
     return files;
 }
 

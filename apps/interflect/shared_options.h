@@ -18,6 +18,7 @@ namespace interflect::command {
 struct SceneOptions {
     std::filesystem::path path;
     ReadOptions read;
+    std::vector<PlacedLuminaire> luminaires;
 
     void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf), or maze:ROOMS[:furniture]");
     /// Loads it and logs its warnings.

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "interflect/contacts.h"
+#include "interflect/denoise.h"
 #include "interflect/dimming.h"
 #include "interflect/error.h"
+#include "interflect/gather.h"
 #include "interflect/image_files.h"
 #include "interflect/load_scene.h"
 #include "interflect/path_tracer.h"

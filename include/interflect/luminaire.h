@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 
 #include "interflect/colour.h"
+#include "interflect/photometric_web.h"
 
 namespace interflect {
 
@@ -37,17 +39,28 @@ struct UniformSky {
     Rgb radiance{0, 0, 0};  ///< [lm/(m^2 sr) = cd/m^2, or W/(m^2 sr)], >= 0.
 };
 
+/// A luminaire whose light was measured. Every point of its opening that a direction leaves from shines alike, so that
+/// far away it is what was measured, and close by it has the opening's size.
+struct MeasuredLight {
+    std::shared_ptr<const PhotometricWeb> web;  ///< Many luminaires may share one.
+    V3f position{0, 0, 0};                      ///< Of the opening's middle [m].
+    V3f direction{0, 0, -1};                    ///< Of its nadir; need not be normalised.
+    V3f c0{1, 0, 0};  ///< Its C0 half plane holds this direction, which need not be at a right angle to the nadir.
+    bool mirrored = false;  ///< C90 lies on the other side.
+    Rgb factor{1, 1, 1};    ///< Of the intensities, >= 0.
+};
+
 /// A source of light that is not a surface of the scene: nothing hits it, and only a sky is seen.
 struct Luminaire {
     std::string name;
     std::uint32_t object = 0;  ///< Index into Scene::objects.
-    std::variant<PointLight, SpotLight, DirectionalLight, UniformSky> kind;
+    std::variant<PointLight, SpotLight, DirectionalLight, UniformSky, MeasuredLight> kind;
 };
 
-/// What it is rated by: intensity, irradiance or radiance, each in its unit.
+/// What it is rated by: intensity (of measured light the largest), irradiance or radiance, each in its unit.
 Rgb rating(const Luminaire& luminaire);
 
-/// "point", "spot", "directional" or "sky".
+/// "point", "spot", "directional", "sky" or "measured".
 const char* kind_name(const Luminaire& luminaire);
 
 /// What is wrong with it, in words without a subject; empty where nothing is.

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "interflect/image.h"
 #include "interflect/ray_caster.h"
@@ -43,12 +44,27 @@ struct PathMonitor {
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
 };
 
+/// What a picture is made of: means over the samples of each pixel.
+struct PictureLayers {
+    Image emitted;   ///< Radiance that comes straight from where it is emitted, in the picture's unit.
+    Image direct;    ///< Reflected once, likewise.
+    Image indirect;  ///< Reflected more often. The picture is the sum of the three.
+    /// Estimated variance of the mean over the channels of `direct` and `indirect`, [y * width + x].
+    std::vector<float> direct_variance, indirect_variance;
+    Image albedo;              ///< Reflectance of what is seen.
+    Image normal;              ///< Its normal, towards the eye; shorter than 1 where several are seen.
+    Image position;            ///< Where it is, relative to the scene's origin [m].
+    std::vector<float> depth;  ///< Its distance from the eye [m]; 0 where nothing is hit.
+    float pixel_angle = 0;     ///< That a pixel's side fills in the middle of the picture [rad].
+};
+
 /// A picture with its standard error.
 struct PathTracing {
     /// Radiance L = (M + rho H) / pi of what each pixel sees, the mean over its square; black where rays escape. In the
     /// units of render(). No approximation: the expected value is the exact solution's. A pixel that an interrupted run
     /// has not reached is black.
     Image image;
+    PictureLayers layers;
     /// Of each pixel and channel, in the same unit: from the spread of batches of paths, which are independent.
     Image standard_error;
     /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (means over

@@ -14,6 +14,8 @@ struct ReadOptions {
     std::size_t max_line_length = 1 << 16;   ///< Characters, continued lines together.
     std::size_t max_face_vertices = 1024;    ///< Twice what MGF's own parser takes; loops that cross cost its square.
     std::size_t max_name_length = 256;       ///< Characters of one name; four times that for a dotted object name.
+    std::size_t max_photometric_bytes = 1 << 24;     ///< Of one file with measured light (.ies, .ldt).
+    std::size_t max_photometric_values = 1'000'000;  ///< Intensities in it: each 0.1 degrees by each degree is 650,000.
 };
 
 }  // namespace interflect

@@ -56,6 +56,14 @@ Scene open_room_with_lights() {
                         {"spot", 0, SpotLight{{1, 1, 2.2f}, {1, 1, -3}, {50, 50, 90}, 10, 40}},
                         {"sun", 0, DirectionalLight{{1, 1, -3}, {80, 70, 60}}},
                         {"sky", 0, UniformSky{{9, 10, 12}}}};
+    auto web = std::make_shared<PhotometricWeb>();
+    web->polar = {0, 70.3f, 100}, web->azimuth = {-30, 60, 150};
+    web->intensities = {10, 20, 0, 30, 5.1f, 0, 8, 9, 1};
+    web->opening = {LuminousOpening::Shape::cylinder, {0.3f, 0.2f, 0.1f}, 1};
+    web->pole = PhotometricWeb::Pole::c90;
+    for (const float x : {1.2f, 2.4f})
+        scene.luminaires.push_back(
+            {"measured", 0, MeasuredLight{web, {x, 2, 2.1f}, {0.1f, 0, -1}, {1, 1, 0}, x > 2, {1, 0.9f, 0.7f}}});
     scene.light_groups = {{"daylight", "s*"}};
     return scene;
 }
@@ -359,6 +367,7 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
         EXPECT_EQ(read.solution.dimming, (std::vector<float>{1, 1}));
         EXPECT_EQ(std::get<UniformSky>(read.scene.luminaires[3].kind).radiance, 0.25f * Rgb(9, 10, 12));
         EXPECT_EQ(rating(read.scene.luminaires[0]), Rgb(0));
+        EXPECT_EQ(rating(read.scene.luminaires[4]), Rgb(0));
     }
     Solver opened = Solver::open(run);
     for (Solver* s : {&solver, &opened}) {

@@ -317,10 +317,9 @@ TEST(Mgf, IncludeIsRelativeToTheFileAndTransformed) {
     EXPECT_EQ(warnings(scene, "unclosed-transform"), 0);
 }
 
-TEST(Mgf, UnknownEntitiesAndIesAreSkippedWithAWarning) {
-    const Scene scene = read_faces("/usr/rad/old.rad 1 2\nies lamp.ies -m 2 -t 1 0 0\nwhat is this\nf a b d\n");
+TEST(Mgf, UnknownEntitiesAreSkippedWithAWarning) {
+    const Scene scene = read_faces("/usr/rad/old.rad 1 2\nwhat is this\nf a b d\n");
     EXPECT_EQ(warnings(scene, "unsupported-entity"), 2);
-    EXPECT_EQ(warnings(scene, "ies"), 1);
     EXPECT_EQ(scene.warnings.entries()[0].where, "test.mgf:20");
 }
 

@@ -110,5 +110,16 @@ TEST(RealScenes, Examp1) {
     }
 }
 
+/// Flux as found by a 20-line Python script: bilinear intensities at 1800 x 180 midpoints.
+TEST(RealScenes, LuminaireOfTheExampleHasItsFlux) {
+    Warnings warnings;
+    const PhotometricWeb web = load_photometric_web(testing_support::real_scenes() / "examp1.ies", {}, warnings);
+    EXPECT_NEAR(web.flux() / 5296.656, 1, 1e-6);
+    EXPECT_EQ(web.lamp_lumens, 5800);
+    EXPECT_LT((web.opening.size - 0.3048f * V3f(4.04f, 0.85f, 0.292f)).length(), 1e-6f);
+    ASSERT_EQ(warnings.entries().size(), 1u);
+    EXPECT_EQ(warnings.entries()[0].kind, "ies-version");
+}
+
 }  // namespace
 }  // namespace interflect

@@ -18,6 +18,11 @@ std::vector<PatchGeometry> geometry_of(const Scene& scene) {
     return geometry;
 }
 
+LightTree tree_of(const Scene& scene) {
+    const std::vector<PatchGeometry> geometry = geometry_of(scene);
+    return {scene, geometry, emitted_powers(scene, geometry)};
+}
+
 /// Lamps of different sizes and powers that face down and up, a tilted one and two-sided ones, and what does not emit.
 Scene lamps() {
     Scene scene;
@@ -42,7 +47,7 @@ const std::vector<Point> points_of_surfaces = {
 /// What choose() does for evenly spaced numbers is what probability() says, but for the numbers at the borders.
 TEST(LightTree, ChoosesWithTheStatedProbability) {
     const Scene scene = lamps();
-    const LightTree tree(scene, geometry_of(scene));
+    const LightTree tree = tree_of(scene);
     constexpr int count = 100'000;
     for (const auto& [x, n] : points_of_surfaces) {
         std::vector<int> chosen(scene.patches.size(), 0);
@@ -61,7 +66,7 @@ TEST(LightTree, ChoosesWithTheStatedProbability) {
 TEST(LightTree, MissesNoPatchThatLightsAPoint) {
     const Scene scene = lamps();
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
-    const LightTree tree(scene, geometry);
+    const LightTree tree(scene, geometry, emitted_powers(scene, geometry));
     for (const auto& [x, n] : points_of_surfaces)
         for (std::uint32_t p = 1; p < scene.patches.size(); ++p) {
             bool lights = false;
@@ -79,12 +84,12 @@ TEST(LightTree, NeverTakesWhatIsBehindOrFacesAway) {
     Scene scene;
     const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
     add_rectangle(scene, V3f(-1, -1, 1), V3f(0, 2, 0), V3f(2, 0, 0), light);  // faces down
-    const LightTree one(scene, geometry_of(scene));
+    const LightTree one = tree_of(scene);
     EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, 0u);
     EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, -1), 0.5).patch, none) << "behind";
     EXPECT_EQ(one.choose(V3f(0, 0, 9), V3f(0, 0, -1), 0.5).patch, none) << "facing away";
     add_rectangle(scene, V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0), light);  // faces up
-    const LightTree two(scene, geometry_of(scene));
+    const LightTree two = tree_of(scene);
     EXPECT_FLOAT_EQ(two.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 1);
     EXPECT_FLOAT_EQ(two.probability(1, V3f(0, 0, 0), V3f(0, 0, -1)), 1);
 }
@@ -99,7 +104,7 @@ TEST(LightTree, PrefersTheNearAndTheBright) {
     for (const float x : {0.0f, 20.0f, 40.0f}) add_lamp(x, dim);
     add_lamp(-5, dim);
     add_lamp(5, bright);
-    const LightTree tree(scene, geometry_of(scene));
+    const LightTree tree = tree_of(scene);
     const V3f x(0, 0, 0), up(0, 0, 1);
     EXPECT_GT(tree.probability(0, x, up), 0.5f);
     EXPECT_GT(tree.probability(4, x, up), 2 * tree.probability(3, x, up));
@@ -114,7 +119,7 @@ TEST(LightTree, PrefersTheLampOfTheRoomAmongHundreds) {
         for (int column = 0; column < 20; ++column)
             add_rectangle(scene, V3f(5.0f * static_cast<float>(column), 5.0f * static_cast<float>(row), 2.7f),
                           V3f(0, 1, 0), V3f(1, 0, 0), light);
-    const LightTree tree(scene, geometry_of(scene));
+    const LightTree tree = tree_of(scene);
     float on_floors = 0, on_walls = 0;
     for (std::uint32_t room = 0; room < 400; ++room) {
         const V3f below = scene.vertices[scene.patches[room].vertices[0]] - V3f(0, 0, 2.7f);
@@ -129,7 +134,7 @@ TEST(LightTree, WithoutLightChoosesNothing) {
     Scene scene;
     add_rectangle(scene, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0),
                   add_material(scene, Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0)));
-    const LightTree tree(scene, geometry_of(scene));
+    const LightTree tree = tree_of(scene);
     EXPECT_EQ(tree.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, none);
     EXPECT_EQ(tree.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 0);
 }

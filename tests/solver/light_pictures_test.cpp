@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "interflect/path_tracer.h"
@@ -35,6 +36,11 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     scene.materials[0].reflectance = {0.6f, 0.5f, 0.4f};
     scene.luminaires.push_back({"lamp", 0, PointLight{{3.1f, 2.2f, 2.4f}, {60, 60, 40}}});
     scene.luminaires.push_back({"spot", 0, SpotLight{{4, 1, 2.9f}, {-1, 0.5f, -2}, {200, 100, 100}, 15, 35}});
+    auto web = std::make_shared<PhotometricWeb>();  // a box that hangs below the ceiling and shines up as well
+    web->polar = {0, 60, 90, 180}, web->azimuth = {0, 90, 180, 270, 360};
+    web->intensities = {90, 80, 20, 40, 90, 40, 10, 40, 90, 80, 20, 40, 90, 40, 10, 40, 90, 80, 20, 40};
+    web->opening.size = {1.2f, 0.2f, 0.1f};
+    scene.luminaires.push_back({"box", 0, MeasuredLight{web, {2, 2.5f, 2.3f}, {0, 0, -1}, {1, 1, 0}, false, Rgb(1)}});
     scene.luminaires.push_back({"sun", 0, DirectionalLight{{2, 0.3f, -1}, {2000, 1900, 1500}}});
     const RayCaster ray_caster(scene);
     const View view{"room", {4.7, 3.7, 1.6}, {0.5, 1.2, 0.9}, {0, 0, 1}, 70};

@@ -3,12 +3,13 @@
 //
 // Seen to fail when a part's power lacks the count of parts, a point light has 2 pi, a spot light's fall is linear, the
 // importance of parts drives rays but is left out of what they carry, a sky's rays go out uniformly, a directional
-// light's area is that of the box's top.
+// light's area is that of the box's top, measured light has C0 and C90 exchanged.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 
 #include "interflect/luminaires/emission.h"
@@ -80,6 +81,20 @@ double spot_intensity(const V3d& x) {
     return 300 * fall * fall;
 }
 
+/// 60 cd at the nadir; at the horizon none in the C0 plane, which holds y, and 180 cd in C90, linear in both angles.
+std::shared_ptr<const PhotometricWeb> tent_web() {
+    auto web = std::make_shared<PhotometricWeb>();
+    web->polar = {0, 90}, web->azimuth = {0, 90, 180, 270, 360};
+    web->intensities = {60, 0, 60, 180, 60, 0, 60, 180, 60, 0};
+    return web;
+}
+double tent_intensity(const V3d& x) {
+    const V3d d = x - lamp;
+    const double share = std::atan2(std::hypot(d.x, d.y), -d.z) / (pi / 2),
+                 to_c90 = std::atan2(std::abs(d.x), std::abs(d.y)) / (pi / 2);
+    return 60 * (1 - share) + 180 * to_c90 * share;
+}
+
 std::vector<Source> sources() {
     const V3f position(lamp), slanted(1, 2, -2);
     return {{"point", {"", 0, PointLight{position, Rgb(200)}}, [](const V3d& x) { return towards_floor(x, 200); }},
@@ -87,7 +102,10 @@ std::vector<Source> sources() {
              {"", 0, SpotLight{position, {0, 0, -3}, Rgb(300), 20, 50}},
              [](const V3d& x) { return towards_floor(x, spot_intensity(x)); }},
             {"directional", {"", 0, DirectionalLight{slanted, Rgb(90)}}, [](const V3d&) { return 90 * 2.0 / 3; }},
-            {"sky", {"", 0, UniformSky{Rgb(50)}}, [](const V3d&) { return 50 * pi; }}};
+            {"sky", {"", 0, UniformSky{Rgb(50)}}, [](const V3d&) { return 50 * pi; }},
+            {"measured",
+             {"", 0, MeasuredLight{tent_web(), position, {0, 0, -1}, {0, 1, 0}, false, Rgb(2)}},
+             [](const V3d& x) { return towards_floor(x, 2 * tent_intensity(x)); }}};
 }
 
 struct SourceAndMethod {

@@ -32,8 +32,9 @@ void read_scene(const Json& json, Scene& scene) {
         read_textures(m, scene.materials.back());
     }
     if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
+    const auto webs = webs_of(json.value("photometric_webs", Json::array()));
     if (json.contains("luminaires"))
-        for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l));
+        for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l, webs));
     if (json.contains("light_groups"))
         for (const Json& g : json.at("light_groups"))
             scene.light_groups.push_back({g.at("name").get<std::string>(), g.at("pattern").get<std::string>()});
@@ -58,7 +59,8 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
     Json views = Json::array();
     for (const View& v : scene.views) views.push_back(json_of(v));
     Json luminaires = Json::array();
-    for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l));
+    WebTable webs;
+    for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l, webs));
     const IterationReport last = solution.iterations.empty() ? IterationReport() : solution.iterations.back();
     Json groups = Json::array(), dimming = Json::array();
     for (const LightGroup& g : scene.light_groups) groups.push_back({{"name", g.name}, {"pattern", g.pattern}});
@@ -85,6 +87,7 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
                      {"dimming", dimming},
                      {"objects", scene.objects}};
     if (!scene.textures.empty()) description["textures"] = json_of(scene.textures);
+    if (const Json all = webs.json(); !all.empty()) description["photometric_webs"] = all;
     return json_text(description, 1);
 }
 

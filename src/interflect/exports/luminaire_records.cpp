@@ -1,12 +1,17 @@
 #include "interflect/exports/luminaire_records.h"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string_view>
 
 #include "interflect/exports/solve_report.h"
 
 namespace interflect::inline detail {
 
 namespace {
+
+constexpr std::array<const char*, 3> shape_names{"box", "cylinder", "ellipsoid"};
 
 Json record_of(const PointLight& light) {
     return {{"position", json_of(light.position)}, {"intensity", json_of(light.intensity)}};
@@ -26,20 +31,87 @@ Json record_of(const DirectionalLight& light) {
 
 Json record_of(const UniformSky& sky) { return {{"radiance", json_of(sky.radiance)}}; }
 
+/// But for the web.
+Json record_of(const MeasuredLight& light) {
+    return {{"position", json_of(light.position)},
+            {"direction", json_of(light.direction)},
+            {"c0", json_of(light.c0)},
+            {"mirrored", light.mirrored},
+            {"factor", json_of(light.factor)}};
+}
+
+Json list_of(const std::vector<float>& numbers) {
+    Json json = Json::array();
+    for (const float x : numbers) json.push_back(shortest_number(x));
+    return json;
+}
+
+Json record_of(const PhotometricWeb& web) {
+    const LuminousOpening& opening = web.opening;
+    return {{"name", web.name},
+            {"pole", web.pole == PhotometricWeb::Pole::c90 ? "c90" : "nadir"},
+            {"polar", list_of(web.polar)},
+            {"azimuth", list_of(web.azimuth)},
+            {"intensities", list_of(web.intensities)},
+            {"opening",
+             {{"shape", shape_names[static_cast<std::size_t>(opening.shape)]},
+              {"size", json_of(opening.size)},
+              {"axis", opening.axis}}},
+            {"lamp_lumens", web.lamp_lumens}};
+}
+
 template <class Vector>
 Vector vector_at(const Json& json, const char* name) {
     return vector_of<Vector>(json.at(name));
 }
 
+PhotometricWeb web_of(const Json& json) {
+    PhotometricWeb web;
+    web.name = json.at("name").get<std::string>();
+    if (json.at("pole") == "c90") web.pole = PhotometricWeb::Pole::c90;
+    web.polar = json.at("polar").get<std::vector<float>>();
+    web.azimuth = json.at("azimuth").get<std::vector<float>>();
+    web.intensities = json.at("intensities").get<std::vector<float>>();
+    const Json& opening = json.at("opening");
+    const auto shape = opening.at("shape").get<std::string>();
+    const auto found = std::find(shape_names.begin(), shape_names.end(), shape);
+    if (found == shape_names.end())
+        throw std::runtime_error("there is no luminous opening of the shape '" + shape + "'");
+    web.opening = {static_cast<LuminousOpening::Shape>(found - shape_names.begin()), vector_at<V3f>(opening, "size"),
+                   opening.at("axis").get<int>()};
+    web.lamp_lumens = json.at("lamp_lumens").get<double>();
+    return web;
+}
+
 }  // namespace
 
-Json json_of(const Luminaire& luminaire) {
-    Json json{{"name", luminaire.name}, {"object", luminaire.object}, {"kind", kind_name(luminaire)}};
-    json.update(std::visit([](const auto& light) { return record_of(light); }, luminaire.kind));
+std::size_t WebTable::index_of(const std::shared_ptr<const PhotometricWeb>& web) {
+    const auto found = std::find(webs_.begin(), webs_.end(), web);
+    const auto index = static_cast<std::size_t>(found - webs_.begin());
+    if (found == webs_.end()) webs_.push_back(web);
+    return index;
+}
+
+Json WebTable::json() const {
+    Json json = Json::array();
+    for (const auto& web : webs_) json.push_back(record_of(*web));
     return json;
 }
 
-Luminaire luminaire_of(const Json& json) {
+std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json) {
+    std::vector<std::shared_ptr<const PhotometricWeb>> webs;
+    for (const Json& web : json) webs.push_back(std::make_shared<PhotometricWeb>(web_of(web)));
+    return webs;
+}
+
+Json json_of(const Luminaire& luminaire, WebTable& webs) {
+    Json json{{"name", luminaire.name}, {"object", luminaire.object}, {"kind", kind_name(luminaire)}};
+    json.update(std::visit([](const auto& light) { return record_of(light); }, luminaire.kind));
+    if (const auto* light = std::get_if<MeasuredLight>(&luminaire.kind)) json["web"] = webs.index_of(light->web);
+    return json;
+}
+
+Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs) {
     Luminaire luminaire{json.at("name").get<std::string>(), json.at("object").get<std::uint32_t>(), {}};
     const auto kind = json.at("kind").get<std::string>();
     if (kind == "point")
@@ -52,6 +124,13 @@ Luminaire luminaire_of(const Json& json) {
         luminaire.kind = DirectionalLight{vector_at<V3f>(json, "direction"), vector_at<Rgb>(json, "irradiance")};
     else if (kind == "sky")
         luminaire.kind = UniformSky{vector_at<Rgb>(json, "radiance")};
+    else if (kind == "measured")
+        luminaire.kind = MeasuredLight{webs.at(json.at("web").get<std::size_t>()),
+                                       vector_at<V3f>(json, "position"),
+                                       vector_at<V3f>(json, "direction"),
+                                       vector_at<V3f>(json, "c0"),
+                                       json.at("mirrored").get<bool>(),
+                                       vector_at<Rgb>(json, "factor")};
     else
         throw std::runtime_error("there is no light of the kind '" + kind + "'");
     return luminaire;

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "interflect/error.h"
+#include "interflect/formats/extension.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
@@ -25,14 +29,8 @@ struct Format {
 
 constexpr Format formats[] = {{".mgf", read_mgf}};
 
-std::string lower_case(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
 const Format& format_of(const fs::path& path) {
-    const std::string extension = lower_case(path.extension().string());
+    const std::string extension = lower_case_extension(path);
     std::string known;
     for (const Format& format : formats) {
         if (format.extension == extension) return format;
@@ -76,12 +74,33 @@ Scene load_maze(const std::string& name, const ReadOptions& options) {
     return scene;
 }
 
+void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, const ReadOptions& options) {
+    std::map<fs::path, std::shared_ptr<const PhotometricWeb>> webs;
+    for (const PlacedLuminaire& placed : luminaires) {
+        auto& web = webs[placed.file];
+        if (!web) {
+            web = std::make_shared<PhotometricWeb>(load_photometric_web(placed.file, options, scene.warnings));
+            scene.files.push_back(placed.file.string());
+        }
+        Luminaire luminaire{fmt::format("{}-{}", placed.file.stem().string(), scene.luminaires.size() + 1), 0,
+                            place(placed, web, scene.origin)};
+        if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
+            throw InputError(placed.file, 0, "this luminaire " + fault);
+        scene.luminaires.push_back(std::move(luminaire));
+    }
+}
+
 }  // namespace
 
-Scene load_scene(const fs::path& path, const ReadOptions& options) {
-    if (path.string().starts_with(maze_prefix)) return load_maze(path.string(), options);
+Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires) {
+    if (path.string().starts_with(maze_prefix)) {
+        Scene maze = load_maze(path.string(), options);
+        add_luminaires(maze, luminaires, options);
+        return maze;
+    }
     require_regular_file(path);
     Scene scene = format_of(path).read(path, options);
+    add_luminaires(scene, luminaires, options);
     const fs::path views = view_list_path(path);
     std::error_code ignored;
     if (fs::exists(views, ignored)) {

@@ -26,12 +26,13 @@ namespace interflect::inline detail {
 ///   What a file leaves open is closed at its end, with a warning; of an array left open only the first copy is read.
 /// * `uv` and `texture` (docs/mgf-extensions.md) are Interflect's own: texture coordinates of a vertex, and an image
 ///   that a material's `rd` or `ed` is multiplied by.
-/// * `ies` and unknown entities are skipped with a warning.
+/// * `ies` places a luminaire of measured light (load_photometric_web()), whose warnings are added to those below.
+/// * Unknown entities are skipped with a warning.
 ///
 /// A scene that lies far from the world's origin is read twice, the second time relative to its Scene::origin
 /// (origin_for), so that it keeps its precision.
 ///
-/// Scene::files lists the files read. Warnings are counted under these kinds: "unsupported-entity", "ies",
+/// Scene::files lists the files read. Warnings are counted under these kinds: "unsupported-entity",
 /// "reflectance-clamped", "out-of-gamut", "no-luminance", "unused-fault" (in a colour or material that no face uses),
 /// "degenerate-face" (fewer than three different vertices, no wider than their rounding, or nothing left of its area
 /// where its outline crosses itself), "unbalanced-object", "unclosed-object", "unclosed-transform" and those above.

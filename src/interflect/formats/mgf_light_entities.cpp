@@ -1,11 +1,15 @@
-// `light`, an extension of MGF: see docs/mgf-extensions.md.
+// `ies`, and `light`, an extension of MGF: see docs/mgf-extensions.md.
 #include <fmt/format.h>
 
 #include <functional>
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
+#include "interflect/error.h"
 #include "interflect/formats/mgf_reader.h"
+#include "interflect/load_luminaire.h"
 
 namespace interflect::inline detail {
 
@@ -43,7 +47,61 @@ void MgfReader::light(MgfWords words) {
     if (words[0] == "point") luminaire.kind = PointLight{position(), colour};
     if (words[0] == "spot") luminaire.kind = SpotLight{position(), direction_of(words[1]), colour, angle(3), angle(4)};
     if (words[0] == "directional") luminaire.kind = DirectionalLight{direction_of(words[1]), colour};
-    scene_.add_light(std::move(luminaire));
+    const std::string name = kind_name(luminaire);
+    scene_.add_light(std::move(luminaire), name);
+}
+
+/// Transforms move, turn and mirror a luminaire; its light and its size are those of the file.
+void MgfReader::luminaire(MgfWords words) {
+    const std::string_view file = words[0];
+    words = words.subspan(1);
+    MgfColour colour;
+    double multiplier = 1;
+    constexpr std::size_t option_and_value = 2;
+    for (; words.size() >= option_and_value && (words[0] == "-m" || words[0] == "-c");
+         words = words.subspan(option_and_value)) {
+        if (words[0] == "-m")
+            multiplier = non_negative_argument(words[1]);
+        else
+            colour = colours_.find(words[1]);
+    }
+    faults_.refuse(colour.fault);
+    MeasuredLight light;
+    light.web = photometric_web(file);
+    light.factor = scene_.emitted(colour, multiplier, here());
+    const TransformSequence sequence(words);
+    std::vector<int> copy(sequence.array_sizes().size(), 0);
+    const std::string name = std::filesystem::path(file).stem().string();
+    do {
+        add_luminaire(light, sequence.matrix(copy) * total_transform(), name);
+    } while (next_index(copy, sequence.array_sizes()));
+}
+
+/// The web of a file, which is relative to the one that names it; read once.
+std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_view name) {
+    const std::filesystem::path path = file_->source.path.parent_path() / name;
+    std::shared_ptr<const PhotometricWeb>& web = webs_[path.string()];
+    if (web) return web;
+    try {
+        web = std::make_shared<PhotometricWeb>(load_photometric_web(path, options_, scene_.warnings()));
+    } catch (const InputError& unreadable) {
+        throw MgfFault(fmt::format("the luminaire {}", unreadable.what()));
+    }
+    scene_.add_file(path);
+    return web;
+}
+
+void MgfReader::add_luminaire(MeasuredLight light, const Imath::M44d& transform, const std::string& name) {
+    const auto direction = [&](const V3d& v) {
+        V3d result;
+        transform.multDirMatrix(v, result);
+        return V3f(result.normalized());
+    };
+    light.position = scene_.position(V3d(0) * transform);
+    light.direction = direction({0, 0, -1});
+    light.c0 = direction({1, 0, 0});
+    light.mirrored = transform.determinant() < 0;
+    scene_.add_light({"", objects_.current(), std::move(light)}, name);
 }
 
 }  // namespace interflect::inline detail

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -81,7 +82,6 @@ class MgfReader {
 
     // Entities, as in the table.
     void include(MgfWords words);
-    void skip_ies(MgfWords words);
     void colour(MgfWords words) { colours_.enter(words); }
     void colour_xy(MgfWords words);
     void colour_spectrum(MgfWords words);
@@ -111,12 +111,15 @@ class MgfReader {
     void transform(MgfWords words);
     void object(MgfWords words);
     void light(MgfWords words);
+    void luminaire(MgfWords words);
 
     // What they share.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
     V3f direction_of(std::string_view vertex);
+    std::shared_ptr<const PhotometricWeb> photometric_web(std::string_view name);
+    void add_luminaire(MeasuredLight light, const Imath::M44d& transform, const std::string& name);
     void add_loop(MgfWords names);
     std::uint32_t usable_material();
     void add_face();
@@ -141,6 +144,7 @@ class MgfReader {
     std::vector<Imath::V3d> outline_;                // its first loop, in the world
     // Messages for all of a kind, with the first one's particulars.
     std::string unknown_entity_, unused_fault_;
+    std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;  // by path
     MgfSceneBuilder scene_;
     MgfObjects objects_;
 };

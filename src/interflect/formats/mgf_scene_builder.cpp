@@ -110,10 +110,10 @@ Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Lo
     return converted(colour, luminance, unbounded, where);
 }
 
-void MgfSceneBuilder::add_light(Luminaire luminaire) {
+void MgfSceneBuilder::add_light(Luminaire luminaire, const std::string& name) {
     if (scene_.luminaires.size() >= most_lights)
         throw std::invalid_argument(fmt::format("this is one light more than the {} that are read", most_lights));
-    luminaire.name = fmt::format("{}-{}", kind_name(luminaire), scene_.luminaires.size() + 1);
+    luminaire.name = fmt::format("{}-{}", name, scene_.luminaires.size() + 1);
     if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
         throw std::invalid_argument("this light " + fault);
     scene_.luminaires.push_back(std::move(luminaire));

@@ -42,8 +42,9 @@ class MgfSceneBuilder {
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     /// Index of the object with this dotted name.
     std::uint32_t object(const std::string& name);
-    /// Adds a luminaire and names it.
-    void add_light(Luminaire luminaire);
+    /// Adds a luminaire and names it "spot-3" after this and its place among all. @throws std::invalid_argument
+    void add_light(Luminaire luminaire, const std::string& name);
+    Warnings& warnings() { return scene_.warnings; }
     /// Tells where the outline of the face that is added next lies in the world, before rounding.
     void place_face(std::span<const Imath::V3d> outline);
     /// Adds a face; one without area is left out.

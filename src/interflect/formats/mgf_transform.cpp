@@ -143,4 +143,12 @@ M44d TransformSequence::matrix(std::span<const int> copy) const {
     return result;
 }
 
+bool next_index(std::vector<int>& copy, std::span<const int> sizes) {
+    for (std::size_t i = copy.size(); i-- > 0;) {
+        if (++copy[i] < sizes[i]) return true;
+        copy[i] = 0;
+    }
+    return false;
+}
+
 }  // namespace interflect::inline detail

@@ -34,4 +34,7 @@ class TransformSequence {
     std::vector<int> array_sizes_;
 };
 
+/// Goes on to the next copy of arrays, the last fastest. @return false after the last one, and then back at the first.
+bool next_index(std::vector<int>& copy, std::span<const int> sizes);
+
 }  // namespace interflect::inline detail

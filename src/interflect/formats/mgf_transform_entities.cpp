@@ -76,11 +76,7 @@ bool MgfReader::next_copy(OpenMgfTransform& transform) {
         ++repeating_arrays_;
     }
     count_repeated(RepeatedWork::words_per_copy);
-    for (std::size_t i = transform.copy.size(); i-- > 0;) {
-        if (++transform.copy[i] < transform.sequence.array_sizes()[i]) return true;
-        transform.copy[i] = 0;
-    }
-    return false;
+    return next_index(transform.copy, transform.sequence.array_sizes());
 }
 
 }  // namespace interflect::inline detail

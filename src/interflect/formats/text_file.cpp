@@ -40,16 +40,23 @@ void require_regular_file(const fs::path& path) {
     if (!fs::is_regular_file(status)) throw InputError(path, 0, "this is not a regular file");
 }
 
-std::string read_text_file(const fs::path& path) {
+std::string read_bytes(const fs::path& path, std::uintmax_t most) {
     require_regular_file(path);
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path, error);
+    if (!error && size > most)
+        throw InputError(path, 0, fmt::format("it has {} bytes; at most {} are read", size, most));
     std::ifstream file(path, std::ios::binary);
     if (error || !file) throw InputError(path, 0, "the file cannot be opened for reading");
     std::string text(static_cast<std::size_t>(size), '\0');
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
     if (file.gcount() != static_cast<std::streamsize>(text.size()))
         throw InputError(path, 0, fmt::format("only {} of {} bytes could be read", file.gcount(), text.size()));
+    return text;
+}
+
+std::string read_text_file(const fs::path& path) {
+    std::string text = read_bytes(path);
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // of UTF-8, as some editors write it
     if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     require_text(text, path);

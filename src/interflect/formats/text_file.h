@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -11,6 +13,11 @@ namespace interflect::inline detail {
 /// control
 ///         characters other than white space (then it is not text; the error names the line).
 std::string read_text_file(const std::filesystem::path& path);
+
+/// Reads a whole file, whatever is in it. @param most  Bytes. @throws InputError where the path is not that of a file
+/// that can be read, or it is larger.
+std::string read_bytes(const std::filesystem::path& path,
+                       std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
 
 /// The checks of the path alone.
 void require_regular_file(const std::filesystem::path& path);

@@ -3,16 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <ostream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/scene/web_angles.h"
 
 namespace interflect::inline detail {
 
@@ -47,12 +50,29 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
     }
 }
 
+/// Turns about x, y and z, in this order, that place a luminaire [degrees].
+struct LuminaireAngles {
+    double x, y, z;
+};
+
+LuminaireAngles luminaire_angles(const MeasuredLight& light) {
+    const Imath::V3d z(-light.direction.normalized()), c0(light.c0), x = (c0 - z * z.dot(c0)).normalized(),
+                                                                     y = z.cross(x);
+    constexpr double no_turn = 1e-9;  // cosine of a turn about y where x and z turn alike
+    const double cosine = std::hypot(x.x, x.y);
+    if (cosine < no_turn) return {degrees(std::atan2(-z.y, y.y)), degrees(std::atan2(-x.z, cosine)), 0};
+    return {degrees(std::atan2(y.z, z.z)), degrees(std::atan2(-x.z, cosine)), degrees(std::atan2(x.y, x.x))};
+}
+
 /// Writes patch after patch, and before each what it needs and the file does not have yet: objects, materials,
 /// vertices.
 class MgfWriter {
   public:
-    MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures)
+    MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
+              std::span<const std::string> webs)
         : scene_(scene), out_(out), textures_(textures), vertex_written_(scene.vertices.size(), false) {
+        const auto all = photometric_webs(scene);
+        for (std::size_t i = 0; i < all.size(); ++i) web_files_.emplace(all[i].get(), webs[i]);
         for (const Material& material : scene.materials) names_.push_back(material_name(material));
     }
 
@@ -166,7 +186,9 @@ class MgfWriter {
     /// A vertex has its place and direction.
     void add_light(const Luminaire& luminaire) {
         enter_object(luminaire.object);
-        const auto [chromaticity, luminance] = from_rec709(RgbD(rating(luminaire)));
+        const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
+        const auto [chromaticity, luminance] = from_rec709(RgbD(measured ? measured->factor : rating(luminaire)));
+        if (measured) return add_measured(*measured, chromaticity, luminance);
         put("c\n\tcxy {} {}\n", chromaticity.x, chromaticity.y);
         if (const auto* point = std::get_if<PointLight>(&luminaire.kind)) {
             add_light_vertex(point->position, V3f(0, 0, 1));
@@ -182,6 +204,16 @@ class MgfWriter {
         }
     }
 
+    /// `ies` takes the current colour by its name.
+    void add_measured(const MeasuredLight& light, const Chromaticity& chromaticity, double multiplier) {
+        const LuminaireAngles angles = luminaire_angles(light);
+        const Imath::V3d world = scene_.origin + Imath::V3d(light.position);
+        put("c {} =\n\tcxy {} {}\nies {} -m {} -c {}", light_vertex, chromaticity.x, chromaticity.y,
+            web_files_.at(light.web.get()), multiplier, light_vertex);
+        if (light.mirrored) put(" -my");
+        put(" -rx {} -ry {} -rz {} -t {} {} {}\n", angles.x, angles.y, angles.z, world.x, world.y, world.z);
+    }
+
     void add_light_vertex(const V3f& position, const V3f& normal) {
         const Imath::V3d world = scene_.origin + Imath::V3d(position);
         put("v {} =\n\tp {} {} {}\n\tn {} {} {}\n", light_vertex, world.x, world.y, world.z, normal.x, normal.y,
@@ -195,6 +227,7 @@ class MgfWriter {
     std::span<const std::string> textures_;                    // names of their files
     std::vector<std::string> names_;                           // of materials
     std::unordered_map<std::string, Definition> definitions_;  // by name
+    std::unordered_map<const PhotometricWeb*, std::string> web_files_;
     std::vector<bool> vertex_written_;
     std::vector<std::string> open_objects_;
     std::uint32_t object_ = 0, material_ = none;
@@ -203,18 +236,40 @@ class MgfWriter {
 
 }  // namespace
 
-void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures) {
-    if (textures.size() != scene.textures.size())
-        throw std::runtime_error(fmt::format("the scene has {} textures, and there are names for {} files",
-                                             scene.textures.size(), textures.size()));
-    MgfWriter(scene, out, textures).write();
+void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
+               std::span<const std::string> webs) {
+    const auto require_names = [](std::size_t names, std::size_t count, const char* what) {
+        if (names != count)
+            throw std::runtime_error(
+                fmt::format("the scene has {} {}, and there are names for {} files", count, what, names));
+    };
+    require_names(textures.size(), scene.textures.size(), "textures");
+    require_names(webs.size(), photometric_webs(scene).size(), "photometric webs");
+    MgfWriter(scene, out, textures, webs).write();
 }
 
-void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures) {
+void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures,
+               std::span<const std::string> webs) {
     std::ofstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error(path.string() + ": cannot be opened for writing");
-    write_mgf(scene, file, textures);
+    write_mgf(scene, file, textures, webs);
     if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+std::vector<std::shared_ptr<const PhotometricWeb>> photometric_webs(const Scene& scene) {
+    std::vector<std::shared_ptr<const PhotometricWeb>> webs;
+    std::unordered_set<const PhotometricWeb*> known;
+    for (const Luminaire& luminaire : scene.luminaires)
+        if (const auto* light = std::get_if<MeasuredLight>(&luminaire.kind))
+            if (known.insert(light->web.get()).second) webs.push_back(light->web);
+    return webs;
+}
+
+std::vector<std::string> web_files(const Scene& scene, const std::filesystem::path& path) {
+    std::vector<std::string> files;
+    for (std::size_t i = 0; i < photometric_webs(scene).size(); ++i)
+        files.push_back(printable(fmt::format("{}.web-{}.ies", path.stem().string(), i)));
+    return files;
 }
 
 std::vector<std::string> texture_files(const Scene& scene, const std::filesystem::path& path) {

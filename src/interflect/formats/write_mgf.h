@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,12 +24,21 @@ namespace interflect::inline detail {
 ///
 /// @param scene     Without scene_faults(). Time is linear in the patches, memory in the vertices (4 bytes each).
 /// @param textures  Names of the files of the scene's textures, relative to that of the scene: texture_files().
+/// @param webs      Names of the files of photometric_webs(): web_files().
 /// @throws std::runtime_error where the stream fails, or the file cannot be written.
-void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures = {});
-void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures = {});
+void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures = {},
+               std::span<const std::string> webs = {});
+void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures = {},
+               std::span<const std::string> webs = {});
 
 /// Names for the files of a scene's textures, beside that of the scene: "room.texture-0.png" beside "room.mgf", or .exr
 /// (texture_extension). write_texture() writes them.
 std::vector<std::string> texture_files(const Scene& scene, const std::filesystem::path& path);
+
+/// The photometric webs of a scene's luminaires, each once, in the order of the luminaires.
+std::vector<std::shared_ptr<const PhotometricWeb>> photometric_webs(const Scene& scene);
+
+/// Names for their files beside that of the scene: "room.web-0.ies" beside "room.mgf". write_ies() writes them.
+std::vector<std::string> web_files(const Scene& scene, const std::filesystem::path& path);
 
 }  // namespace interflect::inline detail

@@ -36,6 +36,12 @@ float sample_cosine(float v, float inner, float outer, float inner_share) {
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
+/// A direction at an angle to an axis, turned about it by `turn` of a full turn.
+V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float turn) {
+    const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), angle = 2 * pi * turn;
+    return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
+}
+
 }  // namespace
 
 Emission::Emission(const Scene& scene) {
@@ -108,32 +114,44 @@ void Emission::add_window(Window window, const Rgb& exitance) {
     emitters_.push_back({window, exitance, RgbD(exitance) * double{window.part_area}});
 }
 
+/// All rays of a web's sampler carry the same power, whatever the web.
+void Emission::add(const MeasuredLight& light) {
+    std::shared_ptr<const WebSampler>& sampler = samplers_[light.web.get()];
+    if (!sampler) sampler = std::make_shared<WebSampler>(*light.web);
+    float reach = 0;  // largest coordinate
+    for (const V3f& corner : {corners_.front(), corners_.back()})
+        for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(corner[k]));
+    constexpr float relative_offset = 0x1p-17f;  // as RayCaster::ray_offset()
+    emitters_.push_back({Web{sampler, light.web, LuminaireFrame(light), light.position, relative_offset * reach},
+                         light.factor, RgbD(light.factor) * (sampler->flux() / double{parts_per_emitter})});
+}
+
+Ray Emission::Beam::ray(float u, float v, float, float) const {
+    return {position, turned(axis, s, t, sample_cosine(v, inner, outer, inner_share), u)};
+}
+
+Ray Emission::Window::ray(float u, float v, float c, float d) const {
+    return {corner + edge_u * u + edge_v * v, is_diffuse ? turned(direction, s, t, std::sqrt(1 - c), d) : direction};
+}
+
+Ray Emission::Web::ray(float u, float v, float c, float d) const {
+    const V3f from_luminaire = sampler->direction(u, v), towards = frame.to_scene(from_luminaire).normalized();
+    const V3f start = sample_opening(light->opening, from_luminaire, c, d).position;
+    return {position + frame.to_scene(start) + towards * offset, towards};
+}
+
 void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                      std::span<Ray> rays) const {
     const Emitter& emitter = emitters_[part / parts_per_emitter];
     const std::size_t cell = part % parts_per_emitter, cell_row = cell / cells_per_side;
     const auto column = static_cast<float>(cell % cells_per_side), row = static_cast<float>(cell_row);
-    const auto turned = [](const V3f& axis, const V3f& s, const V3f& t, float cosine, float turn) {
-        const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), angle = 2 * pi * turn;
-        return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
-    };
     for (std::size_t begin = 0; begin < rays.size(); begin += PointBlock::capacity) {
         const std::size_t count = std::min(PointBlock::capacity, rays.size() - begin);
         fill_points(set, key, first_sample + begin, count, points);
         const auto& [a, b, c, d] = points.coordinate;
         for (std::size_t i = 0; i < count; ++i) {
             const float u = (column + a[i]) / cells_per_side, v = (row + b[i]) / cells_per_side;
-            Ray& ray = rays[begin + i];
-            if (const Beam* beam = std::get_if<Beam>(&emitter.shape)) {
-                const float cosine = sample_cosine(v, beam->inner, beam->outer, beam->inner_share);
-                ray = {beam->position, turned(beam->axis, beam->s, beam->t, cosine, u)};
-            } else {
-                const Window& window = std::get<Window>(emitter.shape);
-                ray.origin = window.corner + window.edge_u * u + window.edge_v * v;
-                ray.direction = window.is_diffuse
-                                    ? turned(window.direction, window.s, window.t, std::sqrt(1 - c[i]), d[i])
-                                    : window.direction;
-            }
+            rays[begin + i] = std::visit([&](const auto& shape) { return shape.ray(u, v, c[i], d[i]); }, emitter.shape);
         }
     }
 }
@@ -142,6 +160,8 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     const Emitter& emitter = emitters_[part / parts_per_emitter];
     const float squared = std::max(distance * distance, std::numeric_limits<float>::min());
     if (std::holds_alternative<Beam>(emitter.shape)) return {ray.origin, V3f(0), emitter.rating};
+    if (const Web* web = std::get_if<Web>(&emitter.shape))
+        return {ray.origin, V3f(0), emitter.rating * web->light->intensity(web->frame.to_luminaire(ray.direction))};
     const Window& window = std::get<Window>(emitter.shape);
     if (window.is_diffuse) {
         const float form_factor = window.part_area / (window.part_area + pi * squared);  // of a disk of that area

@@ -2,20 +2,24 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
 
 #include "interflect/base/points.h"
 #include "interflect/colour.h"
+#include "interflect/luminaires/opening.h"
+#include "interflect/luminaires/web_sampler.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
 namespace interflect::inline detail {
 
 /// Rays from the luminaires of a scene. What a luminaire emits is divided into parts of equal power, by direction
-/// (point and spot lights) or by place (a directional light, a sky): each part gets rays of its own, so that importance
-/// can tell which of them matter. Immutable, shared by all threads.
+/// (point, spot and measured lights) or by place (a directional light, a sky): each part gets rays of its own, so that
+/// importance can tell which of them matter. Immutable, shared by all threads.
 class Emission {
   public:
     Emission() = default;  ///< There are no luminaires.
@@ -55,6 +59,7 @@ class Emission {
         V3f position, axis, s, t;
         float inner, outer;  // cosines
         float inner_share;   // of the power, within the inner angle
+        Ray ray(float u, float v, float, float) const;
     };
     /// Starts on a parallelogram; all in one direction, or with a density cos(theta) / pi about it.
     struct Window {
@@ -62,9 +67,20 @@ class Emission {
         V3f direction, s, t;
         float part_area;
         bool is_diffuse;
+        Ray ray(float u, float v, float c, float d) const;
+    };
+    /// In the directions of a photometric web, from its opening; from `offset` above it, where a surface is that it is
+    /// set in.
+    struct Web {
+        std::shared_ptr<const WebSampler> sampler;
+        std::shared_ptr<const PhotometricWeb> light;
+        LuminaireFrame frame;
+        V3f position;
+        float offset;
+        Ray ray(float u, float v, float c, float d) const;
     };
     struct Emitter {
-        std::variant<Beam, Window> shape;
+        std::variant<Beam, Window, Web> shape;
         Rgb rating;
         RgbD part_power;
         std::size_t luminaire = 0;
@@ -74,11 +90,13 @@ class Emission {
     void add(const SpotLight& light);
     void add(const DirectionalLight& light);
     void add(const UniformSky& sky);
+    void add(const MeasuredLight& light);
     void add_beam(const Beam& beam, const Rgb& intensity);
     void add_window(Window window, const Rgb& exitance);
 
     std::vector<V3f> corners_;  // of the box around the scene; empty without patches
     std::vector<Emitter> emitters_;
+    std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;
 };
 
 }  // namespace interflect::inline detail

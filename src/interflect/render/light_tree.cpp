@@ -92,15 +92,22 @@ class SampledExitance {
 
 }  // namespace
 
-LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry) : leaf_(scene.patches.size(), none) {
-    std::vector<Emitter> emitters;
+std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry) {
     const SampledExitance exitance(scene);
+    std::vector<float> power(scene.patches.size());
+    for (std::size_t i = 0; i < power.size(); ++i)
+        power[i] = exitance.of(scene.patches[i], geometry[i]) * geometry[i].area();
+    return power;
+}
+
+LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry, std::span<const float> power)
+    : leaf_(scene.patches.size(), none) {
+    std::vector<Emitter> emitters;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
-        const float power = exitance.of(patch, geometry[i]) * geometry[i].area();
-        if (!(power > 0)) continue;
+        if (!(power[i] > 0)) continue;
         Emitter emitter{
-            i, power, {scene.vertices[patch.vertices[0]], scene.vertices[patch.vertices[0]]}, geometry[i].normal()};
+            i, power[i], {scene.vertices[patch.vertices[0]], scene.vertices[patch.vertices[0]]}, geometry[i].normal()};
         for (std::size_t v = 1; v < static_cast<std::size_t>(patch.vertex_count()); ++v) {
             const V3f& vertex = scene.vertices[patch.vertices[v]];
             emitter.box.extend({vertex, vertex});

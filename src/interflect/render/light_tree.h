@@ -16,8 +16,7 @@ namespace interflect::inline detail {
 /// receiving surface and of the emitting ones, are the largest that the box and the cone allow. The distance is that to
 /// the box's centre, at least half its diagonal. A node that lies behind the surface, or faces away from the point as a
 /// whole, is never taken. After Conty and Kulla 2018. Occlusion is ignored. Immutable, shared by all threads; 64
-/// bytes a node, two nodes an emitting patch, and 4 bytes a patch. A patch with an exitance texture has the mean power
-/// of it; a share goes by the texture's largest texel, so that none that may emit is left out.
+/// bytes a node, two nodes an emitting patch, and 4 bytes a patch.
 class LightTree {
   public:
     struct Choice {
@@ -26,7 +25,8 @@ class LightTree {
     };
 
     /// @param geometry  Of each patch of the scene.
-    LightTree(const Scene& scene, std::span<const PatchGeometry> geometry);
+    /// @param power     Of each patch, all channels together [W or lm]; those above 0 emit.
+    LightTree(const Scene& scene, std::span<const PatchGeometry> geometry, std::span<const float> power);
 
     /// An emitting patch for the point x of a surface with normal n. @param uniform  In (0, 1). O(depth).
     Choice choose(const V3f& x, const V3f& n, double uniform) const;
@@ -68,5 +68,9 @@ class LightTree {
     std::vector<LightNode> nodes_;     // [0] is the root; empty without emitting patches
     std::vector<std::uint32_t> leaf_;  // of each patch; none where it does not emit
 };
+
+/// What each patch emits, all channels together [W or lm]. A patch with an exitance texture has the mean of it; a share
+/// goes by the texture's largest texel, so that none that may emit is left out.
+std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry);
 
 }  // namespace interflect::inline detail

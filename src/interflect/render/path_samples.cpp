@@ -37,6 +37,14 @@ VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::u
         of_light[0] + within_cell * 0x1p-23, of_light[1], of_light[2], of_direction[0], of_direction[1], of_light[3]};
 }
 
+PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
+    const std::uint64_t key = mix(mix(batch_key, vertex), 3);
+    const auto words = random_words(key, index);
+    if (vertex > stratified_vertices) return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2])};
+    const auto point = shuffled_point(key, index);
+    return {point[0] + ((words[0] + 0.5) * 0x1p-32 - 0.5) * 0x1p-23, point[1], point[2]};
+}
+
 float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2) {
     const float cosine = -lamp.normal().dot(direction);
     return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;

@@ -18,11 +18,18 @@ struct VertexSample {
     float roulette;
 };
 
+/// Those with which final gathering looks for bright places at a vertex.
+struct PlaceSample {
+    double patch;  // chooses it
+    float u, v;    // and the point on it
+};
+
 /// Sobol' points at the first vertices of a path, pseudo-random numbers at later ones.
 /// @param batch_key  Names the batch that the path is part of.
 /// @param vertex     1 is the first that the camera sees.
 /// @param index      Of the path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
+PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 
 /// Density per solid angle, seen from a point that `direction` leaves, of sampling a point of an emitting patch there.
 /// @param probability  With which the patch is chosen.

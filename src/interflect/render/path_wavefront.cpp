@@ -33,7 +33,9 @@ void PathWavefront::trace(std::span<BatchOfPaths> batches) {
     for (std::size_t i = 0; i < light_.size(); ++i) {
         BatchOfPaths& batch = batches[i / s_.batch_size];
         batch.emitted += RgbD(light_[i].emitted);
-        batch.reflected += RgbD(light_[i].reflected);
+        batch.direct += RgbD(light_[i].direct);
+        batch.indirect += RgbD(light_[i].indirect);
+        batch.first += light_[i].first;
         batch.done = true;
     }
 }
@@ -78,8 +80,7 @@ void PathWavefront::advance_paths() {
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     if (hit.patch == none) {
         ++counts_.escaped_rays;
-        PathLight& light = light_[path.index];
-        (vertex_ == 1 ? light.emitted : light.reflected) += path.throughput * s_.sky;
+        add(path.index, vertex_ - 1, path.throughput * s_.sky);
         return false;
     }
     const Material& material = s_.material(hit.patch);
@@ -90,8 +91,12 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
         exitance = exitance_at(s_.scene, patch, p);
         reflectance = reflectance_at(s_.scene, patch, p);
     }
+    if (vertex_ == 1)
+        light_[path.index].first = {RgbD(reflectance), Imath::V3d(s_.geometry[hit.patch].normal()),
+                                    Imath::V3d(ray.origin + hit.distance * ray.direction), hit.distance};
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
+    if (end_at_known_light(hit, ray, path)) return false;
     path.throughput *= reflectance;
     if (largest_channel(path.throughput) <= 0) return false;
     const std::uint32_t size = static_cast<std::uint32_t>(s_.batch_size);
@@ -99,7 +104,8 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     ray.origin = offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction);
     path.normal = s_.geometry[hit.patch].normal();
     if (s_.sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
-    if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample.light);
+    if (s_.known) connect_to_known_light(ray.origin, path);
+    if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
 
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
@@ -110,10 +116,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
 
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
     const Rgb radiance = path.throughput * exitance / pi;
-    if (vertex_ == 1) {
-        light_[path.index].emitted += radiance;
-        return;
-    }
+    if (vertex_ == 1) return add(path.index, 0, radiance);
     float weight = 1;
     if (s_.sampling == EmitterSampling::lights) weight = 0;
     if (s_.sampling == EmitterSampling::combined) {
@@ -122,7 +125,48 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
             light_density(s_.geometry[hit.patch], probability, ray.direction, hit.distance * hit.distance);
         weight = balance(path.normal.dot(ray.direction) / pi, of_light);
     }
-    light_[path.index].reflected += radiance * weight;
+    add(path.index, vertex_ - 1, radiance * weight);
+}
+
+bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Path& path) {
+    if (!s_.known || vertex_ == 1) return false;
+    const KnownLight::Place place = s_.known->place(hit.patch, ray.origin + hit.distance * ray.direction);
+    const float distance2 = hit.distance * hit.distance;
+    if (!s_.known->is_far(place, distance2)) return false;
+    const float of_light = density_towards(place, ray.origin, path.normal, ray.direction, distance2);
+    const float weight = balance(path.normal.dot(ray.direction) / pi, of_light);
+    add(path.index, vertex_, path.throughput * s_.known->radiance(place) * weight);
+    return true;
+}
+
+void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
+    const auto size = static_cast<std::uint32_t>(s_.batch_size);
+    const PlaceSample sample = place_sample(keys_[path.index / size], vertex_, path.index % size);
+    const KnownLight::Place place = s_.known->sample(x, path.normal, sample.patch, sample.u, sample.v);
+    if (place.patch == none) return;
+    const V3f to_light = s_.geometry[place.patch].point(place.parameters) - x;
+    const float distance2 = to_light.length2();
+    if (!(distance2 > 0) || !s_.known->is_far(place, distance2)) return;
+    const V3f direction = to_light / std::sqrt(distance2);
+    const float of_direction = path.normal.dot(direction) / pi;
+    const float of_light = density_towards(place, x, path.normal, direction, distance2);
+    if (!(of_direction > 0 && of_light > 0)) return;
+    const float weight = balance(of_light, of_direction);
+    shadow_rays_.push_back({x, direction});
+    connections_.push_back({place.patch, path.index,
+                            path.throughput * s_.known->radiance(place) * (of_direction / of_light * weight), 0,
+                            vertex_ + 1});
+}
+
+float PathWavefront::density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
+                                     float distance2) const {
+    const float cosine = -s_.geometry[place.patch].normal().dot(direction);
+    return cosine > 0 ? s_.known->density(place, x, n) * distance2 / cosine : 0;
+}
+
+void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance) {
+    PathLight& light = light_[index];
+    (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += radiance;
 }
 
 void PathWavefront::connect_to_light(const V3f& x, const Path& path, const VertexSample& sample) {
@@ -142,12 +186,12 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
     const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.patch], on_lamp) / pi;
     shadow_rays_.push_back({x, direction});
     connections_.push_back(
-        {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0});
+        {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
 }
 
-void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double uniform) {
+void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample) {
     const auto irradiance_from = [&](const Luminaire& luminaire, V3f& towards, float& distance) {
-        const Illumination light = illumination(luminaire, x);
+        const Illumination light = illumination(luminaire, x, sample.light_u, sample.light_v);
         towards = light.towards, distance = light.distance;
         return light.irradiance * std::max(0.0f, path.normal.dot(light.towards));
     };
@@ -161,10 +205,10 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, double 
         const Rgb irradiance = irradiance_from(luminaire, towards, distance);
         const double share = channel_sum(irradiance) / all;
         chosen += share;
-        if (!(share > 0) || uniform > chosen) continue;
+        if (!(share > 0) || sample.light > chosen) continue;
         shadow_rays_.push_back({x, towards});
         connections_.push_back(
-            {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance});
+            {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance, vertex_});
         return;
     }
 }
@@ -177,7 +221,7 @@ void PathWavefront::trace_shadow_rays() {
     for (std::size_t i = 0; i < connections_.size(); ++i) {
         const Connection& c = connections_[i];
         const bool is_reached = hits_[i].patch == c.patch || (c.patch == none && hits_[i].distance > c.distance);
-        if (is_reached) light_[c.index].reflected += c.radiance;
+        if (is_reached) add(c.index, c.bounces, c.radiance);
     }
 }
 

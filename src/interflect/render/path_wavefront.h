@@ -10,6 +10,7 @@
 #include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/render/known_light.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/path_samples.h"
 #include "interflect/scene.h"
@@ -21,23 +22,39 @@ struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
     Camera camera;
-    std::vector<PatchGeometry> geometry;  // of each patch
-    LightTree lights;
+    std::span<const PatchGeometry> geometry;  // of each patch
+    const LightTree& lights;
     Rgb sky;  // its radiance
     EmitterSampling sampling;
     std::uint64_t seed;
     int width;
+    float pixel_angle;  // that a pixel's side fills in the middle of the picture [rad]
     std::size_t batch_size;
+    const KnownLight* known = nullptr;  // that paths end at; null: they go on until roulette ends them
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
+};
+
+/// What a camera ray hits first; all 0 where it escapes.
+struct FirstHit {
+    RgbD albedo{0, 0, 0};  // its reflectance
+    Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
+    double distance = 0;  // from the eye [m]
+
+    FirstHit& operator+=(const FirstHit& o) {
+        albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance;
+        return *this;
+    }
 };
 
 /// One batch of a pixel, and its outcome: sums over the batch's paths.
 struct BatchOfPaths {
     std::uint32_t pixel = 0, batch = 0;
     bool done = false;
-    RgbD emitted{0, 0, 0};  // seen directly
-    RgbD reflected{0, 0, 0};
+    RgbD emitted{0, 0, 0};   // seen directly
+    RgbD direct{0, 0, 0};    // reflected once, from where it was emitted to the camera
+    RgbD indirect{0, 0, 0};  // reflected more often
+    FirstHit first{};
 };
 
 /// Counts of rays, summed over batches.
@@ -67,13 +84,15 @@ class PathWavefront {
         V3f normal;           // of the surface that its ray leaves
     };
     struct PathLight {
-        Rgb emitted{0, 0, 0}, reflected{0, 0, 0};
+        Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
+        FirstHit first{};
     };
     /// The contribution of a shadow ray if it hits the patch that it is sent to, or nothing nearer than a luminaire.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;  // to the luminaire [m]
+        float distance;         // to the luminaire [m]
+        std::uint32_t bounces;  // of the light that it brings
     };
 
     void start_paths(std::span<const BatchOfPaths> batches);
@@ -86,8 +105,18 @@ class PathWavefront {
     /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample);
     /// The same for luminaires: one of them, chosen by what it would bring if nothing were in its way.
-    void connect_to_luminaire(const V3f& x, const Path& path, double uniform);
+    void connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample);
     void trace_shadow_rays();
+    /// Ends a path at the solution's light, unless the element that its ray hit is too near.
+    /// @return Whether it has ended.
+    bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
+    /// Density per solid angle with which KnownLight::sample() takes the direction from x to a place.
+    float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
+                          float distance2) const;
+    /// A shadow ray to what is bright in the solution.
+    void connect_to_known_light(const V3f& x, const Path& path);
+    /// @param bounces  Of the light, until it reaches the camera.
+    void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 
     const PathScene& s_;
     std::uint32_t vertex_ = 1;         // which vertex of the paths comes next; the camera is vertex 0

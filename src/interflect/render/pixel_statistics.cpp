@@ -14,7 +14,7 @@ constexpr int neighbourhood_radius = 3;
 
 double mean_reflected(const std::vector<PixelStatistics>& pixels) {
     double sum = 0;
-    for (const PixelStatistics& p : pixels) sum += p.reflected;
+    for (const PixelStatistics& p : pixels) sum += p.reflected();
     return sum / static_cast<double>(pixels.size());
 }
 

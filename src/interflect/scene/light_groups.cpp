@@ -71,6 +71,7 @@ void scale(Luminaire& luminaire, float factor) {
     if (auto* spot = std::get_if<SpotLight>(&luminaire.kind)) spot->intensity *= factor;
     if (auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) directional->irradiance *= factor;
     if (auto* sky = std::get_if<UniformSky>(&luminaire.kind)) sky->radiance *= factor;
+    if (auto* measured = std::get_if<MeasuredLight>(&luminaire.kind)) measured->factor *= factor;
 }
 
 }  // namespace

@@ -40,6 +40,14 @@ std::string placement_fault(const SpotLight& light) {
     const std::string fault = position_fault(light.position);
     return fault.empty() ? direction_fault(light.direction) : fault;
 }
+std::string placement_fault(const MeasuredLight& light) {
+    constexpr float least_sine = 1e-4f;  // of the angle between the nadir and the C0 direction
+    for (const std::string& fault :
+         {position_fault(light.position), direction_fault(light.direction), direction_fault(light.c0)})
+        if (!fault.empty()) return fault;
+    const bool is_frame = light.direction.normalized().cross(light.c0.normalized()).length() > least_sine;
+    return is_frame ? std::string() : std::string("has a C0 plane along its own axis");
+}
 
 template <class... Cases>
 struct Overloaded : Cases... {
@@ -57,16 +65,21 @@ Rgb rating(const Luminaire& luminaire) {
     return std::visit(Overloaded{[](const PointLight& light) { return light.intensity; },
                                  [](const SpotLight& light) { return light.intensity; },
                                  [](const DirectionalLight& light) { return light.irradiance; },
-                                 [](const UniformSky& sky) { return sky.radiance; }},
+                                 [](const UniformSky& sky) { return sky.radiance; },
+                                 [](const MeasuredLight& light) { return light.factor * light.web->peak(); }},
                       luminaire.kind);
 }
 
 const char* kind_name(const Luminaire& luminaire) {
-    constexpr std::array<const char*, 4> names{"point", "spot", "directional", "sky"};
+    constexpr std::array<const char*, 5> names{"point", "spot", "directional", "sky", "measured"};
     return names[luminaire.kind.index()];
 }
 
 std::string luminaire_fault(const Luminaire& luminaire) {
+    if (const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind)) {
+        if (!measured->web) return "has no photometric web";
+        if (std::string fault = web_fault(*measured->web); !fault.empty()) return fault;
+    }
     const Rgb value = rating(luminaire);
     if (!is_finite(value) || std::min({value.x, value.y, value.z}) < 0)
         return fmt::format("has a colour ({}, {}, {}) that is negative or not finite", value.x, value.y, value.z);

@@ -1,0 +1,193 @@
+#include "interflect/denoise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/parallel.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2;  // [pixels]
+/// Squared differences count relative to this share of what noise explains: the k of Rousselle et al. 2012, squared.
+constexpr float noise_share = 0.45f * 0.45f;
+constexpr float least_albedo = 0.01f;  // light on what is darker counts as if it were that bright
+constexpr float normal_scale = 0.1f;   // of squared differences of normals: about 18 degrees
+constexpr float plane_scale = 1.5f;    // distance from the tangent plane over that of neighbouring pixels
+
+/// About exp(-d), without a call.
+float fall(float d) {
+    const float t = 1 / (1 + d * 0.125f), t2 = t * t, t4 = t2 * t2;
+    return t4 * t4;
+}
+
+/// A kind of light as irradiance over pi, channel by channel, with the variance of the channels' mean.
+struct Field {
+    std::array<std::vector<float>, 3> value;
+    std::vector<float> variance;
+};
+
+/// Means of `values` over squares; the variance of a few batches is itself too noisy to be used pixel by pixel.
+std::vector<float> box_mean(const std::vector<float>& values, int width, int height, int radius) {
+    std::vector<float> means(values.size());
+    parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
+        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+            for (int x = 0; x < width; ++x) {
+                float sum = 0;
+                int count = 0;
+                for (int v = std::max(0, y - radius); v <= std::min(height - 1, y + radius); ++v)
+                    for (int u = std::max(0, x - radius); u <= std::min(width - 1, x + radius); ++u, ++count)
+                        sum += values[static_cast<std::size_t>(v * width + u)];
+                means[static_cast<std::size_t>(y * width + x)] = sum / static_cast<float>(count);
+            }
+    });
+    return means;
+}
+
+Rgb floored(const Rgb& albedo) {
+    return {std::max(albedo.x, least_albedo), std::max(albedo.y, least_albedo), std::max(albedo.z, least_albedo)};
+}
+
+Field make_field(const Image& light, const std::vector<float>& variance, const Image& albedo) {
+    Field field;
+    for (auto& channel : field.value) channel.resize(light.pixels.size());
+    field.variance.resize(light.pixels.size());
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        const Rgb reflectance = floored(albedo.pixels[i]), irradiance = light.pixels[i] / reflectance;
+        for (int c = 0; c < 3; ++c) field.value[static_cast<std::size_t>(c)][i] = irradiance[c];
+        const float mean = channel_sum(reflectance) / 3;
+        field.variance[i] = variance[i] / (mean * mean);
+    }
+    field.variance = box_mean(field.variance, light.width, light.height, variance_radius);
+    return field;
+}
+
+/// The filter over some rows of the picture.
+class Band {
+  public:
+    Band(const PictureLayers& layers, const Field& direct, const Field& indirect, int first_row, int end_row)
+        : layers_(layers),
+          fields_{&direct, &indirect},
+          width_(layers.albedo.width),
+          height_(layers.albedo.height),
+          first_(first_row),
+          end_(end_row),
+          difference_(static_cast<std::size_t>(width_ * (end_row - first_row + 2 * patch_radius))),
+          shape_(static_cast<std::size_t>(width_ * (end_row - first_row))) {
+        for (auto& sums : sums_)
+            for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
+    }
+
+    void filter(Image& picture) {
+        for (int dy = -window_radius; dy <= window_radius; ++dy)
+            for (int dx = -window_radius; dx <= window_radius; ++dx) {
+                compare_shapes(dx, dy);
+                for (std::size_t f = 0; f < fields_.size(); ++f) {
+                    compare_light(*fields_[f], dx, dy);
+                    add_neighbours(*fields_[f], sums_[f], dx, dy);
+                }
+            }
+        for (int y = first_; y < end_; ++y)
+            for (int x = 0; x < width_; ++x) {
+                const std::size_t i = at(x, y), k = i - at(0, first_);
+                Rgb irradiance(0);
+                for (const auto& sums : sums_) irradiance += Rgb(sums[0][k], sums[1][k], sums[2][k]) / sums[3][k];
+                picture.pixels[i] = layers_.emitted.pixels[i] + floored(layers_.albedo.pixels[i]) * irradiance;
+            }
+    }
+
+  private:
+    std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * width_ + x); }
+    /// Columns of which the neighbour is in the picture.
+    std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
+    bool has_row(int y) const { return y >= 0 && y < height_; }
+
+    /// shape_: the weight of each pixel's neighbour by where it lies.
+    void compare_shapes(int dx, int dy) {
+        std::fill(shape_.begin(), shape_.end(), 0.0f);
+        const float steps = std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy)));
+        const auto [begin, end] = columns(dx);
+        for (int y = first_; y < end_; ++y) {
+            if (!has_row(y + dy)) continue;
+            for (int x = begin; x < end; ++x) {
+                const std::size_t i = at(x, y), k = at(x + dx, y + dy);
+                const Rgb turn = layers_.normal.pixels[i] - layers_.normal.pixels[k];
+                const Rgb step = layers_.position.pixels[k] - layers_.position.pixels[i];
+                const float height = step.dot(layers_.normal.pixels[i]);
+                const float footprint = plane_scale * layers_.depth[i] * layers_.pixel_angle * steps;
+                const float is_hit = layers_.depth[k] > 0 ? 1.0f : 0.0f;
+                shape_[i - at(0, first_)] = is_hit * fall(turn.dot(turn) / normal_scale) *
+                                            fall(height * height / (footprint * footprint + 1e-12f));
+            }
+        }
+    }
+
+    /// difference_: how much the light of each pixel's neighbour differs beyond its noise, rows from first_ -
+    /// patch_radius on.
+    void compare_light(const Field& field, int dx, int dy) {
+        constexpr float tiny = 1e-20f;
+        std::fill(difference_.begin(), difference_.end(), 0.0f);
+        const auto [begin, end] = columns(dx);
+        for (int y = first_ - patch_radius; y < end_ + patch_radius; ++y) {
+            if (!has_row(y) || !has_row(y + dy)) continue;
+            float* row = &difference_[static_cast<std::size_t>((y - first_ + patch_radius) * width_)];
+            const std::size_t i = at(0, y), k = at(0, y + dy) + static_cast<std::size_t>(dx);
+            for (int x = begin; x < end; ++x) {
+                const auto c = static_cast<std::size_t>(x);
+                const float d = (field.value[0][i + c] + field.value[1][i + c] + field.value[2][i + c] -
+                                 field.value[0][k + c] - field.value[1][k + c] - field.value[2][k + c]) /
+                                3;
+                const float here = field.variance[i + c], there = field.variance[k + c];
+                row[x] = (d * d - (here + std::min(here, there))) / (noise_share * (here + there) + tiny);
+            }
+        }
+    }
+
+    void add_neighbours(const Field& field, std::array<std::vector<float>, 4>& sums, int dx, int dy) const {
+        const auto [begin, end] = columns(dx);
+        for (int y = first_; y < end_; ++y) {
+            if (!has_row(y + dy)) continue;
+            const std::size_t out = at(0, y) - at(0, first_), k = at(0, y + dy) + static_cast<std::size_t>(dx);
+            const float* rows = &difference_[out];
+            const auto across = static_cast<std::size_t>(width_);
+            for (int x = begin; x < end; ++x) {
+                const auto c = static_cast<std::size_t>(x);
+                const std::size_t left = x > 0 ? c - 1 : c, right = x + 1 < width_ ? c + 1 : c;
+                float d = 0;
+                for (std::size_t r = 0; r < 3; ++r)
+                    d += rows[r * across + left] + rows[r * across + c] + rows[r * across + right];
+                const float weight = shape_[out + c] * fall(std::max(0.0f, d / 9));
+                for (std::size_t channel = 0; channel < 3; ++channel)
+                    sums[channel][out + c] += weight * field.value[channel][k + c];
+                sums[3][out + c] += weight;
+            }
+        }
+    }
+
+    const PictureLayers& layers_;
+    std::array<const Field*, 2> fields_;
+    int width_, height_, first_, end_;
+    std::vector<float> difference_, shape_;
+    std::array<std::array<std::vector<float>, 4>, 2> sums_;  // of each field: three channels, and the weights
+};
+
+}  // namespace
+
+Image denoise(const PictureLayers& layers) {
+    const int width = layers.albedo.width, height = layers.albedo.height;
+    const Field direct = make_field(layers.direct, layers.direct_variance, layers.albedo);
+    const Field indirect = make_field(layers.indirect, layers.indirect_variance, layers.albedo);
+    Image picture(width, height);
+    constexpr std::size_t rows = 16;
+    parallel_for_ranges(static_cast<std::size_t>(height), rows, [&](std::size_t begin, std::size_t end) {
+        Band(layers, direct, indirect, static_cast<int>(begin), static_cast<int>(end)).filter(picture);
+    });
+    return picture;
+}
+
+}  // namespace interflect

@@ -1,0 +1,217 @@
+#include "interflect/render/path_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "interflect/base/parallel.h"
+#include "interflect/error.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/illumination.h"
+#include "interflect/raycast/camera.h"
+#include "interflect/render/light_tree.h"
+#include "interflect/render/pixel_statistics.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// Batches that a pixel's samples are divided into, at least: 7 degrees of freedom for its standard error.
+constexpr int least_batches = 8;
+/// Samples of a batch, at most: beyond them stratification gains little, and more batches tell the error better.
+constexpr int largest_batch = 64;
+/// Paths of one wavefront, about: many enough to hide the cost of a call, few enough to stay in the cache.
+constexpr std::size_t paths_per_tile = 2048;
+/// Paths between two reports of progress, about.
+constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
+
+std::vector<PatchGeometry> geometry_of(const Scene& scene) {
+    std::vector<PatchGeometry> geometry;
+    geometry.reserve(scene.patches.size());
+    for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
+    return geometry;
+}
+
+/// A picture while it is traced: statistics of its pixels, and the batches that they still need.
+class PathPicture {
+  public:
+    PathPicture(const PathScene& scene, const PathOptions& options, const PathMonitor& monitor)
+        : s_(scene),
+          options_(options),
+          monitor_(monitor),
+          pixels_(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)) {}
+
+    void trace() {
+        const auto batch = static_cast<int>(s_.batch_size);
+        const auto least = static_cast<std::uint32_t>((options_.samples + batch - 1) / batch);
+        const auto most =
+            static_cast<std::uint32_t>((std::max(options_.max_samples, options_.samples) + batch - 1) / batch);
+        std::vector<std::uint32_t> wanted(pixels_.size(), least);
+        foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
+        trace_round(wanted);
+        if (options_.until <= 0) return;
+        while (!stopped() && want_more(wanted, most)) trace_round(wanted);
+        if (!stopped()) report(1);
+    }
+
+    PathTracing result() const {
+        PathTracing result;
+        result.image = Image(options_.width, options_.height);
+        result.standard_error = Image(options_.width, options_.height);
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const RgbD e = pixels_[i].squared_error();
+            result.image.pixels[i] = Rgb(pixels_[i].mean);
+            result.standard_error.pixels[i] = Rgb(RgbD(std::sqrt(e.x), std::sqrt(e.y), std::sqrt(e.z)));
+        }
+        result.layers = layers();
+        result.relative_error = relative_error(pixels_);
+        result.rays = counts_.rays;
+        result.shadow_rays = counts_.shadow_rays;
+        result.escaped_rays = counts_.escaped_rays;
+        result.paths = batches_done_ * static_cast<std::int64_t>(s_.batch_size);
+        result.non_finite_pixels = count_non_finite(result.image);
+        result.interrupted = stopped();
+        return result;
+    }
+
+  private:
+    PictureLayers layers() const {
+        PictureLayers layers;
+        layers.pixel_angle = s_.pixel_angle;
+        for (Image* image :
+             {&layers.emitted, &layers.direct, &layers.indirect, &layers.albedo, &layers.normal, &layers.position})
+            *image = Image(options_.width, options_.height);
+        for (std::vector<float>* numbers : {&layers.direct_variance, &layers.indirect_variance, &layers.depth})
+            numbers->resize(pixels_.size());
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const PixelStatistics& p = pixels_[i];
+            layers.emitted.pixels[i] = Rgb(p.emitted);
+            layers.direct.pixels[i] = Rgb(p.direct);
+            layers.indirect.pixels[i] = Rgb(p.indirect);
+            layers.direct_variance[i] = static_cast<float>(p.squared_error(p.direct_squares));
+            layers.indirect_variance[i] = static_cast<float>(p.squared_error(p.indirect_squares));
+            layers.albedo.pixels[i] = Rgb(p.first.albedo);
+            layers.normal.pixels[i] = Rgb(V3f(p.first.normal));
+            layers.position.pixels[i] = Rgb(V3f(p.first.position));
+            layers.depth[i] = static_cast<float>(p.first.distance);
+        }
+        return layers;
+    }
+
+    bool stopped() const { return monitor_.stop && *monitor_.stop; }
+
+    /// @return Whether a pixel needs more than it has.
+    bool want_more(std::vector<std::uint32_t>& wanted, std::uint32_t most) {
+        const std::vector<double> needed = needed_batches(pixels_, options_);
+        bool more = false;
+        foreseen_ = 0;
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const std::uint32_t present = pixels_[i].batches;
+            const double in_all = std::max<double>(present, std::min<double>(most, std::ceil(needed[i])));
+            wanted[i] = static_cast<std::uint32_t>(std::min(in_all, 2.0 * present));
+            more = more || wanted[i] > present;
+            foreseen_ += in_all;
+        }
+        return more;
+    }
+
+    /// Traces the batches that pixels lack: all of them one, then all that lack more another one, and so on.
+    void trace_round(const std::vector<std::uint32_t>& wanted) {
+        const std::size_t per_chunk = paths_per_chunk / s_.batch_size;
+        std::vector<std::uint32_t> present(pixels_.size());
+        for (std::size_t i = 0; i < pixels_.size(); ++i) present[i] = pixels_[i].batches;
+        std::vector<BatchOfPaths> chunk;
+        for (bool more = true; more;) {
+            more = false;
+            for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
+                if (present[i] >= wanted[i]) continue;
+                chunk.push_back({i, present[i]++});
+                more = true;
+                if (chunk.size() >= per_chunk) trace_chunk(chunk);
+            }
+        }
+        trace_chunk(chunk);
+    }
+
+    void trace_chunk(std::vector<BatchOfPaths>& chunk) {
+        if (chunk.empty() || stopped()) return chunk.clear();
+        const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / s_.batch_size);
+        std::vector<RayCounts> counts((chunk.size() + per_tile - 1) / per_tile);
+        parallel_for_ranges(chunk.size(), per_tile, [&](std::size_t begin, std::size_t end) {
+            if (stopped()) return;
+            PathWavefront wavefront(s_);
+            wavefront.trace(std::span(chunk).subspan(begin, end - begin));
+            counts[begin / per_tile] = wavefront.counts();
+        });
+        for (const RayCounts& c : counts) counts_ += c;
+        for (const BatchOfPaths& batch : chunk) {
+            if (!batch.done) continue;
+            pixels_[batch.pixel].add(batch, static_cast<double>(s_.batch_size));
+            ++batches_done_;
+        }
+        chunk.clear();
+        report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
+    }
+
+    void report(double fraction) const {
+        if (monitor_.on_progress) monitor_.on_progress({counts_.rays, fraction, relative_error(pixels_)});
+    }
+
+    const PathScene& s_;
+    const PathOptions& options_;
+    const PathMonitor& monitor_;
+    std::vector<PixelStatistics> pixels_;
+    double foreseen_ = 0;  // batches in all
+    std::int64_t batches_done_ = 0;
+    RayCounts counts_;
+};
+
+void require_valid(const PathOptions& options) {
+    if (options.samples < 2)
+        throw InputError(
+            fmt::format("{} samples a pixel: expected 2 or more, whose spread tells the error", options.samples));
+    if (!(options.until >= 0 && std::isfinite(options.until)))
+        throw InputError(fmt::format("a relative error of {}: expected 0 or more", options.until));
+    if (options.until > 0 && options.max_samples < options.samples)
+        throw InputError(fmt::format("at most {} samples a pixel: expected no less than the least, {}",
+                                     options.max_samples, options.samples));
+}
+
+std::size_t batch_size_for(int samples) {
+    return std::bit_floor(static_cast<unsigned>(std::clamp(samples / least_batches, 1, largest_batch)));
+}
+
+}  // namespace
+
+PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
+                          const PathMonitor& monitor, const KnownIrradiance* known) {
+    require_valid(options);
+    ray_caster.require_made_for(scene);
+    const std::vector<PatchGeometry> geometry = geometry_of(scene);
+    const LightTree lights(scene, geometry, emitted_powers(scene, geometry));
+    std::optional<KnownLight> known_light;
+    if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
+    const PathScene path_scene{
+        scene,
+        ray_caster,
+        Camera(view, options.width, options.height, scene.origin),
+        geometry,
+        lights,
+        sky_radiance(scene),
+        options.emitter_sampling,
+        options.seed,
+        options.width,
+        2 * std::tan(view.fov * (std::numbers::pi_v<float> / 360)) / static_cast<float>(options.height),
+        batch_size_for(options.samples),
+        known_light ? &*known_light : nullptr};
+    PathPicture picture(path_scene, options, monitor);
+    picture.trace();
+    return picture.result();
+}
+
+}  // namespace interflect::inline detail

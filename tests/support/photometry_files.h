@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace interflect::testing_support {
+
+/// The text of a file of measured light, in parts that a test can change.
+struct IesText {
+    std::string version = "IESNA:LM-63-2002\n[TEST] made here\n";
+    std::string tilt = "TILT=NONE\n";
+    double lamps = 1, lumens = 1000, multiplier = 1;
+    int type = 1, unit = 2;
+    std::string opening = "0 0 0";
+    double ballast_factor = 1, last_factor = 1;
+    std::vector<double> vertical{0, 90}, horizontal{0};
+    std::function<double(double, double)> intensity = [](double, double) { return 100; };  ///< Of vertical, horizontal.
+    std::string line_break = "\n", separator = " ";
+
+    std::string str() const;
+};
+
+/// EULUMDAT.
+struct LdtText {
+    int symmetry = 0;
+    std::vector<double> c{0}, gamma{0, 90};  ///< [degrees]
+    double length = 0, width = 0;            ///< Of the opening [mm].
+    double conversion = 1, tilt = 0, lumens = 1000;
+    int lamps = 1, lamp_sets = 1;
+    std::function<double(double, double)> intensity = [](double, double) { return 100; };  ///< Of gamma, C; cd/klm.
+    std::string line_break = "\r\n";
+
+    std::string str() const;  ///< With the planes that its symmetry asks for.
+};
+
+/// first, first + step, ..., last
+std::vector<double> range(double first, double last, double step);
+
+}  // namespace interflect::testing_support
