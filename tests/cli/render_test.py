@@ -170,7 +170,7 @@ class OptionsWithoutEffect(RenderTest):
             "--min-area": "0.1",
             "--mesh-size": "0.1",
             "--epsilon": "1e-6",
-            "--importance": "none",
+            "--importance": "off",
             "--curve-divisions": "3",
             "--max-patches": "1M",
             "--stats": "stats.json",
