@@ -303,9 +303,11 @@ TEST_P(Turned, LightAFloorAsTheFileSays) {
     constexpr int runs = 12;
     std::vector<std::vector<double>> irradiance(scene.patches.size());
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        const Solution solution =
-            solve(scene, ray_caster,
-                  {.method = find_method("srr"), .rays = 200'000, .seed = seed, .points = PointSet::random});
+        const Solution solution = solve(scene, ray_caster,
+                                        {.method = find_method("srr"),
+                                         .limits = {.rays = 200'000},
+                                         .seed = seed,
+                                         .experimental = {.points = PointSet::random}});
         for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i].push_back(solution.irradiance[i].x);
     }
     std::vector<double> p_values;
