@@ -17,7 +17,7 @@
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 #include "interflect/solver/transport.h"
 
 namespace interflect {

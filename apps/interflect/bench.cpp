@@ -21,7 +21,7 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solve.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 #include "interflect/solver/transport.h"
 
 namespace interflect::command {

@@ -74,7 +74,7 @@ View view_to_draw(const Scene& scene, const ViewOptions& options) {
 /// What goes to the file, and what is said of it.
 struct Picture {
     Image image;
-    std::string quantity = "luminance [cd/m^2]";
+    std::string quantity = "radiance [cd/m^2]";
     std::optional<float> exposure;  // none where it has no meaning
     std::int64_t non_finite_pixels = 0;
 };

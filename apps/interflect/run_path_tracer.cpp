@@ -72,7 +72,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
     log_outcome(solution ? "final gathering" : "path tracing", traced, seconds());
     if (error_image) {
         write_image(*error_image, traced.standard_error,
-                    {view, "standard error of luminance [cd/m^2]", scene.name, INTERFLECT_VERSION, options.seed});
+                    {view, "standard error of radiance [cd/m^2]", scene.name, INTERFLECT_VERSION, options.seed});
     }
     return traced;
 }

@@ -31,7 +31,7 @@ constexpr bool needs_tone_mapping(ImageFormat format) {
 /// it has 64 bits) and .version; names are escaped() (base/escapes.h).
 struct ImageMetadata {
     View view;
-    std::string quantity = "luminance [cd/m^2]";  ///< With its unit.
+    std::string quantity = "radiance [cd/m^2]";  ///< With its unit.
     std::string scene;                            ///< The file it came from.
     std::string version;                          ///< Of this program.
     std::uint64_t seed = 0;

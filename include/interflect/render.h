@@ -53,7 +53,7 @@ struct RenderOptions {
 
 /// A picture with counts of its rays.
 struct Rendering {
-    /// Luminance L = (M + rho H) / pi of what each pixel sees, the mean over its square; where rays escape, the sky.
+    /// Radiance L = (M + rho H) / pi of what each pixel sees, the mean over its square; where rays escape, the sky.
     /// [cd/m^2] where exitance M and irradiance H are photometric [lm/m^2], else [W/(m^2 sr)].
     Image image;
     std::int64_t rays = 0;

@@ -205,7 +205,7 @@ class Pictures(RenderTest):
         expected = {
             "interflect.view": "floor",
             "interflect.seed": "7",
-            "interflect.quantity": "luminance [cd/m^2]",
+            "interflect.quantity": "radiance [cd/m^2]",
             "interflect.scene": "room.mgf",
             "interflect.version": self.interflect("--version").stdout.split()[1],
         }
@@ -296,7 +296,7 @@ class PathTracing(CommandTest):
         self.assertNotEqual(run("seed", "--seed", "2"), one)
         self.assertNotEqual(one[0], one[1])
         attributes = exr_attributes(one[1])
-        self.assertEqual(attributes["interflect.quantity"][1], b"standard error of luminance [cd/m^2]")
+        self.assertEqual(attributes["interflect.quantity"][1], b"standard error of radiance [cd/m^2]")
 
     def test_a_target_takes_more_samples_where_they_are_needed(self):
         def paths_and_error(*options):

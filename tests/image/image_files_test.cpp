@@ -189,7 +189,7 @@ TEST(ImageFiles, OpenExrStoresTheMetadata) {
     EXPECT_EQ(point("interflect.look_at"), Imath::V3d(4, 5, 6));
     EXPECT_EQ(vector("interflect.up"), V3f(0, 0, 1));
     EXPECT_EQ(number("interflect.fov"), 45);
-    EXPECT_EQ(text("interflect.quantity"), "luminance [cd/m^2]");
+    EXPECT_EQ(text("interflect.quantity"), "radiance [cd/m^2]");
     EXPECT_EQ(text("interflect.scene"), "office.mgf");
     EXPECT_EQ(text("interflect.version"), "1.2.3");
     EXPECT_EQ(text("interflect.seed"), "18364758544493064720");

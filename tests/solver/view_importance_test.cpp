@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -30,7 +30,7 @@ class Shader {
     Shader& operator=(const Shader&) = delete;
 
     /// L = B / pi with B = M + rho H, where `ray` hit; M and rho are those of the texels there.
-    Rgb luminance_at(const Ray& ray, const Hit& hit) const {
+    Rgb radiance_at(const Ray& ray, const Hit& hit) const {
         const Patch& patch = scene_.patches[hit.patch];
         const Material& material = scene_.materials[patch.material];
         Rgb exitance = material.exitance, reflectance = material.reflectance;
@@ -78,7 +78,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
             if (samples.hits[i].patch == none)
                 ++escaped, sum += sky;
             else
-                sum += RgbD(shader.luminance_at(samples.rays[i], samples.hits[i]));
+                sum += RgbD(shader.radiance_at(samples.rays[i], samples.hits[i]));
         }
         result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
         if (escaped > 0) escaped_rays += escaped;

@@ -7,7 +7,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 
 namespace interflect::inline detail {
 

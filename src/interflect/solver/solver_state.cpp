@@ -13,7 +13,7 @@
 #include "interflect/solver/detail.h"
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/state_archive.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 #include "interflect/solver/view_importance.h"
 
 namespace interflect::inline detail {

@@ -12,7 +12,7 @@
 #include "interflect/error.h"
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/state_archive.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 
 namespace interflect::inline detail {
 

@@ -33,7 +33,7 @@ struct RefinementCandidate;
 /// Solves Eq. 1 of Prikryl et al. 2000 without chance: hierarchical radiosity, Hanrahan, Salzman and Aupperle 1991.
 /// Pairs of elements that face each other are linked, and each gathers light over its links; form factors are
 /// integrals (exchange.h), only visibility is sampled. A link is replaced by four, to the children of one of its
-/// elements, where the bound on its error exceeds epsilon times the reference power of steps.h. The bound is
+/// elements, where the bound on its error exceeds epsilon times the reference power of transport_steps.h. The bound is
 /// rho_i B_j A_i times that on the error of F_ij: all of F_ij in Hanrahan's 'BF refinement'; here, after Smits, Arvo
 /// and Salesin 1992, its variation over an element, and all of it where the pair is partly occluded. Each sweep gathers
 /// one bounce over all links and ends with push-pull; whenever light has settled the links are refined, so that no mesh

@@ -10,7 +10,7 @@
 #include "interflect/solver/iteration_method.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/state_archive.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 
 namespace interflect::inline detail {
 

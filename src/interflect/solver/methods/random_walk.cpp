@@ -7,7 +7,7 @@
 #include "interflect/solver/detail.h"
 #include "interflect/solver/methods/path_batch.h"
 #include "interflect/solver/state_archive.h"
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 
 namespace interflect::inline detail {
 

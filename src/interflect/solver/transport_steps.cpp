@@ -1,4 +1,4 @@
-#include "interflect/solver/steps.h"
+#include "interflect/solver/transport_steps.h"
 
 #include <cmath>
 #include <utility>
