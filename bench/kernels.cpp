@@ -17,8 +17,8 @@
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
-#include "interflect/solver/transport_steps.h"
 #include "interflect/solver/transport.h"
+#include "interflect/solver/transport_steps.h"
 
 namespace interflect {
 namespace {

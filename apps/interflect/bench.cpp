@@ -21,8 +21,8 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solve.h"
-#include "interflect/solver/transport_steps.h"
 #include "interflect/solver/transport.h"
+#include "interflect/solver/transport_steps.h"
 
 namespace interflect::command {
 

@@ -32,8 +32,8 @@ constexpr bool needs_tone_mapping(ImageFormat format) {
 struct ImageMetadata {
     View view;
     std::string quantity = "radiance [cd/m^2]";  ///< With its unit.
-    std::string scene;                            ///< The file it came from.
-    std::string version;                          ///< Of this program.
+    std::string scene;                           ///< The file it came from.
+    std::string version;                         ///< Of this program.
     std::uint64_t seed = 0;
     float exposure = 0;  ///< Suggested for display, [stops]: see exposure in tone_map.h.
 };
