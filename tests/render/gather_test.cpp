@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "interflect/base/random.h"
@@ -20,8 +19,6 @@ namespace interflect {
 namespace {
 
 using namespace testing_support;
-
-constexpr double pi = std::numbers::pi;
 
 double mean_of(const Image& image) {
     double sum = 0;

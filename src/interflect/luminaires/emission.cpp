@@ -148,7 +148,10 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     for (std::size_t begin = 0; begin < rays.size(); begin += PointBlock::capacity) {
         const std::size_t count = std::min(PointBlock::capacity, rays.size() - begin);
         fill_points(set, key, first_sample + begin, count, points);
-        const auto& [a, b, c, d] = points.coordinate;
+        const auto& a = points.coordinate[0];
+        const auto& b = points.coordinate[1];
+        const auto& c = points.coordinate[2];
+        const auto& d = points.coordinate[3];
         for (std::size_t i = 0; i < count; ++i) {
             const float u = (column + a[i]) / cells_per_side, v = (row + b[i]) / cells_per_side;
             rays[begin + i] = std::visit([&](const auto& shape) { return shape.ray(u, v, c[i], d[i]); }, emitter.shape);
