@@ -1,6 +1,5 @@
 // Measured light in solution files: its web once, however many luminaires share it, and every number as it was.
 //
-// Seen to fail when the pole, the axis of a cylinder or the mirror image is not read back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

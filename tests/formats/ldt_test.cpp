@@ -1,7 +1,6 @@
 // What stands in EULUMDAT files beside the angles, what is tolerated with a warning, and what is an error with a line.
 //
-// Seen to fail when the conversion factor or the flux of the lamps is forgotten, when the opening's length runs along
-// C0.
+// Seen to fail when the opening's length runs along C0, and when a half plane is taken for another.
 #include "interflect/formats/ldt.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,6 @@
 // `ies` in MGF files, and luminaires that are placed beside those of a scene's file.
 //
-// Seen to fail when the multiplier is forgotten, when the transform around an `ies` does not turn it, when a mirror
-// image keeps its sides.
+// Seen to fail when the transform around an `ies` does not turn it, when a mirror image keeps its sides.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
