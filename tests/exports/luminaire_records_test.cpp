@@ -1,5 +1,4 @@
 // Measured light in solution files: its web once, however many luminaires share it, and every number as it was.
-//
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
