@@ -155,6 +155,26 @@ TEST(Denoise, RemovesNoiseAlone) {
     EXPECT_LT(std::sqrt(after), std::sqrt(before) / 5);
 }
 
+/// Where nothing is hit there is the sky, and none of it on what is beside it.
+TEST(Denoise, LeavesTheSkyAsItIs) {
+    constexpr int side = 32;
+    PictureLayers layers = noisy_wall(side);
+    const Image before = denoise(layers);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side / 2; ++x) {
+            const auto i = static_cast<std::size_t>(y * side + x);
+            layers.emitted.pixels[i] = Rgb(50);
+            layers.direct.pixels[i] = layers.albedo.pixels[i] = layers.normal.pixels[i] = Rgb(0);
+            layers.position.pixels[i] = Rgb(0);
+            layers.direct_variance[i] = layers.depth[i] = 0;
+        }
+    const Image picture = denoise(layers);
+    for (int y = 0; y < side; ++y) {
+        EXPECT_EQ(picture.at(0, y), Rgb(50));
+        EXPECT_NEAR(picture.at(side - 1, y).x / before.at(side - 1, y).x, 1, 0.2);
+    }
+}
+
 /// Two faces that meet at a right angle, and two parallel ones of which one is nearer, do not shade into each other.
 TEST(Denoise, StopsAtEdges) {
     constexpr int side = 32;

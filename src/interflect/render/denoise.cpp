@@ -95,9 +95,11 @@ class Band {
         for (int y = first_; y < end_; ++y)
             for (int x = 0; x < width_; ++x) {
                 const std::size_t i = at(x, y), k = i - at(0, first_);
+                picture.pixels[i] = layers_.emitted.pixels[i];
+                if (!(layers_.depth[i] > 0)) continue;  // nothing is there that could reflect
                 Rgb irradiance(0);
                 for (const auto& sums : sums_) irradiance += Rgb(sums[0][k], sums[1][k], sums[2][k]) / sums[3][k];
-                picture.pixels[i] = layers_.emitted.pixels[i] + floored(layers_.albedo.pixels[i]) * irradiance;
+                picture.pixels[i] += floored(layers_.albedo.pixels[i]) * irradiance;
             }
     }
 
