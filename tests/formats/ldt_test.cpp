@@ -78,12 +78,7 @@ TEST_P(LdtOddity, IsToleratedWithOneWarning) {
     EXPECT_EQ(found.warnings.entries()[0].kind, GetParam().kind);
 }
 
-struct Malformed {
-    std::string name, text, message;
-};
-std::ostream& operator<<(std::ostream& out, const Malformed& m) { return out << m.name; }
-
-std::vector<Malformed> malformed() {
+std::vector<MalformedText> malformed() {
     const std::string good = LdtText().str();
     const std::vector<double> four{0, 90, 180, 270};
     return {
@@ -128,18 +123,12 @@ std::vector<Malformed> malformed() {
     };
 }
 
-class MalformedLdt : public testing::TestWithParam<Malformed> {};
+class MalformedLdt : public testing::TestWithParam<MalformedText> {};
 INSTANTIATE_TEST_SUITE_P(All, MalformedLdt, testing::ValuesIn(malformed()),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(MalformedLdt, IsAnErrorThatNamesTheLine) {
-    try {
-        read(GetParam().text);
-        FAIL();
-    } catch (const InputError& e) {
-        EXPECT_THAT(e.what(), HasSubstr("lamp.ldt:"));
-        EXPECT_THAT(e.what(), HasSubstr(GetParam().message));
-    }
+    expect_error([](const std::string& text) { read(text); }, GetParam(), "lamp.ldt");
 }
 
 }  // namespace

@@ -134,37 +134,33 @@ TEST_P(EveryMethod, HasTheDenseSolutionAsItsMeanAndCountsWhatEscapes) {
     EXPECT_LT(t_test(escaped, 1.05 * escaping), false_alarm) << "would notice 5%";
 }
 
+/// That the mean of the runs is what a long run of srr finds.
+void expect_agreement(const Scene& scene, const std::vector<Solution>& sample) {
+    SolveOptions reference{.method = find_method("srr")};
+    reference.limits.rays = 8'000'000;
+    const Solution expected = solve(scene, RayCaster(scene), reference);
+    const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
+    EXPECT_GT(p_value(sample, exact, 1), false_alarm);
+    EXPECT_LT(p_value(sample, exact, 1.05), false_alarm) << "would notice 5%";
+}
+
 // The back of a one-sided face lets light through, one way only: a screen that faces the lamp leaves the wall behind it
 // in shadow, but is no obstacle to what that wall sends.
 TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
     Scene scene = colourful_box();
     const std::uint32_t white = add_material(scene, Rgb(0.7f), Rgb(0));
     add_rectangle(scene, {0.2f, 0.3f, 1.2f}, {0.6f, 0, 0}, {0, 1.3f, 0.2f}, white);
-    const RayCaster ray_caster(scene);
-    SolveOptions reference{.method = find_method("srr")};
-    reference.limits.rays = 8'000'000;
-    const Solution expected = solve(scene, ray_caster, reference);
-    const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
-    const std::vector<Solution> sample = solutions(scene);
-    EXPECT_GT(p_value(sample, exact, 1), false_alarm);
-    EXPECT_LT(p_value(sample, exact, 1.05), false_alarm) << "would notice 5%";
+    expect_agreement(scene, solutions(scene));
 }
 
 TEST_P(EveryMethod, ShootsOrRefusesLightSourcesThatAreNoSurfaces) {
     Scene scene = colourful_box();
     scene.luminaires = {{"lamp", 0, PointLight{{0.4f, 0.7f, 1.9f}, {20, 30, 20}}}};
-    const RayCaster ray_caster(scene);
     if (!GetParam().options.method.takes_luminaires) {
-        EXPECT_THROW(solve(scene, ray_caster, options(1000, 1)), InputError);
+        EXPECT_THROW(solve(scene, RayCaster(scene), options(1000, 1)), InputError);
         return;
     }
-    SolveOptions reference{.method = find_method("srr")};
-    reference.limits.rays = 8'000'000;
-    const Solution expected = solve(scene, ray_caster, reference);
-    const std::vector<RgbD> exact(expected.irradiance.begin(), expected.irradiance.end());
-    const std::vector<Solution> sample = solutions(scene);
-    EXPECT_GT(p_value(sample, exact, 1), false_alarm);
-    EXPECT_LT(p_value(sample, exact, 1.05), false_alarm) << "would notice 5%";
+    expect_agreement(scene, solutions(scene));
 }
 
 // Without a view the estimated error is that of all surfaces, which is known here. From eight seeds its root mean

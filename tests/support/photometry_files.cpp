@@ -1,6 +1,12 @@
 #include "tests/support/photometry_files.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
 #include <sstream>
+
+#include "interflect/error.h"
 
 namespace interflect::testing_support {
 
@@ -40,6 +46,19 @@ std::string LdtText::str() const {
     for (std::size_t i = first; i < first + count; ++i)
         for (const double g : gamma) put(intensity(g, c[i % n]));
     return text.str();
+}
+
+std::ostream& operator<<(std::ostream& out, const MalformedText& malformed) { return out << malformed.name; }
+
+void expect_error(const std::function<void(const std::string& text)>& read, const MalformedText& malformed,
+                  const std::string& file) {
+    try {
+        read(malformed.text);
+        ADD_FAILURE() << malformed.text;
+    } catch (const InputError& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr(file + ":"));
+        EXPECT_THAT(e.what(), testing::HasSubstr(malformed.message));
+    }
 }
 
 std::vector<double> range(double first, double last, double step) {

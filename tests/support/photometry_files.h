@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,16 @@ struct LdtText {
 
     std::string str() const;  ///< With the planes that its symmetry asks for.
 };
+
+/// What is wrong with a file, and words of the error that says so.
+struct MalformedText {
+    std::string name, text, message;
+};
+std::ostream& operator<<(std::ostream& out, const MalformedText& malformed);
+
+/// Expects that `read` throws an InputError with the message, in a line of the file.
+void expect_error(const std::function<void(const std::string& text)>& read, const MalformedText& malformed,
+                  const std::string& file);
 
 /// first, first + step, ..., last
 std::vector<double> range(double first, double last, double step);
