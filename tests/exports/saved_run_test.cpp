@@ -172,11 +172,14 @@ TEST_P(SavedRun, HasTheSameBitsWhereverItIsStopped) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
     Solver solver(scene, GetParam().options);
     std::uint64_t random = 7;
-    for (bool is_finished = false; !is_finished;) {
+    // A step that is stopped is undone: times grow, so that the run ends however slow the machine is.
+    double longer = 1;
+    for (bool is_finished = false; !is_finished; longer *= 1.05) {
         std::atomic<bool> stop = false;
         random = mix(random, 1);
+        const std::chrono::duration<double, std::milli> until_stop(longer * (1 + static_cast<double>(random % 20)));
         std::thread stopper([&] {
-            std::this_thread::sleep_for(std::chrono::microseconds(1000 + random % 20000));
+            std::this_thread::sleep_for(until_stop);
             stop = true;
         });
         is_finished = solver.advance({}, {{}, &stop}).is_finished;
