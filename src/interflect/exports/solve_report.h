@@ -10,8 +10,8 @@ namespace interflect::inline detail {
 /// beside it, and max_elements, which follows the memory of the machine.
 Json json_of(const SolveOptions& options);
 
-/// Sets what json_of() told. @throws nlohmann::json::exception, InputError where something is missing or unknown.
-void read_options(const Json& json, SolveOptions& options);
+/// Sets what json_of() has stored. @throws nlohmann::json::exception, InputError where something is missing or unknown.
+void read_options(const Json& stored, SolveOptions& options);
 
 /// Where a run stood after an iteration, but for the time that it took: the same input gives the same text. An error
 /// that is not known is null.

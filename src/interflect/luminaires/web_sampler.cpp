@@ -39,6 +39,7 @@ double invert_band(double t0, double t1, double a, double b, double target) {
 
 std::vector<double> all_radians(const std::vector<float>& angles) {
     std::vector<double> result;
+    result.reserve(angles.size());
     for (const float angle : angles) result.push_back(radians(angle));
     return result;
 }

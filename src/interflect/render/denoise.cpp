@@ -32,6 +32,10 @@ struct Field {
     std::vector<float> variance;
 };
 
+std::size_t pixel_at(int x, int y, int width) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
 /// Means of `values` over squares; the variance of a few batches is itself too noisy to be used pixel by pixel.
 std::vector<float> box_mean(const std::vector<float>& values, int width, int height, int radius) {
     std::vector<float> means(values.size());
@@ -42,8 +46,8 @@ std::vector<float> box_mean(const std::vector<float>& values, int width, int hei
                 int count = 0;
                 for (int v = std::max(0, y - radius); v <= std::min(height - 1, y + radius); ++v)
                     for (int u = std::max(0, x - radius); u <= std::min(width - 1, x + radius); ++u, ++count)
-                        sum += values[static_cast<std::size_t>(v * width + u)];
-                means[static_cast<std::size_t>(y * width + x)] = sum / static_cast<float>(count);
+                        sum += values[pixel_at(u, v, width)];
+                means[pixel_at(x, y, width)] = sum / static_cast<float>(count);
             }
     });
     return means;
@@ -77,8 +81,8 @@ class Band {
           height_(layers.albedo.height),
           first_(first_row),
           end_(end_row),
-          difference_(static_cast<std::size_t>(width_ * (end_row - first_row + 2 * patch_radius))),
-          shape_(static_cast<std::size_t>(width_ * (end_row - first_row))) {
+          difference_(at(0, end_row - first_row + 2 * patch_radius)),
+          shape_(at(0, end_row - first_row)) {
         for (auto& sums : sums_)
             for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
     }
@@ -104,7 +108,7 @@ class Band {
     }
 
   private:
-    std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * width_ + x); }
+    std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
     /// Columns of which the neighbour is in the picture.
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
@@ -137,7 +141,7 @@ class Band {
         const auto [begin, end] = columns(dx);
         for (int y = first_ - patch_radius; y < end_ + patch_radius; ++y) {
             if (!has_row(y) || !has_row(y + dy)) continue;
-            float* row = &difference_[static_cast<std::size_t>((y - first_ + patch_radius) * width_)];
+            float* row = &difference_[at(0, y - first_ + patch_radius)];
             const std::size_t i = at(0, y), k = at(0, y + dy) + static_cast<std::size_t>(dx);
             for (int x = begin; x < end; ++x) {
                 const auto c = static_cast<std::size_t>(x);
