@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "interflect/image.h"
@@ -27,8 +28,8 @@ constexpr bool needs_tone_mapping(ImageFormat format) {
 }
 
 /// What an image shows and how it came to be. An OpenEXR file keeps it as the attributes interflect.view, .eye,
-/// .look_at (both in world coordinates, double precision), .up, .fov, .quantity, .scene, .exposure, .seed (text, since
-/// it has 64 bits) and .version; names are escaped() (base/escapes.h).
+/// .look_at (both in world coordinates, double precision), .up, .fov or .extent, .quantity, .scene, .exposure, .seed
+/// (text, since it has 64 bits) and .version; names are escaped() (base/escapes.h).
 struct ImageMetadata {
     View view;
     std::string quantity = "radiance [cd/m^2]";  ///< With its unit.
@@ -38,15 +39,22 @@ struct ImageMetadata {
     float exposure = 0;  ///< Suggested for display, [stops]: see exposure in tone_map.h.
 };
 
+/// A further layer of an OpenEXR file.
+struct ImageLayer {
+    std::string name;               ///< Its channels are name.R and so on; empty: just R.
+    std::string channels;           ///< A letter each: "RGB", "XYZ", "Z".
+    std::span<const float> values;  ///< Row by row, row 0 at the top, the channels of a pixel side by side.
+};
+
 /// Writes an image in the format of the extension of `path`. Same arguments, same bytes.
 /// @param image     Linear Rec. 709. For .png and .jpg tone-mapped: values are clamped to [0, 1]; for .hdr they are
 /// clamped
 ///                  to [0, 2^126]. In these three a pixel that is not finite becomes pure magenta, to be seen.
-/// @param metadata  Kept by .exr only.
+/// @param metadata, layers  Kept by .exr only.
 /// @throws InputError for an unknown extension and as require_pixels() does; std::runtime_error with the path and the
 ///         reason where the file cannot be written.
-void write_image(const std::filesystem::path& path, const Image& image,
-                 const ImageMetadata& metadata = ImageMetadata());
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
+                 std::span<const ImageLayer> layers = {});
 
 /// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png is decoded from sRGB).
 /// An .exr file must have channels R, G and B; its data window is the image. Alpha is ignored.

@@ -106,5 +106,39 @@ TEST(FitScale, AlwaysHasARange) {
     expect_range(fit_scale({7, 7}, Spacing::logarithmic), 0.7f, 7);
 }
 
+TEST(RoundScale, EndsAtARoundNumber) {
+    for (const auto& [highest, expected] :
+         {std::pair(0.9f, 1.0f), std::pair(1.0f, 1.0f), std::pair(1.2f, 1.5f), std::pair(540.0f, 600.0f),
+          std::pair(81.0f, 100.0f), std::pair(0.03f, 0.03f)}) {
+        const ColourScale scale = fit_round_scale({highest / 3, highest});
+        EXPECT_EQ(scale.low, 0);
+        EXPECT_FLOAT_EQ(scale.high, expected);
+        EXPECT_EQ(scale.spacing, Spacing::linear);
+    }
+}
+
+TEST(RoundScale, LampsDoNotDecide) {
+    std::vector<float> values(1000, 290.0f);
+    std::fill_n(values.begin(), 15, 1e6f);
+    std::fill_n(values.begin() + 100, 500, 0.0f);
+    values[700] = infinite;
+    EXPECT_FLOAT_EQ(fit_round_scale(values).high, 1e6f) << "15 of 484 lit pixels are more than 2%";
+    std::fill_n(values.begin(), 10, 200.0f);
+    EXPECT_FLOAT_EQ(fit_round_scale(values).high, 300);
+    EXPECT_EQ(fit_round_scale({0, -1, infinite}).high, 1);
+}
+
+TEST(FalseColours, OfAPicture) {
+    Image values(4, 1);
+    values.at(1, 0) = Rgb(5);
+    values.at(2, 0) = Rgb(20);
+    values.at(3, 0) = Rgb(infinite);
+    const Image shown = false_colours(values, {0, 10, Spacing::linear});
+    EXPECT_EQ(shown.at(0, 0), Rgb(0)) << "nothing is black";
+    EXPECT_EQ(shown.at(1, 0), false_colour(0.5f));
+    EXPECT_EQ(shown.at(2, 0), false_colour(1));
+    EXPECT_EQ(shown.at(3, 0), Rgb(infinite));
+}
+
 }  // namespace
 }  // namespace interflect

@@ -196,6 +196,29 @@ TEST(ImageFiles, OpenExrStoresTheMetadata) {
     EXPECT_EQ(number("interflect.exposure"), -6.5f);
 }
 
+/// Every value of every layer, and the picture itself as ever.
+TEST(ImageFiles, OpenExrKeepsLayersBesideThePicture) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.exr";
+    const Image image = gradient(3, 2), normals = gradient(3, 2);
+    const std::vector<float> depth{1, 2, 3, 4, 5, 1e9f};
+    const std::vector<ImageLayer> layers{{"normal", "XYZ", {&normals.pixels.data()->x, 3 * normals.pixels.size()}},
+                                         {"", "Z", depth}};
+    write_image(path, image, {}, layers);
+    EXPECT_EQ(read_image(path).pixels, image.pixels);
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    std::vector<float> z(depth.size()), y(depth.size());
+    Imf::FrameBuffer buffer;
+    buffer.insert("Z", Imf::Slice::Make(Imf::FLOAT, z.data(), window));
+    buffer.insert("normal.Y", Imf::Slice::Make(Imf::FLOAT, y.data(), window));
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    EXPECT_EQ(z, depth);
+    for (std::size_t i = 0; i < y.size(); ++i) EXPECT_EQ(y[i], normals.pixels[i].y);
+    EXPECT_THROW(write_image(path, gradient(4, 2), {}, layers), InputError);
+}
+
 TEST(ImageFiles, FieldOfViewIsReadFromWhereItIsNoted) {
     const TemporaryFolder folder;
     ImageMetadata metadata;

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "interflect/base/escapes.h"
+#include "interflect/error.h"
 #include "interflect/image/image_codecs.h"
 
 namespace interflect::inline detail::codecs {
@@ -39,7 +40,10 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     point("interflect.eye", metadata.view.eye);
     point("interflect.look_at", metadata.view.look_at);
     vector("interflect.up", metadata.view.up);
-    number(fov_attribute, metadata.view.fov);
+    if (metadata.view.extent > 0)
+        number("interflect.extent", metadata.view.extent);
+    else
+        number(fov_attribute, metadata.view.fov);
     text("interflect.quantity", metadata.quantity);
     text("interflect.scene", metadata.scene);
     number("interflect.exposure", metadata.exposure);
@@ -76,6 +80,29 @@ Imf::FrameBuffer frame_buffer(const Image& image, const Imath::Box2i& window) {
     return buffer;
 }
 
+std::string channel_name(const ImageLayer& layer, std::size_t channel) {
+    return (layer.name.empty() ? "" : layer.name + ".") + layer.channels[channel];
+}
+
+void require_values(const ImageLayer& layer, const Image& image) {
+    const std::size_t expected = image.pixels.size() * layer.channels.size();
+    if (layer.values.size() != expected)
+        throw InputError(fmt::format("layer '{}': {} values, but {} x {} pixels with the channels {} need {}",
+                                     layer.name, layer.values.size(), image.width, image.height, layer.channels,
+                                     expected));
+}
+
+void insert_layer(const ImageLayer& layer, const Image& image, Imf::FrameBuffer& buffer, Imf::Header& header) {
+    require_values(layer, image);
+    const std::size_t pixel = layer.channels.size() * sizeof(float),
+                      row = pixel * static_cast<std::size_t>(image.width);
+    for (std::size_t c = 0; c < layer.channels.size(); ++c) {
+        const std::string name = channel_name(layer, c);
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, layer.values.data() + c, header.dataWindow(), pixel, row));
+    }
+}
+
 void require_channels(const Imf::ChannelList& channels) {
     std::string present;
     for (auto i = channels.begin(); i != channels.end(); ++i) present += std::string(" ") + i.name();
@@ -86,16 +113,18 @@ void require_channels(const Imf::ChannelList& channels) {
 
 }  // namespace
 
-std::string encode_exr(const Image& image, const ImageMetadata& metadata) {
+std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::addChromaticities(header, Imf::Chromaticities());  // the default: Rec. 709 primaries, D65
     insert_metadata(metadata, header);
     for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::FrameBuffer buffer = frame_buffer(image, header.dataWindow());
+    for (const ImageLayer& layer : layers) insert_layer(layer, image, buffer, header);
     ByteSink sink;
     {
         Imf::OutputFile file(sink, header);
-        file.setFrameBuffer(frame_buffer(image, header.dataWindow()));
+        file.setFrameBuffer(buffer);
         file.writePixels(image.height);
     }  // which completes the table of line offsets
     return sink.release();

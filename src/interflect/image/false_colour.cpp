@@ -49,4 +49,25 @@ ColourScale fit_scale(std::vector<float> values, Spacing spacing) {
     return low < high ? ColourScale{low, high, spacing} : ColourScale{high / 10, high, spacing};
 }
 
+ColourScale fit_round_scale(std::vector<float> values) {
+    std::erase_if(values, [](float v) { return !(std::isfinite(v) && v > 0); });
+    if (values.empty()) return {};
+    constexpr double exceeding_share = 0.02;
+    const auto exceeding = static_cast<std::ptrdiff_t>(exceeding_share * static_cast<double>(values.size()));
+    const auto highest = values.end() - 1 - exceeding;
+    std::nth_element(values.begin(), highest, values.end());
+    const float power = std::pow(10.0f, std::floor(std::log10(*highest)));
+    constexpr float rounding = 1.0001f;
+    for (const float factor : {1.0f, 1.5f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 8.0f})
+        if (*highest <= rounding * factor * power) return {0, factor * power, Spacing::linear};
+    return {0, 10 * power, Spacing::linear};
+}
+
+Image false_colours(const Image& values, const ColourScale& scale) {
+    Image image = values;
+    for (Rgb& pixel : image.pixels)
+        if (std::isfinite(pixel.x) && pixel.x != 0) pixel = false_colour(scale.position(pixel.x));
+    return image;
+}
+
 }  // namespace interflect::inline detail

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "interflect/colour.h"
+#include "interflect/image.h"
 
 namespace interflect::inline detail {
 
@@ -30,5 +31,13 @@ struct ColourScale {
 /// decades. Values that are not finite do not count, nor do those <= 0 for a logarithmic scale; 0 ... 1 or 0.1 ... 1
 /// where none is left.
 ColourScale fit_scale(std::vector<float> values, Spacing spacing);
+
+/// The linear scale from 0 to a round number that all but the highest 2% of the values above 0 do not exceed: 1, 1.5,
+/// 2, 3, 4, 5, 6 or 8 times a power of ten. Values that are not finite do not count; 0 ... 1 where none is left.
+ColourScale fit_round_scale(std::vector<float> values);
+
+/// Each pixel's number in its false colour.
+/// @param values  The first channel counts. 0 is black; what is not finite stays as it is.
+Image false_colours(const Image& values, const ColourScale& scale);
 
 }  // namespace interflect::inline detail

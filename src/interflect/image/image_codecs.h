@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,7 +23,8 @@ Image decode_png(std::string_view bytes, std::int64_t most_pixels);
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes, std::int64_t most_pixels);
 
-std::string encode_exr(const Image& image, const ImageMetadata& metadata);
+/// @throws InputError for a layer that has not as many values as the image's pixels need.
+std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers);
 Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);
 

@@ -49,7 +49,8 @@ void write_bytes(const fs::path& path, const std::string& bytes, const fs::path&
             fmt::format("cannot write '{}': {}", name.string(), errno != 0 ? std::strerror(errno) : "it failed"));
 }
 
-std::string encode(ImageFormat format, const Image& image, const ImageMetadata& metadata) {
+std::string encode(ImageFormat format, const Image& image, const ImageMetadata& metadata,
+                   std::span<const ImageLayer> layers) {
     switch (format) {
         case ImageFormat::png:
             return codecs::encode_png(image);
@@ -60,7 +61,7 @@ std::string encode(ImageFormat format, const Image& image, const ImageMetadata& 
         case ImageFormat::exr:
             break;
     }
-    return codecs::encode_exr(image, metadata);
+    return codecs::encode_exr(image, metadata, layers);
 }
 
 Image read_as(ImageFormat format, const fs::path& path, std::int64_t most_pixels) {
@@ -111,16 +112,18 @@ ImageFormat require_image_format(const fs::path& path) {
                      fmt::format("no image format has the extension '{}', expected one of{}", extension, expected));
 }
 
-void write_image(const fs::path& path, const Image& image, const ImageMetadata& metadata) {
+void write_image(const fs::path& path, const Image& image, const ImageMetadata& metadata,
+                 std::span<const ImageLayer> layers) {
     const ImageFormat format = require_image_format(path);
     require_pixels(image);
-    write_bytes(path, encode(format, image, metadata), path);
+    write_bytes(path, encode(format, image, metadata, layers), path);
 }
 
-void detail::write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata) {
+void detail::write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata,
+                         std::span<const ImageLayer> layers) {
     const ImageFormat format = require_image_format(file.final_path());
     require_pixels(image);
-    write_bytes(file.temporary_path(), encode(format, image, metadata), file.final_path());
+    write_bytes(file.temporary_path(), encode(format, image, metadata, layers), file.final_path());
     file.commit();
 }
 

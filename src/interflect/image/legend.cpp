@@ -1,70 +1,25 @@
 #include "interflect/image/legend.h"
 
 #include <fmt/format.h>
-#include <stb/stb_easy_font.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 
 #include "interflect/error.h"
+#include "interflect/image/lettering.h"
 #include "interflect/image_files.h"
 
 namespace interflect::inline detail {
 
 namespace {
 
-const Rgb paper(0.01f, 0.01f, 0.01f), ink(0.8f, 0.8f, 0.8f);
-
 /// The places of a legend's parts, in dots of the font, from the legend's top.
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
-              bottom = 43;
+              legend_bottom = 43;
 /// Round values that a scale has at least room for.
 constexpr int least_values = 3;
 /// Room for a number with the space to the next one, likewise, and the least such space.
 constexpr int number_width = 64, number_gap = 8;
-
-/// Pixels a dot.
-int dot_size(int picture_width) {
-    constexpr int dots = 512;  // that a picture is wide, or a little more
-    return std::max(1, (picture_width + dots / 4) / dots);
-}
-
-/// Fills the part of a rectangle that lies in the image; right and bottom are exclusive [pixels].
-void fill(Image& image, int left, int top, int right, int low, const Rgb& colour) {
-    for (int y = std::max(top, 0); y < std::min(low, image.height); ++y)
-        for (int x = std::max(left, 0); x < std::min(right, image.width); ++x) image.at(x, y) = colour;
-}
-
-/// [pixels]
-int text_width(std::string text, int dot) { return dot * stb_easy_font_width(text.data()); }
-
-/// Text is drawn with dots of a whole number of pixels, from its top left corner.
-class Pen {
-  public:
-    Pen(Image& image, int dot) : image_(image), dot_(dot) {}
-
-    void write(int left, int top, std::string text) {
-        struct Vertex {
-            float x, y, z;
-            std::array<unsigned char, 4> colour;
-        };
-        using Rectangle = std::array<Vertex, 4>;  // clockwise from the top left
-        constexpr std::size_t most_a_letter = 24;
-        std::vector<Rectangle> rectangles(most_a_letter * text.size());
-        const int count = stb_easy_font_print(0, 0, text.data(), nullptr, rectangles.data(),
-                                              static_cast<int>(rectangles.size() * sizeof(Rectangle)));
-        rectangles.resize(static_cast<std::size_t>(count));
-        const auto pixels = [&](float dots) { return static_cast<int>(std::lround(dots)) * dot_; };
-        for (const Rectangle& r : rectangles)
-            fill(image_, left + pixels(r[0].x), top + pixels(r[0].y), left + pixels(r[2].x), top + pixels(r[2].y), ink);
-    }
-
-  private:
-    Image& image_;
-    int dot_;
-};
 
 void require_valid(const ColourScale& scale) {
     const bool positive = scale.spacing == Spacing::linear || scale.low > 0;
@@ -119,7 +74,6 @@ void draw_strip(Image& image, int top, int dot) {
 
 /// A tick at each round value; a number that would run into the last one is left out.
 void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
-    Pen pen(image, dot);
     const int left = margin * dot, length = strip_length(image, dot);
     int free_from = left;
     for (const float value : round_values(scale, std::max(least_values, length / (number_width * dot)))) {
@@ -129,7 +83,7 @@ void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
         const int width = text_width(number, dot),
                   begin = std::clamp(x - width / 2, left, left + std::max(0, length - width));
         if (begin < free_from) continue;
-        pen.write(begin, top + numbers_top * dot, number);
+        write_text(image, begin, top + numbers_top * dot, number, dot);
         free_from = begin + width + number_gap * dot;
     }
 }
@@ -151,7 +105,7 @@ std::vector<float> round_values(const ColourScale& scale, int most) {
     return multiples(scale, step);
 }
 
-int legend_height(int width) { return bottom * dot_size(width); }
+int legend_height(int width) { return legend_bottom * dot_size(width); }
 
 bool legend_fits(int width, int height, const std::string& title) {
     require_printable(title);
@@ -172,7 +126,7 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
     Image image(picture.width, static_cast<int>(height), paper);
     std::copy(picture.pixels.begin(), picture.pixels.end(), image.pixels.begin());
 
-    Pen(image, dot).write(margin * dot, top + title_top * dot, title);
+    write_text(image, margin * dot, top + title_top * dot, title, dot);
     draw_strip(image, top, dot);
     draw_numbers(image, top, dot, scale);
     return image;

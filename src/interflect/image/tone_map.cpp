@@ -4,59 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "interflect/error.h"
+#include "interflect/image/tone_curves.h"
+#include "interflect/image/visual_adaptation.h"
 
 namespace interflect {
 
 namespace {
 
-constexpr double key = 0.28;                  // what the logarithmic mean becomes, 1 being white
+constexpr double key = 0.2;                   // what the logarithmic mean becomes, 1 being white
 constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at either end
 
-/// Luminance that becomes white under Tonemap::reinhard.
-constexpr float reinhard_white = 4.0f;
-
-/// Input of Hable's curve for an exposed value of 1: with it 0.18 stays 0.18.
-constexpr float filmic_scale = 1.76f;
-/// Input that becomes white [Hable 2010].
-constexpr float filmic_white = 11.2f;
-
-/// Hable, 'Filmic tonemapping for real-time rendering' (SIGGRAPH 2010 course), with the constants given there: a
-/// rational fit of a film's response with a linear part, a short toe and a long shoulder. His (x (a x + c b) + d e) /
-/// (x (a x + b) + d f) - e / f stands here as one fraction, so that 0 gives 0 exactly.
-float hable(float x) {
-    constexpr float a = 0.22f, b = 0.30f, c = 0.10f, d = 0.20f, e = 0.01f, f = 0.30f;
-    return x * (a * (f - e) * x + b * (c * f - e)) / (f * (x * (a * x + b) + d * f));
-}
-
-float filmic(float v) {
-    static const float white = hable(filmic_white);
-    return hable(filmic_scale * std::min(v, filmic_white)) / white;
-}
-
-/// Luminance out over luminance in. // Eq. 4, Reinhard et al. 2002
-float reinhard_gain(float luminance) { return (1 + luminance / (reinhard_white * reinhard_white)) / (1 + luminance); }
-
-Rgb apply_curve(const Rgb& v, Tonemap curve) {
-    switch (curve) {
-        case Tonemap::reinhard:
-            return v * reinhard_gain(luminance(v));
-        case Tonemap::filmic:
-            return Rgb(filmic(v.x), filmic(v.y), filmic(v.z));
-        case Tonemap::linear:
-            break;
-    }
-    return v;
-}
-
-}  // namespace
-
-float automatic_exposure(const Image& image) {
+/// Of the finite pixels where `measure` is above 0, without the lowest and the highest 5%; 0 where there is none.
+double logarithmic_mean(const Image& image, float (*measure)(const Rgb&)) {
     std::vector<float> lit;
+    lit.reserve(image.pixels.size());
     for (const Rgb& pixel : image.pixels)
-        if (is_finite(pixel) && luminance(pixel) > 0) lit.push_back(luminance(pixel));
+        if (is_finite(pixel) && measure(pixel) > 0) lit.push_back(measure(pixel));
     if (lit.empty()) return 0;
     std::sort(lit.begin(), lit.end());
 
@@ -64,19 +31,63 @@ float automatic_exposure(const Image& image) {
     const std::size_t counted = lit.size() - 2 * ignored;
     double stops = 0;
     for (std::size_t i = ignored; i < ignored + counted; ++i) stops += std::log2(lit[i]);
-    return static_cast<float>(std::log2(key) - stops / static_cast<double>(counted));
+    return std::exp2(stops / static_cast<double>(counted));
 }
 
-Image tone_map(const Image& image, float exposure, Tonemap curve) {
+float photopic(const Rgb& colour) { return luminance(colour); }
+float scotopic(const Rgb& colour) { return scotopic_luminance(colour); }
+
+using Operator = std::function<Rgb(const Rgb&)>;
+
+/// From radiance >= 0 to what the display shows, not clipped.
+Operator absolute_operator(const Image& image, Tonemap curve, float white) {
+    const auto adapted = static_cast<float>(logarithmic_mean(image, photopic));
+    if (!(adapted > 0)) return [](const Rgb&) { return Rgb(0); };
+    if (curve == Tonemap::ward) return [factor = ward_factor(adapted, white)](const Rgb& v) { return factor * v; };
+    if (curve == Tonemap::ferwerda)
+        return FerwerdaOperator(adapted, static_cast<float>(logarithmic_mean(image, scotopic)), white);
+    return [brightness = TumblinOperator(adapted, white)](const Rgb& v) {
+        const float l = luminance(v);
+        return l > 0 ? v * (brightness(l) / l) : Rgb(0);
+    };
+}
+
+Rgb apply_curve(const Rgb& v, Tonemap curve) {
+    switch (curve) {
+        case Tonemap::reinhard:
+            return reinhard_curve(v);
+        case Tonemap::filmic:
+            return filmic_curve(v);
+        case Tonemap::agx:
+            return agx_curve(v);
+        default:
+            return v;
+    }
+}
+
+Operator tone_operator(const Image& image, float gain, Tonemap curve, float white) {
+    if (!is_absolute(curve)) return [gain, curve](const Rgb& v) { return apply_curve(gain * v, curve); };
+    return [gain, shown = absolute_operator(image, curve, white)](const Rgb& v) { return gain * shown(v); };
+}
+
+}  // namespace
+
+float automatic_exposure(const Image& image) {
+    const double mean = logarithmic_mean(image, photopic);
+    return mean > 0 ? static_cast<float>(std::log2(key / mean)) : 0;
+}
+
+Image tone_map(const Image& image, float exposure, Tonemap curve, float display_luminance) {
     if (!std::isfinite(exposure)) throw InputError(fmt::format("an exposure of {} stops: expected a number", exposure));
-    const float gain = std::exp2(exposure);
+    if (!(std::isfinite(display_luminance) && display_luminance > 0))
+        throw InputError(fmt::format("a display luminance of {} cd/m^2: expected a number above 0", display_luminance));
+    const Operator shown_of = tone_operator(image, std::exp2(exposure), curve, display_luminance);
     Image shown = image;
     for (Rgb& pixel : shown.pixels) {
         if (!is_finite(pixel)) continue;
-        const Rgb exposed(std::max(0.0f, gain * pixel.x), std::max(0.0f, gain * pixel.y),
-                          std::max(0.0f, gain * pixel.z));
-        const Rgb mapped = apply_curve(exposed, curve);
-        for (int c = 0; c < 3; ++c) pixel[c] = std::min(mapped[c], 1.0f);
+        const Rgb mapped = shown_of(Rgb(std::max(0.0f, pixel.x), std::max(0.0f, pixel.y), std::max(0.0f, pixel.z)));
+        // In this order an overflow's NaN becomes white.
+        for (int c = 0; c < 3; ++c) pixel[c] = std::min(1.0f, mapped[c]);
     }
     return shown;
 }
