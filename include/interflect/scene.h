@@ -25,6 +25,10 @@ struct Material {
     /// Indices into Scene::textures, or none: what the reflectance and the exitance are multiplied by. The products
     /// keep within the limits above.
     std::uint32_t reflectance_texture = none, exitance_texture = none;
+    /// Thin glass: the share of light that goes straight through. With the other reflectances at most 1 in sum.
+    Rgb transmittance{0, 0, 0};
+    /// Share of light that is mirrored: seen from the camera in gathered and path-traced pictures, lost to the solver.
+    Rgb specular_reflectance{0, 0, 0};
 
     bool is_textured() const { return reflectance_texture != none || exitance_texture != none; }
 };
@@ -54,6 +58,9 @@ struct View {
     Imath::V3d look_at{0, 1, 0};  ///< [m]
     V3f up{0, 0, 1};              ///< Need be neither normalised nor perpendicular to the direction of view.
     float fov = 45;               ///< Vertical, full [degrees], in (0, 180).
+    /// Above 0: orthographic, and the picture shows this much from top to bottom [m], whatever `fov` is. Its rays start
+    /// on the plane through the eye, so that nothing behind it is seen: plans and sections. Solve without such a view.
+    float extent = 0;
 };
 
 /// Everything that was read, in metres and linear Rec. 709; immutable once loaded. Patches of a two-sided face are

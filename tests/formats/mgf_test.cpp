@@ -194,9 +194,26 @@ TEST(Mgf, WhatDiffuseTransportLeavesOutIsCountedWithItsShare) {
                              "m y =\n rd .2\nf a b d\nm unused =\n rs .9 0\n");
     EXPECT_EQ(warnings(scene, "specular-reflection"), 1);
     EXPECT_EQ(warnings(scene, "diffuse-transmission"), 1);
-    EXPECT_EQ(warnings(scene, "specular-transmission"), 1);
+    EXPECT_EQ(warnings(scene, "rough-transmission"), 0);
     EXPECT_NE(scene.warnings.entries()[0].message.find(" 20.0% "), std::string::npos)  // .2 of 1
         << scene.warnings.entries()[0].message;
+}
+
+TEST(Mgf, ThinGlassAndMirrorsHaveTheColourInForce) {
+    const Scene scene =
+        read(vertices +
+             "m glass =\n c red = \n  cxy .64 .33\n ts .10632 0\n c\n rd .1\n rs .3 .01\nf a b d\n"
+             "m rough =\n rs .4 .1\n ts .5 .3\nf a b d\nm bright =\n rd .5\n ts .6 0\n rs .2 0\nf a b d\n");
+    EXPECT_NEAR(material_of(scene, 0).transmittance.x, 0.49, 0.01);
+    EXPECT_NEAR(material_of(scene, 0).transmittance.y, 0, 0.01);
+    expect_rgb(material_of(scene, 0).specular_reflectance, 0.3f, 0.3f, 0.3f);
+    expect_rgb(material_of(scene, 2).transmittance, 0.5f, 0.5f, 0.5f);
+    expect_rgb(material_of(scene, 2).specular_reflectance, 0, 0, 0);
+    EXPECT_NEAR(material_of(scene, 4).transmittance.y, 0.375, 1e-5);
+    EXPECT_NEAR(material_of(scene, 4).specular_reflectance.y, 0.125, 1e-5);
+    EXPECT_EQ(warnings(scene, "rough-transmission"), 1);
+    EXPECT_EQ(warnings(scene, "reflectance-clamped"), 1);
+    EXPECT_TRUE(scene_faults(scene).empty());
 }
 
 // ---- Objects

@@ -126,6 +126,39 @@ TEST(Camera, FarFromASmallSceneIsAccurateToAPixel) {
     }
 }
 
+/// From the plane y = 1, 4 m high and 8 m wide in 40 x 20 pixels.
+View orthographic_view() {
+    View view = straight_view();
+    view.eye = V3f(10, 1, 3);
+    view.look_at = V3f(10, 2, 3);
+    view.extent = 4;
+    return view;
+}
+
+TEST(Camera, OrthographicRaysAreParallelFromThePlaneThroughTheEye) {
+    const Camera camera(orthographic_view(), 40, 20, world);
+    const auto expect_ray = [&](float x, float y, const V3f& origin) {
+        const Ray ray = camera.ray(x, y);
+        EXPECT_LT((ray.origin - origin).length(), 1e-5f) << ray.origin << " instead of " << origin;
+        EXPECT_EQ(ray.direction, V3f(0, 1, 0));
+    };
+    expect_ray(20, 10, V3f(10, 1, 3));
+    expect_ray(0, 0, V3f(6, 1, 5));
+    expect_ray(40, 20, V3f(14, 1, 1));
+    expect_ray(21, 9, V3f(10.2f, 1, 3.2f));
+}
+
+TEST(Camera, RefusesOrthographicViewsThatShowNothing) {
+    for (const float extent : {-1.0f, std::nanf(""), std::numeric_limits<float>::infinity(), 1e-6f}) {
+        View view = orthographic_view();
+        view.extent = extent;
+        EXPECT_THROW(Camera(view, 40, 20, world), InputError) << extent;
+    }
+    View near = orthographic_view();
+    near.extent = 1e-3f;
+    EXPECT_NO_THROW(Camera(near, 40, 20, world));
+}
+
 TEST(Camera, RefusesImpossibleSizes) {
     EXPECT_THAT(refusal(straight_view(), 0, 9), testing::HasSubstr("0 x 9 pixels"));
     EXPECT_THAT(refusal(straight_view(), 16, -1), testing::HasSubstr("16 x -1 pixels"));

@@ -275,6 +275,16 @@ TEST(Solve, RefusesLightsBeyondSinglePrecision) {
     }
 }
 
+TEST(Solve, RefusesOrthographicViews) {
+    const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
+    SolveOptions options = with_rays(10'000);
+    View plan{"plan", V3f(0.5f, 0.5f, 0.9f), V3f(0.5f, 0.5f, 0), V3f(0, 1, 0)};
+    options.views.push_back({plan});
+    EXPECT_NO_THROW(solve(scene, options));
+    options.views.front().view.extent = 1;
+    EXPECT_THROW(solve(scene, options), InputError);
+}
+
 TEST(Solve, ListsAllOptionsOutOfRange) {
     SolveOptions options{.method = find_method("srr")};
     options.limits.rays = 0;

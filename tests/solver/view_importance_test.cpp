@@ -23,6 +23,7 @@ constexpr std::uint32_t wall_x0 = 0, wall_x2 = 1;  // patches
 struct Box {
     Scene scene = closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
     RayCaster ray_caster{scene};
+    Panes panes{scene, ray_caster};
     ElementForest forest{scene, 1000};
 
     double share(const std::vector<float>& v, std::uint32_t patch) const { return v[patch] * forest.area(patch); }
@@ -34,7 +35,7 @@ TEST(ViewImportance, IsTheViewsByTheirWeightsHoweverOftenTheyAreLookedAt) {
     ViewImportance view(views, 1);
     EXPECT_TRUE(view.empty());
     for (const int rays : {100, 2500}) {  // squares, so that there are exactly as many
-        view.trace_view_rays(box.forest, box.ray_caster, rays);
+        view.trace_view_rays(box.forest, box.ray_caster, box.panes, rays);
         const std::vector<float> v = view.per_area(box.forest, false);
         EXPECT_NEAR(box.share(v, wall_x0), 0.75, 1e-6);
         EXPECT_NEAR(box.share(v, wall_x2), 0.25, 1e-6);
@@ -46,10 +47,10 @@ TEST(ViewImportance, FollowsTheMesh) {
     Box box;
     const std::vector<WeightedView> views{{at_x0, 1, 1}};
     ViewImportance view(views, 1), later(views, 1);
-    view.trace_view_rays(box.forest, box.ray_caster, 10'000);
+    view.trace_view_rays(box.forest, box.ray_caster, box.panes, 10'000);
     view.per_area(box.forest, false);
     const std::uint32_t grandchild = box.forest.subdivide(box.forest.subdivide(wall_x0) + 3);
-    later.trace_view_rays(box.forest, box.ray_caster, 10'000);
+    later.trace_view_rays(box.forest, box.ray_caster, box.panes, 10'000);
     const std::vector<float> v = view.per_area(box.forest, false);
     EXPECT_EQ(v, later.per_area(box.forest, false));
     EXPECT_NEAR(box.share(v, wall_x0), 1, 1e-6);

@@ -18,6 +18,8 @@ Json json_of_materials(const std::vector<Material>& materials) {
     for (const Material& m : materials) {
         json.push_back({{"name", m.name}, {"reflectance", json_of(m.reflectance)}, {"exitance", json_of(m.exitance)}});
         add_textures(m, json.back());
+        if (m.transmittance != Rgb(0)) json.back()["transmittance"] = json_of(m.transmittance);
+        if (m.specular_reflectance != Rgb(0)) json.back()["specular_reflectance"] = json_of(m.specular_reflectance);
     }
     return json;
 }
@@ -29,7 +31,11 @@ void read_scene(const Json& json, Scene& scene) {
     for (const Json& m : json.at("materials")) {
         scene.materials.push_back(
             {m.at("name").get<std::string>(), vector_of<Rgb>(m.at("reflectance")), vector_of<Rgb>(m.at("exitance"))});
-        read_textures(m, scene.materials.back());
+        Material& material = scene.materials.back();
+        read_textures(m, material);
+        if (m.contains("transmittance")) material.transmittance = vector_of<Rgb>(m.at("transmittance"));
+        if (m.contains("specular_reflectance"))
+            material.specular_reflectance = vector_of<Rgb>(m.at("specular_reflectance"));
     }
     if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
     const auto webs = webs_of(json.value("photometric_webs", Json::array()));

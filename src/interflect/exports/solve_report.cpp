@@ -171,16 +171,22 @@ IterationReport report_of(const Json& json) {
 }
 
 Json json_of(const View& view) {
-    return {{"name", view.name},
-            {"eye", json_of(view.eye)},
-            {"look_at", json_of(view.look_at)},
-            {"up", json_of(view.up)},
-            {"fov", shortest_number(view.fov)}};
+    Json json = {{"name", view.name},
+                 {"eye", json_of(view.eye)},
+                 {"look_at", json_of(view.look_at)},
+                 {"up", json_of(view.up)},
+                 {"fov", shortest_number(view.fov)}};
+    if (view.extent > 0) json["extent"] = shortest_number(view.extent);
+    return json;
 }
 
 View view_of(const Json& json) {
-    return {json.at("name").get<std::string>(), vector_of<Imath::V3d>(json.at("eye")),
-            vector_of<Imath::V3d>(json.at("look_at")), vector_of<V3f>(json.at("up")), json.at("fov").get<float>()};
+    return {json.at("name").get<std::string>(),
+            vector_of<Imath::V3d>(json.at("eye")),
+            vector_of<Imath::V3d>(json.at("look_at")),
+            vector_of<V3f>(json.at("up")),
+            json.at("fov").get<float>(),
+            json.value("extent", 0.0f)};
 }
 
 }  // namespace interflect::inline detail

@@ -18,9 +18,10 @@ namespace interflect::inline detail {
 /// * `c cxy cspec cct cmix` give colours in linear Rec. 709 as to_rec709() has it; MGF's neutral is R = G = B.
 ///   Spectra and the weights of mixtures may have negative values; chromaticities without luminance count as bluest or
 ///   reddest. What lies outside Rec. 709 is desaturated.
-/// * `rd` and `ed` [lm/m^2] become reflectance, each channel at most 0.99, and exitance. `rs td ts` are left out:
-///   warnings "specular-reflection", "diffuse-transmission", "specular-transmission" tell the share. `ir` is checked
-///   only.
+/// * `rd` and `ed` [lm/m^2] become reflectance, each channel at most 0.99, and exitance; `ts` the transmittance of thin
+///   glass, a roughness of which is ignored ("rough-transmission"); `rs` a mirror to the camera, where its roughness is
+///   0.02 at most. Otherwise `rs` and `td` are left out: warnings "specular-reflection" and "diffuse-transmission" tell
+///   the share. `ir` is checked only.
 /// * `o` names objects, nested names with dots; the copies of an array are objects "a0", "a1" ..., or "a0.0" ...
 /// * `xf` and `i`: transforms, arrays and files, which are found relative to the including file and share its contexts.
 ///   What a file leaves open is closed at its end, with a warning; of an array left open only the first copy is read.

@@ -95,7 +95,8 @@ struct MgfMaterial {
     bool two_sided = true;
     double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular reflectance and transmittance.
     double ed = 0;                          ///< Exitance [lm/m^2].
-    MgfColour rd_colour, ed_colour;
+    double rs_roughness = 0, ts_roughness = 0;
+    MgfColour rd_colour, rs_colour, ts_colour, ed_colour;
     MgfTexture rd_texture, ed_texture;
     Location defined;                  ///< The last line that changed it.
     std::uint32_t fault = none;        ///< In MgfFaults: the first thing wrong with what defines it.

@@ -78,13 +78,17 @@ void MgfReader::diffuse_reflectance(MgfWords words) {
 }
 
 void MgfReader::specular_reflectance(MgfWords words) {
-    changed_material().rs = fraction(words[0]);
-    non_negative_argument(words[1]);
+    MgfMaterial& material = changed_material();
+    material.rs = fraction(words[0]);
+    material.rs_roughness = non_negative_argument(words[1]);
+    material.rs_colour = colours_.current();
 }
 
 void MgfReader::specular_transmittance(MgfWords words) {
-    changed_material().ts = fraction(words[0]);
-    non_negative_argument(words[1]);
+    MgfMaterial& material = changed_material();
+    material.ts = fraction(words[0]);
+    material.ts_roughness = non_negative_argument(words[1]);
+    material.ts_colour = colours_.current();
 }
 
 void MgfReader::exitance(MgfWords words) {

@@ -31,9 +31,15 @@ constexpr double largest_lost_size = 0x1p-16;
 std::string identity(const Material& m) {
     std::string key = m.name;
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };
-    for (const Rgb& c : {m.reflectance, m.exitance}) append(c);
+    for (const Rgb& c : {m.reflectance, m.exitance, m.transmittance, m.specular_reflectance}) append(c);
     for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture}) append(texture);
     return key;
+}
+
+/// Smooth enough to show images.
+bool is_mirror(const MgfMaterial& m) {
+    constexpr double roughest = 0.02;
+    return m.rs > 0 && m.rs_roughness <= roughest;
 }
 
 }  // namespace
@@ -105,6 +111,18 @@ void MgfSceneBuilder::require_products(const Material& result, const MgfMaterial
         throw InputError(*where.file, where.line, "with the texture's largest texel, the " + fault);
 }
 
+/// Lets what is neither reflected diffusely nor lost go through or be mirrored.
+void MgfSceneBuilder::limit_sum(Material& result, const MgfMaterial& material) {
+    const float straight = largest_channel(Rgb(result.transmittance + result.specular_reflectance));
+    const float rest = 1 - largest_channel(result.reflectance);
+    if (straight <= rest) return;
+    constexpr float above_rounding = 1 - 0x1p-20f;
+    result.transmittance *= rest / straight * above_rounding;
+    result.specular_reflectance *= rest / straight * above_rounding;
+    warn("reflectance-clamped", "more light than arrives would leave this material: rs and ts are reduced",
+         material.defined);
+}
+
 Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Location& where) {
     constexpr double unbounded = std::numeric_limits<float>::max();
     return converted(colour, luminance, unbounded, where);
@@ -121,10 +139,17 @@ void MgfSceneBuilder::add_light(Luminaire luminaire, const std::string& name) {
 
 std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view name) {
     if (material.scene_index != none) return material.scene_index;
-    const Material result{std::string(name),
-                          converted(material.rd_colour, material.rd, largest_reflectance, material.defined),
-                          emitted(material.ed_colour, material.ed, material.defined), texture(material.rd_texture),
-                          texture(material.ed_texture)};
+    const auto reflected = [&](const MgfColour& colour, double share) {
+        return converted(colour, share, largest_reflectance, material.defined);
+    };
+    Material result{std::string(name),
+                    reflected(material.rd_colour, material.rd),
+                    emitted(material.ed_colour, material.ed, material.defined),
+                    texture(material.rd_texture),
+                    texture(material.ed_texture),
+                    reflected(material.ts_colour, material.ts),
+                    is_mirror(material) ? reflected(material.rs_colour, material.rs) : Rgb(0)};
+    limit_sum(result, material);
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
         throw InputError(*material.defined.file, material.defined.line, fault);
     require_products(result, material);
@@ -239,9 +264,13 @@ Scene MgfSceneBuilder::finish() {
     require_brightness();
     require_precision();
     require_patches();
-    warn_of_lost("specular-reflection", "specular reflectance (rs)", &MgfMaterial::rs);
+    warn_of_lost("specular-reflection", "specular reflectance (rs), but for mirrors in view of the camera,",
+                 &MgfMaterial::rs);
     warn_of_lost("diffuse-transmission", "diffuse transmittance (td)", &MgfMaterial::td);
-    warn_of_lost("specular-transmission", "specular transmittance (ts)", &MgfMaterial::ts);
+    for (const MgfMaterial& m : used_materials_)
+        if (m.ts > 0 && m.ts_roughness > 0)
+            warn("rough-transmission", "light goes through without being scattered, whatever the roughness of ts",
+                 m.defined);
     return std::move(scene_);
 }
 

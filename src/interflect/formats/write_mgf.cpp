@@ -146,9 +146,13 @@ class MgfWriter {
     }
 
     void define_material(const Material& material) {
+        constexpr std::string_view smooth = " 0";  // roughness
         RgbD reflectance(material.reflectance);
         for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], largest_reflectance);
         put_colour("rd", reflectance);
+        if (channel_sum(material.specular_reflectance) > 0)
+            put_colour("rs", RgbD(material.specular_reflectance), smooth);
+        if (channel_sum(material.transmittance) > 0) put_colour("ts", RgbD(material.transmittance), smooth);
         if (channel_sum(material.exitance) > 0) put_colour("ed", RgbD(material.exitance));
         put_texture("rd", material.reflectance_texture);
         put_texture("ed", material.exitance_texture);
@@ -158,9 +162,10 @@ class MgfWriter {
         if (texture != none) put("\ttexture {} {}\n", entity, textures_[texture]);
     }
 
-    void put_colour(std::string_view entity, const RgbD& rgb) {
+    /// @param rest  Further arguments of the entity.
+    void put_colour(std::string_view entity, const RgbD& rgb, std::string_view rest = "") {
         const auto [chromaticity, luminance] = from_rec709(rgb);
-        put("\tc\n\t\tcxy {} {}\n\t{} {}\n", chromaticity.x, chromaticity.y, entity, luminance);
+        put("\tc\n\t\tcxy {} {}\n\t{} {}{}\n", chromaticity.x, chromaticity.y, entity, luminance, rest);
     }
 
     void add_face(const Patch& patch) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -20,9 +21,12 @@ using V3d = Imath::V3d;
 /// 6e-8. It also keeps the rounding of a far-away eye below a quarter of the width that a pixel has in the scene.
 constexpr double smallest_pixel = 0x1p-22;
 
+double largest_coordinate(const V3d& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); }
+
 }  // namespace
 
-Camera::Camera(const View& view, int width, int height, const V3d& origin) : eye_(view.eye - origin) {
+Camera::Camera(const View& view, int width, int height, const V3d& origin)
+    : is_orthographic_(view.extent > 0), eye_(view.eye - origin) {
     if (const std::string fault = view_fault(view); !fault.empty())
         throw InputError(fmt::format("view '{}': {}", view.name, fault));
     if (width < 1 || height < 1 || width > most_image_pixels / height)
@@ -32,14 +36,18 @@ Camera::Camera(const View& view, int width, int height, const V3d& origin) : eye
 
     const V3d forward = (view.look_at - view.eye).normalized();
     const V3d right = forward.cross(V3d(view.up).normalized()).normalized(), up = right.cross(forward);
-    const double half_height = std::tan(0.5 * view.fov * std::numbers::pi / 180);
+    const double half_height = is_orthographic_ ? 0.5 * view.extent : std::tan(0.5 * view.fov * std::numbers::pi / 180);
     const double pixel = 2 * half_height / height;
-    if (pixel < smallest_pixel)
+    if (is_orthographic_ && pixel < smallest_pixel * largest_coordinate(view.eye - origin))
+        throw InputError(
+            fmt::format("view '{}': pixels of {:.3g} m are finer than coordinates there", view.name, pixel));
+    if (!is_orthographic_ && pixel < smallest_pixel)
         throw InputError(fmt::format(
             "view '{}': {} degrees over {} pixels are finer than the directions of rays: expected a field of "
             "view of {:.3g} degrees or more",
             view.name, view.fov, height, smallest_pixel * height * 180 / std::numbers::pi));
-    corner_ = V3f(forward - right * (0.5 * pixel * width) + up * half_height);
+    forward_ = V3f(forward);
+    corner_ = V3f((is_orthographic_ ? V3d(0) : forward) - right * (0.5 * pixel * width) + up * half_height);
     pixel_right_ = V3f(right * pixel);
     pixel_down_ = V3f(up * -pixel);
 }

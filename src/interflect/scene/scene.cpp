@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t listed_faults = 20;
 
-bool is_reflectance(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0 && largest_channel(c) < 1; }
+bool is_share(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0; }
+bool is_reflectance(const Rgb& c) { return is_share(c) && largest_channel(c) < 1; }
 
 /// The faults found so far, up to as many as are listed.
 class Faults {
@@ -63,6 +64,13 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
     const Rgb& r = m.reflectance;
     faults.check(is_reflectance(r), [&] {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
+    });
+    const Rgb &t = m.transmittance, &s = m.specular_reflectance;
+    faults.check(is_share(t) && is_share(s) && largest_channel(Rgb(r + t + s)) <= 1, [&] {
+        return fmt::format(
+            "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
+            "more than 1 with the reflectance",
+            m.name, t.x, t.y, t.z, s.x, s.y, s.z);
     });
     faults.add(exitance_fault(m.exitance), [&] { return fmt::format("material '{}': ", m.name); });
 }

@@ -39,6 +39,8 @@ std::string view_fault(const View& view) {
         if (!is_within_reach(x))
             return fmt::format("{} is farther than {:g} m from the origin, beyond which nothing is computed", text(x),
                                farthest_coordinate);
+    if (!(view.extent >= 0 && view.extent <= farthest_coordinate))
+        return fmt::format("its extent is {} m, expected from 0 to {:g}", view.extent, farthest_coordinate);
     if (!(view.fov > 0 && view.fov < 180))
         return fmt::format("the vertical field of view is {} degrees, expected between 0 and 180", view.fov);
     const V3d direction = view.look_at - view.eye;
@@ -72,6 +74,24 @@ View overview(const Scene& scene) {
     view.eye = scene.origin + Imath::V3d(box.min + box.size() * V3f(margin, margin, 0.7f));
     view.look_at = scene.origin + Imath::V3d(box.center());
     view.fov = wide;
+    return view;
+}
+
+View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect) {
+    constexpr double margin = 1.04, upright = 0.999;
+    View view;
+    const V3d forward = direction.normalized();
+    view.up = std::abs(forward.z) > upright ? V3f(0, 1, 0) : V3f(0, 0, 1);
+    const V3d right = forward.cross(V3d(view.up)).normalized(), up = right.cross(forward);
+
+    const Imath::Box3f box = core_bounds(scene);
+    const V3d half = V3d(box.size()) / 2, centre = scene.origin + V3d(box.center());
+    const auto half_size = [&](const V3d& axis) {
+        return std::abs(axis.x) * half.x + std::abs(axis.y) * half.y + std::abs(axis.z) * half.z;
+    };
+    view.eye = centre + forward * forward.dot(point - centre);
+    view.look_at = view.eye + forward * std::max(1.0, half.length());
+    view.extent = static_cast<float>(2 * margin * std::max(half_size(up), half_size(right) / aspect));
     return view;
 }
 

@@ -84,25 +84,28 @@ struct Units {
 
     explicit Units(const Totals& all) : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
 
-    Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source) const {
+    /// @param transmittance  Of what the ray has come through.
+    Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source,
+                                        const Rgb& transmittance = Rgb(1)) const {
         Arrivals::Contribution contribution{};
         if (step.carries_power()) {
-            const RgbD carried_power = carried.power(source);
+            const RgbD carried_power = carried.power(source) * RgbD(transmittance);
             const FixedPoint::Value of_power = power.from(carried_power);
             std::copy(of_power.begin(), of_power.end(), contribution.begin());
             contribution[3] = square.from(std::pow(luminance(carried_power), 2));
         }
         if (step.carries_importance())
-            contribution[Arrivals::importance_term] = importance.from(carried.importance(source));
+            contribution[Arrivals::importance_term] =
+                importance.from(carried.importance(source) * channel_sum(transmittance) / 3);
         return contribution;
     }
 
     /// Of that the power of each light group.
     void add_groups(const TransportStep& step, const Carried& carried, std::uint32_t source,
-                    std::vector<std::int64_t>& terms) const {
+                    std::vector<std::int64_t>& terms, const Rgb& transmittance = Rgb(1)) const {
         terms.clear();
         for (std::size_t g = 0; g < step.groups.size(); ++g) {
-            const FixedPoint::Value of_group = power.from(carried.power(source, g));
+            const FixedPoint::Value of_group = power.from(carried.power(source, g) * RgbD(transmittance));
             terms.insert(terms.end(), of_group.begin(), of_group.end());
         }
     }

@@ -1,5 +1,6 @@
 #include "interflect/solver/materials.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "interflect/base/parallel.h"
@@ -27,7 +28,10 @@ Materials::Materials(const Scene& scene, const RayCaster& ray_caster)
     : Materials(scene, uncovered_shares(scene, ray_caster)) {}
 
 Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
-    : scene_(&scene), elements_(scene, exitance_share) {
+    : scene_(&scene),
+      has_panes_(std::any_of(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& m) { return largest_channel(m.transmittance) > 0; })),
+      elements_(scene, exitance_share) {
     if (exitance_share.empty() && elements_.empty()) return;
     constexpr std::size_t patches_at_once = 64;
     std::vector<std::uint32_t> patches;

@@ -23,6 +23,9 @@ class Materials {
     explicit Materials(const Scene& scene) : Materials(scene, std::vector<float>()) {}
     Materials(const Scene& scene, const RayCaster& ray_caster);
 
+    const Scene& scene() const { return *scene_; }
+    /// Whether light goes through any material.
+    bool has_panes() const { return has_panes_; }
     const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
     const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
     /// What importance, one number, is reflected with: exact for grey surfaces.
@@ -54,6 +57,7 @@ class Materials {
     Materials(const Scene& scene, std::vector<float> exitance_share);
 
     const Scene* scene_;
+    bool has_panes_;
     TexturedElements elements_;
     RankedBits has_own_;                   // patches that are textured, or emit less than their material does
     std::vector<Material> own_materials_;  // of each of them

@@ -7,9 +7,9 @@ namespace interflect::inline detail {
 
 void Receiver::take(std::uint32_t source, const Arrivals::Contribution& contribution,
                     std::span<const std::int64_t> of_groups, std::span<const Ray> rays,
-                    std::span<const Parameters> origins, std::span<const Hit> hits) {
+                    std::span<const Parameters> origins, std::span<const Hit> hits, float transmitted) {
     const std::uint32_t carried = buffer_.add_source(contribution, of_groups);
-    left_.push_back({source, 0});
+    left_.push_back({source, 0, transmitted});
     const auto left = static_cast<std::uint32_t>(left_.size() - 1);
     bool path_is_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
@@ -44,7 +44,7 @@ void Receiver::finish_batch() {
     shooters_.clear();
     buffer_.release_sources();
     if (gathered_)
-        for (const auto& [source, found] : left_) gathered_->add(source, found);
+        for (const auto& [source, found, transmitted] : left_) gathered_->add(source, found * double{transmitted});
     left_.clear();
 }
 

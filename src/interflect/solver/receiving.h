@@ -58,8 +58,10 @@ class Receiver {
     /// @param source        A leaf, or elements when the step began + a part of a luminaire.
     /// @param contribution  What each carries. @param of_groups  Of that, the power of each light group.
     /// @param origins       Their parameters on the leaf's patch; of a part's rays they mean nothing.
+    /// @param transmitted   Share of the importance found that gets back to the source.
     void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const std::int64_t> of_groups,
-              std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits);
+              std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
+              float transmitted = 1);
     /// Tells the processor that a ray will be taken soon.
     void prefetch(const Hit& hit) const;
     /// To be called at the end of a task: rays must not wait for those of another.
@@ -99,6 +101,7 @@ class Receiver {
     struct Left {
         std::uint32_t source;
         double found;  // importance, by its rays so far
+        float transmitted;
     };
     std::vector<Left> left_;  // sources whose rays the task has taken
     RayPairs pairs_{};

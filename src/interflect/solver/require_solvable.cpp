@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(o.importance.camera_rays > 0 && o.importance.camera_rays <= most_camera_rays,
             "camera_rays: expected 1 to 2^22");
     for (const WeightedView& v : o.views)
+        require(v.view.extent == 0, "view '" + v.view.name + "': orthographic, expected none or perspective ones");
+    for (const WeightedView& v : o.views)
         require(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0,
                 "view '" + v.view.name + "': weight, aspect and pixel_rows: expected finite numbers above 0");
     require(!o.method.no_importance || o.method.importance == ImportanceUse::off,
@@ -46,6 +49,9 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(o.method.takes_luminaires || scene.luminaires.empty(),
             fmt::format("lights that are no surfaces: {} knows only surfaces that emit; choose another method",
                         o.method.name));
+    const auto is_glass = [](const Material& m) { return largest_channel(m.transmittance) > 0; };
+    require(o.method.passes_glass || std::none_of(scene.materials.begin(), scene.materials.end(), is_glass),
+            fmt::format("thin glass: {} lets no light through; choose another method", o.method.name));
     require(o.method.separates_groups || scene.light_groups.empty(),
             fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
     require_no_faults(faults, "cannot solve", scene);

@@ -90,7 +90,8 @@ void look(SolverState& state) {
     state.part_importance.assign(state.emission.part_count(), {});
     state.view = ViewImportance(state.options.views, state.options.seed);
     state.floor = ElementFloor(state.scene, state.options);
-    state.view.trace_view_rays(*state.forest, state.ray_caster, state.options.importance.camera_rays);
+    state.view.trace_view_rays(*state.forest, state.ray_caster, Panes(state.scene, state.ray_caster),
+                               state.options.importance.camera_rays);
     state.solution.view_importance.clear();
     state.solution.indirect_importance.clear();
     if (state.view.empty()) return;
@@ -248,7 +249,7 @@ void refine_view_importance(SolverState& state) {
     const std::int64_t wanted =
         std::min<std::int64_t>(state.schedule.averaged_rays() / rays_per_camera_ray, most_camera_rays);
     if (wanted < 2 * state.view.rays()) return;
-    state.view.trace_view_rays(*state.forest, state.ray_caster,
+    state.view.trace_view_rays(*state.forest, state.ray_caster, Panes(state.scene, state.ray_caster),
                                static_cast<int>((wanted - state.view.rays()) / state.view.views()));
     state.solution.view_importance =
         state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);

@@ -9,6 +9,7 @@
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
+#include "interflect/raycast/panes.h"
 #include "interflect/solver/arrivals.h"
 #include "interflect/solver/carried.h"
 #include "interflect/solver/gathering.h"
@@ -48,12 +49,14 @@ struct Shooting {
         : rays(forest, ray_caster, step, streams),
           carried(materials, forest, step, rays.allocation().q_sum()),
           all(all_carried(step, rays.allocation(), carried)),
-          units(all) {}
+          units(all),
+          panes(materials.scene(), ray_caster) {}
 
     RayMaker rays;
     Carried carried;
     Totals all;
     Units units;
+    Panes panes;
 };
 
 /// What becomes of one task's rays; one a thread, reused.
@@ -62,6 +65,7 @@ struct Batch {
 
     RayBatch shot;
     std::vector<Hit> hits;
+    std::vector<Panes::HitBehind> behind;
     std::vector<std::int64_t> group_terms;  // of one source
     Receiver receiver;
 };
@@ -114,7 +118,8 @@ std::optional<GatheredImportance> gathered_by(const TransportStep& step, const M
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    return std::optional<GatheredImportance>(std::in_place, *std::max_element(largest.begin(), largest.end()),
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // of a ray
+    return std::optional<GatheredImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
                                              step.rays, forest.size() + step.part_count());
 }
 
@@ -203,19 +208,40 @@ void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t be
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
     batch.hits.resize(batch.shot.rays.size());
     ray_caster.trace(batch.shot.rays, batch.hits);
+    shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
+}
+
+/// What goes through panes arrives behind them too, filtered.
+void receive_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
+                    std::span<const Panes::HitBehind> behind, Batch& batch) {
+    const std::uint32_t source = rays.source;
+    for (const auto& [ray, transmittance, hit] : behind) {
+        shooting.units.add_groups(step, shooting.carried, source, batch.group_terms, transmittance);
+        batch.receiver.take(source, shooting.units.contribution(step, shooting.carried, source, transmittance),
+                            batch.group_terms, std::span(batch.shot.rays).subspan(ray, 1),
+                            std::span(batch.shot.origins).subspan(ray, 1), std::span(&hit, 1),
+                            channel_sum(transmittance) / 3);
+    }
 }
 
 /// What the rays of a batch carry arrives at elements, which may be made for that.
 void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) {
-    auto& [shot, hits, group_terms, receiver] = batch;
+    auto& [shot, hits, all_behind, group_terms, receiver] = batch;
+    std::span<const Panes::HitBehind> behind = all_behind;
     std::size_t fetched = 0;
-    for (const auto& [source, first, last] : shot.sources) {
+    for (const SourceRays& rays : shot.sources) {
+        const auto [source, first, last] = rays;
         const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size()), count = last - first;
         for (; fetched < fetch; ++fetched) receiver.prefetch(hits[fetched]);
         shooting.units.add_groups(step, shooting.carried, source, group_terms);
         receiver.take(source, shooting.units.contribution(step, shooting.carried, source), group_terms,
                       std::span(shot.rays).subspan(first, count), std::span(shot.origins).subspan(first, count),
                       std::span(hits).subspan(first, count));
+        const auto of_others =
+            std::find_if(behind.begin(), behind.end(), [last = last](const auto& b) { return b.ray >= last; });
+        const auto own = static_cast<std::size_t>(of_others - behind.begin());
+        receive_behind(step, shooting, rays, behind.first(own), batch);
+        behind = behind.subspan(own);
     }
     receiver.finish_batch();
 }

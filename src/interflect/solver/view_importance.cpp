@@ -31,7 +31,20 @@ std::vector<Ray> camera_rays(const WeightedView& w, const Imath::V3d& origin, in
 
 }  // namespace
 
-void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view) {
+void ViewImportance::add_points_behind(const ElementForest& forest, const Panes& panes, std::span<const Ray> rays,
+                                       std::span<const Hit> hits, float share) {
+    std::vector<Panes::HitBehind> behind;
+    panes.trace(rays, hits, behind);
+    for (const auto& [ray, transmittance, hit] : behind) {
+        if (hit.patch == none) continue;
+        const V3f y = rays[ray].origin + hit.distance * rays[ray].direction;
+        points_.push_back({hit.patch, forest.geometry(hit.patch).parameters_of(y),
+                           share * channel_sum(transmittance) / 3, hit.patch});
+    }
+}
+
+void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
+                                     int rays_per_view) {
     constexpr std::size_t rays_at_once = 4096;
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const std::vector<Ray> rays =
@@ -48,6 +61,7 @@ void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaste
             points_.push_back({patch, forest.geometry(patch).parameters_of(y), share, patch});
             shares_ += share;
         }
+        add_points_behind(forest, panes, rays, hits, share);
         rays_ += rays_per_view;
     }
     ++rounds_;

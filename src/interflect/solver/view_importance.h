@@ -7,6 +7,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
+#include "interflect/raycast/panes.h"
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 #include "interflect/solver/state_archive.h"
@@ -22,13 +23,15 @@ class ViewImportance {
 
     /// Traces more camera rays on all threads, jittered, one to a cell of the picture plane; about so many for each
     /// view.
-    void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, int rays_per_view);
+    void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
+                         int rays_per_view);
 
     bool empty() const { return points_.empty(); }  ///< No view shows anything.
     std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
     std::int64_t views() const { return std::ssize(views_); }
     /// v = V / A of every element [1/m^2]: V is the share of the picture that shows the element,
-    /// weighted over the views; sum of V over what all views hit = 1. Inner elements have the mean of their children.
+    /// weighted over the views; sum of V over what all views hit = 1, and what is seen through panes of glass counts
+    /// as much as comes through. Inner elements have the mean of their children.
     /// @param at_patches  Spread each patch's V evenly over it.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
@@ -37,6 +40,10 @@ class ViewImportance {
     bool fits(const ElementForest& forest) const;
 
   private:
+    /// @param share  Of each ray.
+    void add_points_behind(const ElementForest& forest, const Panes& panes, std::span<const Ray> rays,
+                           std::span<const Hit> hits, float share);
+
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
