@@ -18,6 +18,12 @@ enum class EmitterSampling {
     directions,  ///< Cosine-distributed directions alone, which hit an emitting patch by chance.
 };
 
+/// What a picture shows of the surfaces that it sees.
+enum class PathQuantity {
+    radiance,    ///< L = (M + rho H) / pi [cd/m^2 or W/(m^2 sr)].
+    irradiance,  ///< H [lux = lm/m^2, or W/m^2], whatever their reflectance.
+};
+
 struct PathOptions {
     int width = 1280;          ///< [pixels], >= 1.
     int height = 720;          ///< [pixels], >= 1.
@@ -26,6 +32,8 @@ struct PathOptions {
     /// Target of each pixel's relative standard error, >= 0; 0: none, every pixel gets `samples`. Relative to the
     /// pixel's radiance, but at least to the picture's mean reflected radiance: dark pixels need not be exact.
     double until = 0;
+    PathQuantity quantity = PathQuantity::radiance;
+    bool mirrors = true;  ///< Whether the camera sees Material::specular_reflectance, which reflects no other light.
     EmitterSampling emitter_sampling = EmitterSampling::combined;
     std::uint64_t seed = 1;
 };
@@ -51,11 +59,13 @@ struct PictureLayers {
     Image indirect;  ///< Reflected more often. The picture is the sum of the three.
     /// Estimated variance of the mean over the channels of `direct` and `indirect`, [y * width + x].
     std::vector<float> direct_variance, indirect_variance;
-    Image albedo;              ///< Reflectance of what is seen.
+    Image albedo;              ///< Reflectance of what is seen; 1 in a picture of irradiance.
     Image normal;              ///< Its normal, towards the eye; shorter than 1 where several are seen.
     Image position;            ///< Where it is, relative to the scene's origin [m].
     std::vector<float> depth;  ///< Its distance from the eye [m]; 0 where nothing is hit.
-    float pixel_angle = 0;     ///< That a pixel's side fills in the middle of the picture [rad].
+    std::vector<float> level;  ///< Of the solution's element that is seen; 0 in path tracing.
+    float pixel_angle = 0;     ///< That a pixel's side fills in the middle of the picture [rad]; 0 where orthographic.
+    float pixel_size = 0;      ///< Of a pixel's side in an orthographic picture [m]; else 0.
 };
 
 /// A picture with its standard error.
@@ -80,7 +90,8 @@ struct PathTracing {
 };
 
 /// Path tracing (Kajiya 1986) of what `view` sees: an estimate of the picture that shares nothing with the radiosity
-/// solver, to compare it with. Of diffuse surfaces alone, as the Scene is.
+/// solver, to compare it with. Surfaces are diffuse; all light goes straight through thin glass, and mirrors are
+/// followed from the camera alone: other light that they reflect is lost, as in the solver.
 ///
 /// A path starts at a random point of a pixel's square and goes on in cosine-distributed directions; Russian roulette
 /// by throughput ends it, never a number of bounces. At each vertex an emitting patch is chosen by LightTree and joined

@@ -47,6 +47,7 @@ struct RenderOptions {
     int height = 720;                   ///< [pixels], >= 1.
     int samples = 16;                   ///< Camera rays a pixel, >= 1; powers of two are stratified best.
     Shading shading = Shading::smooth;  ///< See Shading.
+    bool irradiance = false;            ///< Draw H [lux, or W/m^2] in place of L, whatever the surfaces reflect.
     SmoothingOptions smoothing{};       ///< For Shading::smooth.
     std::uint64_t seed = 1;             ///< Of the rays' places within their pixels.
 };
@@ -54,7 +55,8 @@ struct RenderOptions {
 /// A picture with counts of its rays.
 struct Rendering {
     /// Radiance L = (M + rho H) / pi of what each pixel sees, the mean over its square; where rays escape, the sky.
-    /// [cd/m^2] where exitance M and irradiance H are photometric [lm/m^2], else [W/(m^2 sr)].
+    /// [cd/m^2] where exitance M and irradiance H are photometric [lm/m^2], else [W/(m^2 sr)]. With
+    /// RenderOptions::irradiance H, and 0 where rays escape.
     Image image;
     std::int64_t rays = 0;
     std::int64_t escaped_rays = 0;

@@ -20,7 +20,7 @@ std::vector<PatchGeometry> geometry_of(const Scene& scene) {
 
 LightTree tree_of(const Scene& scene) {
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
-    return {scene, geometry, emitted_powers(scene, geometry)};
+    return {patch_lights(scene, geometry, emitted_powers(scene, geometry)), scene.patches.size()};
 }
 
 /// Lamps of different sizes and powers that face down and up, a tilted one and two-sided ones, and what does not emit.
@@ -53,9 +53,9 @@ TEST(LightTree, ChoosesWithTheStatedProbability) {
         std::vector<int> chosen(scene.patches.size(), 0);
         for (int i = 0; i < count; ++i) {
             const LightTree::Choice choice = tree.choose(x, n, (i + 0.5) / count);
-            if (choice.patch == none) continue;
-            ++chosen[choice.patch];
-            ASSERT_FLOAT_EQ(choice.probability, tree.probability(choice.patch, x, n));
+            if (choice.index == none) continue;
+            ++chosen[choice.index];
+            ASSERT_FLOAT_EQ(choice.probability, tree.probability(choice.index, x, n));
         }
         for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
             EXPECT_NEAR(static_cast<float>(chosen[p]) / count, tree.probability(p, x, n), 1e-4) << "patch " << p;
@@ -66,7 +66,7 @@ TEST(LightTree, ChoosesWithTheStatedProbability) {
 TEST(LightTree, MissesNoPatchThatLightsAPoint) {
     const Scene scene = lamps();
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
-    const LightTree tree(scene, geometry, emitted_powers(scene, geometry));
+    const LightTree tree(patch_lights(scene, geometry, emitted_powers(scene, geometry)), scene.patches.size());
     for (const auto& [x, n] : points_of_surfaces)
         for (std::uint32_t p = 1; p < scene.patches.size(); ++p) {
             bool lights = false;
@@ -85,9 +85,9 @@ TEST(LightTree, NeverTakesWhatIsBehindOrFacesAway) {
     const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));
     add_rectangle(scene, V3f(-1, -1, 1), V3f(0, 2, 0), V3f(2, 0, 0), light);  // faces down
     const LightTree one = tree_of(scene);
-    EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, 0u);
-    EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, -1), 0.5).patch, none) << "behind";
-    EXPECT_EQ(one.choose(V3f(0, 0, 9), V3f(0, 0, -1), 0.5).patch, none) << "facing away";
+    EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).index, 0u);
+    EXPECT_EQ(one.choose(V3f(0, 0, 0), V3f(0, 0, -1), 0.5).index, none) << "behind";
+    EXPECT_EQ(one.choose(V3f(0, 0, 9), V3f(0, 0, -1), 0.5).index, none) << "facing away";
     add_rectangle(scene, V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0), light);  // faces up
     const LightTree two = tree_of(scene);
     EXPECT_FLOAT_EQ(two.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 1);
@@ -135,7 +135,7 @@ TEST(LightTree, WithoutLightChoosesNothing) {
     add_rectangle(scene, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0),
                   add_material(scene, Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0)));
     const LightTree tree = tree_of(scene);
-    EXPECT_EQ(tree.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).patch, none);
+    EXPECT_EQ(tree.choose(V3f(0, 0, 0), V3f(0, 0, 1), 0.5).index, none);
     EXPECT_EQ(tree.probability(0, V3f(0, 0, 0), V3f(0, 0, 1)), 0);
 }
 

@@ -56,6 +56,34 @@ TEST_P(FlatAndSmooth, LuminanceIsRadiosityOverPi) {
         for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(pixel[c], luminance_of_quad[c]);
 }
 
+/// Left half of the picture; nothing is seen in the right one, nor is the sky.
+TEST_P(FlatAndSmooth, IrradianceIsThatOfTheElements) {
+    Scene scene;
+    add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
+    scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(7)}});
+    const Image image =
+        picture(scene, {irradiance}, {.width = 4, .height = 2, .shading = GetParam(), .irradiance = true});
+    for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(image.at(1, 1)[c], irradiance[c]);
+    EXPECT_EQ(image.at(2, 1), Rgb(0));
+}
+
+/// Rays start at y = -0.5: what hangs before is cut away, and a square of 2 m fills half of 4 m, at any distance.
+TEST_P(FlatAndSmooth, OrthographicPicturesAreToScaleAndCutOpen) {
+    Scene scene;
+    add_facing(scene, -1, 1, -1, 1, add_material(scene, reflectance, exitance));
+    add_rectangle(scene, V3f(-9, -0.7f, -9), V3f(18, 0, 0), V3f(0, 0, 18), 0);
+    View view = view_of_plane();
+    view.eye = V3f(0, -0.5f, 0);
+    view.extent = 4;
+    const Image image = picture(scene, {irradiance, Rgb(0)},
+                                {.width = 8, .height = 8, .shading = GetParam(), .irradiance = true}, view);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            const bool is_inside = x >= 2 && x < 6 && y >= 2 && y < 6;
+            EXPECT_FLOAT_EQ(image.at(x, y).y, is_inside ? irradiance.y : 0) << x << ", " << y;
+        }
+}
+
 TEST(Render, FlatLuminanceIsExact) {
     Scene scene;
     add_facing(scene, -9, 9, -9, 9, add_material(scene, reflectance, exitance));

@@ -93,8 +93,8 @@ void add_pixel_measures(const Image& image, const Image& reference, double dark,
 
 void add_flip(const Image& image, const Image& reference, bool tone_mapped, ImageDifference& difference) {
     const float exposure = automatic_exposure(reference);
-    difference.flip_map =
-        tone_mapped ? flip_map(image, reference) : flip_map(tone_map(image, exposure), tone_map(reference, exposure));
+    const auto shown = [&](const Image& light) { return tone_map(light, exposure, Tonemap::filmic); };
+    difference.flip_map = tone_mapped ? flip_map(image, reference) : flip_map(shown(image), shown(reference));
     double sum = 0;
     for (const Rgb& pixel : difference.flip_map.pixels) sum += pixel.x;
     difference.flip = sum / static_cast<double>(difference.flip_map.pixels.size());

@@ -125,7 +125,8 @@ class Band {
                 const Rgb turn = layers_.normal.pixels[i] - layers_.normal.pixels[k];
                 const Rgb step = layers_.position.pixels[k] - layers_.position.pixels[i];
                 const float height = step.dot(layers_.normal.pixels[i]);
-                const float footprint = plane_scale * layers_.depth[i] * layers_.pixel_angle * steps;
+                const float footprint =
+                    plane_scale * (layers_.depth[i] * layers_.pixel_angle + layers_.pixel_size) * steps;
                 const float is_hit = layers_.depth[k] > 0 ? 1.0f : 0.0f;
                 shape_[i - at(0, first_)] = is_hit * fall(turn.dot(turn) / normal_scale) *
                                             fall(height * height / (footprint * footprint + 1e-12f));

@@ -36,7 +36,7 @@ KnownLight::KnownLight(const Scene& scene, std::span<const PatchGeometry> geomet
       forest_(forest),
       irradiance_(irradiance),
       received_(received_power(forest, irradiance)),
-      tree_(scene, geometry, reflected_power(scene, received_)) {}
+      tree_(patch_lights(scene, geometry, reflected_power(scene, received_)), scene.patches.size()) {}
 
 KnownLight::Place KnownLight::place(std::uint32_t patch, const V3f& x) const {
     const Parameters p = geometry_[patch].parameters_of(x);
@@ -50,7 +50,7 @@ Rgb KnownLight::radiance(const Place& place) const {
 
 KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double uniform, float u, float v) const {
     constexpr float below_one = 1 - 0x1p-24f;
-    const std::uint32_t patch = tree_.choose(x, n, uniform).patch;
+    const std::uint32_t patch = tree_.choose(x, n, uniform).index;
     if (patch == none) return {};
     const PatchGeometry& geometry = geometry_[patch];
     std::uint32_t e = patch;

@@ -27,6 +27,7 @@ class KnownLight {
         Parameters parameters;
     };
     Place place(std::uint32_t patch, const V3f& x) const;
+    int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
     /// rho H / pi where `place` is, the radiance that leaves it by reflection.
     Rgb radiance(const Place& place) const;

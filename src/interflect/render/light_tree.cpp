@@ -37,14 +37,6 @@ Angle less(const Angle& a, const Angle& b) {
 
 }  // namespace
 
-struct LightTree::Emitter {
-    std::uint32_t patch;
-    float power;
-    Box box;
-    V3f normal;
-    V3f centre() const { return 0.5f * (box.low + box.high); }
-};
-
 void LightTree::Box::extend(const Box& other) {
     low = smaller(low, other.low);
     high = larger(high, other.high);
@@ -100,24 +92,28 @@ std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeome
     return power;
 }
 
-LightTree::LightTree(const Scene& scene, std::span<const PatchGeometry> geometry, std::span<const float> power)
-    : leaf_(scene.patches.size(), none) {
-    std::vector<Emitter> emitters;
+std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const PatchGeometry> geometry,
+                                           std::span<const float> power) {
+    std::vector<LightTree::Light> lights;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (!(power[i] > 0)) continue;
-        Emitter emitter{
-            i, power[i], {scene.vertices[patch.vertices[0]], scene.vertices[patch.vertices[0]]}, geometry[i].normal()};
+        const V3f& corner = scene.vertices[patch.vertices[0]];
+        LightTree::Light light{i, power[i], {corner, corner}, {geometry[i].normal(), 1}};
         for (std::size_t v = 1; v < static_cast<std::size_t>(patch.vertex_count()); ++v) {
             const V3f& vertex = scene.vertices[patch.vertices[v]];
-            emitter.box.extend({vertex, vertex});
+            light.box.extend({vertex, vertex});
         }
-        emitters.push_back(emitter);
+        lights.push_back(light);
     }
-    if (emitters.empty()) return;
-    nodes_.reserve(2 * emitters.size() - 1);
+    return lights;
+}
+
+LightTree::LightTree(std::vector<Light> lights, std::size_t index_count) : leaf_(index_count, none) {
+    if (lights.empty()) return;
+    nodes_.reserve(2 * lights.size() - 1);
     nodes_.emplace_back();
-    build(0, emitters);
+    build(0, lights);
 }
 
 /// Bins along one axis, and which of them are in the upper half.
@@ -132,7 +128,7 @@ struct LightTree::Split {
     }
 };
 
-/// Emitters of a half, or of a bin.
+/// Lights of a half, or of a bin.
 struct LightTree::Bin {
     float power = 0;
     Box box;
@@ -155,14 +151,17 @@ struct LightTree::Bin {
     }
 };
 
-LightTree::Split LightTree::best_split(std::span<const Emitter> emitters, const Box& centres) {
+LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box& centres) {
     Split best;
     for (int axis = 0; axis < 3; ++axis) {
         const float extent = centres.high[axis] - centres.low[axis];
         if (!(extent > 0)) continue;
         Split split{axis, centres.low[axis], static_cast<float>(bin_count) / extent};
         std::array<Bin, bin_count> bins;
-        for (const Emitter& e : emitters) bins[split.bin_of(e.centre())].add({e.power, e.box, e.normal * e.power});
+        for (const Light& l : lights) {
+            const float evenness = std::max(0.0f, l.cone.cosine);  // 0: it shines over a hemisphere or more
+            bins[split.bin_of(l.centre())].add({l.power, l.box, l.cone.axis * (l.power * evenness)});
+        }
         std::array<float, bin_count> cost{};  // of a split before this bin
         Bin below, above;
         for (std::size_t b = 1; b < bin_count; ++b) {
@@ -181,43 +180,42 @@ LightTree::Split LightTree::best_split(std::span<const Emitter> emitters, const 
 }
 
 /// Splits where the costs of both halves are least in sum.
-void LightTree::build(std::uint32_t index, std::span<Emitter> emitters) {
-    Box box = emitters.front().box;
-    Box centres{emitters.front().centre(), emitters.front().centre()};
-    for (const Emitter& e : emitters) {
-        box.extend(e.box);
-        centres.extend({e.centre(), e.centre()});
+void LightTree::build(std::uint32_t node, std::span<Light> lights) {
+    Box box = lights.front().box;
+    Box centres{lights.front().centre(), lights.front().centre()};
+    for (const Light& l : lights) {
+        box.extend(l.box);
+        centres.extend({l.centre(), l.centre()});
     }
     const auto finish = [&](const Cone& cone, float power) {
-        LightNode& node = nodes_[index];
-        node.centre = 0.5f * (box.low + box.high);
-        node.half = 0.5f * (box.high - box.low);
-        node.radius2 = node.half.length2();
-        node.cone = cone;
-        node.cone_sine = Angle::of_cosine(cone.cosine).sine;
-        node.power = power;
+        LightNode& finished = nodes_[node];
+        finished.centre = 0.5f * (box.low + box.high);
+        finished.half = 0.5f * (box.high - box.low);
+        finished.radius2 = finished.half.length2();
+        finished.cone = cone;
+        finished.cone_sine = Angle::of_cosine(cone.cosine).sine;
+        finished.power = power;
     };
-    if (emitters.size() == 1) {
-        finish({emitters.front().normal, 1}, emitters.front().power);
-        nodes_[index].patch = emitters.front().patch;
-        leaf_[emitters.front().patch] = index;
+    if (lights.size() == 1) {
+        finish(lights.front().cone, lights.front().power);
+        nodes_[node].light = lights.front().index;
+        leaf_[lights.front().index] = node;
         return;
     }
 
-    const Split split = best_split(emitters, centres);
-    const auto middle = std::stable_partition(emitters.begin(), emitters.end(), [&](const Emitter& e) {
-        return split.bin_of(e.centre()) < split.first_above;
-    });
+    const Split split = best_split(lights, centres);
+    const auto middle = std::stable_partition(
+        lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
     // The outermost bins both have a member, so neither half is empty; but all are in one where the centres coincide.
-    std::size_t first_half = static_cast<std::size_t>(middle - emitters.begin());
-    if (first_half == 0 || first_half == emitters.size()) first_half = emitters.size() / 2;
+    std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
+    if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
 
     const auto child = static_cast<std::uint32_t>(nodes_.size());
     nodes_.resize(nodes_.size() + 2);
-    nodes_[index].first_child = child;
-    nodes_[child].parent = nodes_[child + 1].parent = index;
-    build(child, emitters.first(first_half));
-    build(child + 1, emitters.subspan(first_half));
+    nodes_[node].first_child = child;
+    nodes_[child].parent = nodes_[child + 1].parent = node;
+    build(child, lights.first(first_half));
+    build(child + 1, lights.subspan(first_half));
     finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
 }
 
@@ -265,11 +263,11 @@ LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) 
             node = child + 1;
         }
     }
-    return {nodes_[node].patch, probability};
+    return {nodes_[node].light, probability};
 }
 
-float LightTree::probability(std::uint32_t patch, const V3f& x, const V3f& n) const {
-    std::uint32_t node = leaf_[patch];
+float LightTree::probability(std::uint32_t index, const V3f& x, const V3f& n) const {
+    std::uint32_t node = leaf_[index];
     if (node == none) return 0;
     if (nodes_[node].parent == none) return importance(nodes_[node], x, n) > 0 ? 1.0f : 0.0f;
     float probability = 1;

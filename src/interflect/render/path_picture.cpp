@@ -13,8 +13,9 @@
 #include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/illumination.h"
-#include "interflect/raycast/camera.h"
+#include "interflect/render/camera_samples.h"
 #include "interflect/render/light_tree.h"
+#include "interflect/render/luminaire_choice.h"
 #include "interflect/render/pixel_statistics.h"
 
 namespace interflect::inline detail {
@@ -82,11 +83,13 @@ class PathPicture {
   private:
     PictureLayers layers() const {
         PictureLayers layers;
-        layers.pixel_angle = s_.pixel_angle;
+        layers.pixel_angle = s_.start.pixel_angle;
+        layers.pixel_size = s_.start.pixel_size;
         for (Image* image :
              {&layers.emitted, &layers.direct, &layers.indirect, &layers.albedo, &layers.normal, &layers.position})
             *image = Image(options_.width, options_.height);
-        for (std::vector<float>* numbers : {&layers.direct_variance, &layers.indirect_variance, &layers.depth})
+        for (std::vector<float>* numbers :
+             {&layers.direct_variance, &layers.indirect_variance, &layers.depth, &layers.level})
             numbers->resize(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
             const PixelStatistics& p = pixels_[i];
@@ -99,6 +102,7 @@ class PathPicture {
             layers.normal.pixels[i] = Rgb(V3f(p.first.normal));
             layers.position.pixels[i] = Rgb(V3f(p.first.position));
             layers.depth[i] = static_cast<float>(p.first.distance);
+            layers.level[i] = static_cast<float>(p.first.level);
         }
         return layers;
     }
@@ -188,30 +192,45 @@ std::size_t batch_size_for(int samples) {
 
 }  // namespace
 
-PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
-                          const PathMonitor& monitor, const KnownIrradiance* known) {
+PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                          const PathOptions& options, const PathMonitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
-    const LightTree lights(scene, geometry, emitted_powers(scene, geometry));
+    const LightTree lights(patch_lights(scene, geometry, emitted_powers(scene, geometry)), scene.patches.size());
+    const LuminaireChoice luminaires(scene);
+    const Panes panes(scene, ray_caster);
+    const auto is_mirror = [](const Material& m) { return largest_channel(m.specular_reflectance) > 0; };
     std::optional<KnownLight> known_light;
     if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
-    const PathScene path_scene{
-        scene,
-        ray_caster,
-        Camera(view, options.width, options.height, scene.origin),
-        geometry,
-        lights,
-        sky_radiance(scene),
-        options.emitter_sampling,
-        options.seed,
-        options.width,
-        2 * std::tan(view.fov * (std::numbers::pi_v<float> / 360)) / static_cast<float>(options.height),
-        batch_size_for(options.samples),
-        known_light ? &*known_light : nullptr};
+    const PathScene path_scene{scene,
+                               ray_caster,
+                               start,
+                               geometry,
+                               lights,
+                               luminaires,
+                               sky_radiance(scene),
+                               options,
+                               batch_size_for(options.samples),
+                               panes,
+                               !panes.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror),
+                               known_light ? &*known_light : nullptr};
     PathPicture picture(path_scene, options, monitor);
     picture.trace();
     return picture.result();
+}
+
+KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {
+    forest.require_made_for(scene);
+    require_values_of_elements(forest, irradiance.size(), "irradiance");
+    return {forest, irradiance};
+}
+
+PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin) {
+    constexpr float degree = std::numbers::pi_v<float> / 180;
+    const Camera camera(view, options.width, options.height, origin);
+    if (view.extent > 0) return {camera, 0, {}, view.extent / static_cast<float>(options.height)};
+    return {camera, 2 * std::tan(view.fov / 2 * degree) / static_cast<float>(options.height)};
 }
 
 }  // namespace interflect::inline detail

@@ -27,14 +27,19 @@ VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::u
     const auto words = random_words(key, index);
     if (vertex > stratified_vertices) {
         const auto more = random_words(~key, index);
-        return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]),
-                unit_float(words[3]),       unit_float(more[0]),  unit_float(more[1])};
+        return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]), unit_float(words[3]),
+                unit_float(more[0]),        unit_float(more[1]),  unit_float(more[2])};
     }
     const auto of_light = shuffled_point(mix(key, 1), index), of_direction = shuffled_point(mix(key, 2), index);
     // A point is the middle of one of 2^23 cells, too coarse for one of millions of lamps: move it within its cell.
     const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
-    return {
-        of_light[0] + within_cell * 0x1p-23, of_light[1], of_light[2], of_direction[0], of_direction[1], of_light[3]};
+    return {of_light[0] + within_cell * 0x1p-23,
+            of_light[1],
+            of_light[2],
+            of_direction[0],
+            of_direction[1],
+            of_light[3],
+            unit_float(words[1])};
 }
 
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {

@@ -16,6 +16,7 @@ struct VertexSample {
     float light_u, light_v;  // and the point on it
     float direction_u, direction_v;
     float roulette;
+    float candidates;  // chooses luminaires that come into question; light, one of them
 };
 
 /// Those with which final gathering looks for bright places at a vertex.

@@ -6,7 +6,7 @@ namespace interflect {
 
 PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
                         const PathMonitor& monitor) {
-    return trace_picture(scene, ray_caster, view, options, monitor, nullptr);
+    return trace_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor, nullptr);
 }
 
 }  // namespace interflect

@@ -27,40 +27,66 @@ V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
 
 }  // namespace
 
+V3f PathWavefront::start_of(const Ray& ray, const Path& path) { return ray.origin - path.travelled * ray.direction; }
+
 void PathWavefront::trace(std::span<BatchOfPaths> batches) {
-    start_paths(batches);
-    for (vertex_ = 1; !paths_.empty(); ++vertex_) advance_paths();
+    vertex_ = 1;
+    light_.assign(batches.size() * s_.batch_size, {});
+    for (const BatchOfPaths& b : batches) keys_.push_back(mix(mix(s_.options.seed, b.pixel), b.batch));
+    if (s_.start.camera)
+        start_at_camera(batches);
+    else
+        start_at_gauges(batches);
+    for (; !paths_.empty(); ++vertex_) advance_paths();
+    const double unit = s_.options.quantity == PathQuantity::irradiance ? std::numbers::pi : 1;
     for (std::size_t i = 0; i < light_.size(); ++i) {
         BatchOfPaths& batch = batches[i / s_.batch_size];
-        batch.emitted += RgbD(light_[i].emitted);
-        batch.direct += RgbD(light_[i].direct);
-        batch.indirect += RgbD(light_[i].indirect);
+        batch.emitted += RgbD(light_[i].emitted) * unit;
+        batch.direct += RgbD(light_[i].direct) * unit;
+        batch.indirect += RgbD(light_[i].indirect) * unit;
         batch.first += light_[i].first;
         batch.done = true;
     }
 }
 
-void PathWavefront::start_paths(std::span<const BatchOfPaths> batches) {
+void PathWavefront::start_at_camera(std::span<const BatchOfPaths> batches) {
     const std::size_t size = s_.batch_size;
+    const auto width = static_cast<std::uint32_t>(s_.options.width);
     thread_local PointBlock points;
-    light_.assign(batches.size() * size, {});
-    for (const BatchOfPaths& b : batches) {
-        const std::uint64_t key = mix(mix(s_.seed, b.pixel), b.batch);
-        keys_.push_back(key);
-        fill_points(PointSet::sobol, key, 0, size, points);
-        const auto width = static_cast<std::uint32_t>(s_.width);
-        const std::uint32_t column = b.pixel % width, row = b.pixel / width;
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+        fill_points(PointSet::sobol, keys_[b], 0, size, points);
+        const std::uint32_t column = batches[b].pixel % width, row = batches[b].pixel / width;
         const auto left = static_cast<float>(column), top = static_cast<float>(row);
         for (std::size_t i = 0; i < size; ++i) {
-            rays_.push_back(s_.camera.ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
+            rays_.push_back(s_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
             paths_.push_back({Rgb(1, 1, 1), static_cast<std::uint32_t>(paths_.size()), V3f(0, 0, 0)});
         }
     }
 }
 
+void PathWavefront::start_at_gauges(std::span<const BatchOfPaths> batches) {
+    const std::size_t size = s_.batch_size;
+    thread_local PointBlock points;
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+        fill_points(PointSet::sobol, keys_[b], 0, size, points);
+        const Gauge& gauge = s_.start.gauges[batches[b].pixel];
+        for (std::size_t i = 0; i < size; ++i) {
+            const V3f normal = gauge.normal_at(points.coordinate[0][i]);
+            Path path{Rgb(1, 1, 1), static_cast<std::uint32_t>(b * size + i), normal};
+            Ray ray{gauge.position + normal * gauge.offset, normal};
+            if (!leave(ray, path)) continue;
+            rays_.push_back(ray);
+            paths_.push_back(path);
+        }
+    }
+    trace_shadow_rays();
+    ++vertex_;
+}
+
 void PathWavefront::advance_paths() {
     hits_.resize(rays_.size());
     s_.ray_caster.trace(rays_, hits_);
+    split_paths();
     counts_.rays += static_cast<std::int64_t>(rays_.size());
     shadow_rays_.clear();
     connections_.clear();
@@ -77,33 +103,80 @@ void PathWavefront::advance_paths() {
     trace_shadow_rays();
 }
 
+void PathWavefront::split_paths() {
+    if (!s_.splits) return;
+    const bool is_lit_alone = vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance;
+    std::size_t first = 0;
+    for (int round = 0; round < Panes::most_in_a_row && first < rays_.size() && !is_lit_alone; ++round) {
+        const std::size_t end = rays_.size();
+        for (std::size_t i = first; i < end; ++i) {
+            const Hit hit = hits_[i];
+            if (hit.patch == none) continue;
+            const Material& m = s_.material(hit.patch);
+            const Ray ray = rays_[i];
+            Path path = paths_[i];
+            if (s_.panes.has(hit.patch)) {
+                path.travelled += hit.distance;
+                add_path(s_.panes.behind(ray, hit), path, m.transmittance, m.reflectance);
+            }
+            if (vertex_ > 1 || !s_.options.mirrors || largest_channel(m.specular_reflectance) <= 0) continue;
+            const V3f n = s_.geometry[hit.patch].normal();
+            const V3f mirrored = ray.direction - 2 * n.dot(ray.direction) * n;
+            add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, paths_[i],
+                     m.specular_reflectance, m.reflectance);
+        }
+        hits_.resize(rays_.size());
+        s_.ray_caster.trace(std::span(rays_).subspan(end), std::span(hits_).subspan(end));
+        first = end;
+    }
+}
+
+void PathWavefront::add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance) {
+    constexpr float least_throughput = 1e-3f;  // beyond it mirrors that face each other show nothing new
+    Path added = path;
+    added.throughput *= share;
+    added.is_first = path.is_first && largest_channel(reflectance) <= 0;
+    if (largest_channel(added.throughput) < least_throughput) return;
+    rays_.push_back(ray);
+    paths_.push_back(added);
+}
+
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
+    const bool is_lit_alone = vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance;
     if (hit.patch == none) {
         ++counts_.escaped_rays;
-        add(path.index, vertex_ - 1, path.throughput * s_.sky);
+        if (!is_lit_alone) add(path.index, vertex_ - 1, path.throughput * s_.sky);
         return false;
     }
+    const V3f x = ray.origin + hit.distance * ray.direction;
+    const PatchGeometry& geometry = s_.geometry[hit.patch];
     const Material& material = s_.material(hit.patch);
     Rgb exitance = material.exitance, reflectance = material.reflectance;
     if (material.is_textured()) {
         const Patch& patch = s_.scene.patches[hit.patch];
-        const Parameters p = s_.geometry[hit.patch].parameters_of(ray.origin + hit.distance * ray.direction);
+        const Parameters p = geometry.parameters_of(x);
         exitance = exitance_at(s_.scene, patch, p);
         reflectance = reflectance_at(s_.scene, patch, p);
     }
-    if (vertex_ == 1)
-        light_[path.index].first = {RgbD(reflectance), Imath::V3d(s_.geometry[hit.patch].normal()),
-                                    Imath::V3d(ray.origin + hit.distance * ray.direction), hit.distance};
+    if (is_lit_alone) exitance = Rgb(0), reflectance = Rgb(1);
+    if (vertex_ == 1 && path.is_first)
+        light_[path.index].first = {RgbD(reflectance), Imath::V3d(geometry.normal()), Imath::V3d(x), hit.distance,
+                                    s_.known ? static_cast<double>(s_.known->level(hit.patch, x)) : 0};
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
     if (end_at_known_light(hit, ray, path)) return false;
     path.throughput *= reflectance;
     if (largest_channel(path.throughput) <= 0) return false;
-    const std::uint32_t size = static_cast<std::uint32_t>(s_.batch_size);
+    path.normal = geometry.normal();
+    ray.origin = offset_origin(s_, hit.patch, x);
+    return leave(ray, path);
+}
+
+bool PathWavefront::leave(Ray& ray, Path& path) {
+    path.travelled = 0;
+    const auto size = static_cast<std::uint32_t>(s_.batch_size);
     const VertexSample sample = vertex_sample(keys_[path.index / size], vertex_, path.index % size);
-    ray.origin = offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction);
-    path.normal = s_.geometry[hit.patch].normal();
-    if (s_.sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
+    if (s_.options.emitter_sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
     if (s_.known) connect_to_known_light(ray.origin, path);
     if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
 
@@ -118,11 +191,11 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
     const Rgb radiance = path.throughput * exitance / pi;
     if (vertex_ == 1) return add(path.index, 0, radiance);
     float weight = 1;
-    if (s_.sampling == EmitterSampling::lights) weight = 0;
-    if (s_.sampling == EmitterSampling::combined) {
-        const float probability = s_.lights.probability(hit.patch, ray.origin, path.normal);
-        const float of_light =
-            light_density(s_.geometry[hit.patch], probability, ray.direction, hit.distance * hit.distance);
+    if (s_.options.emitter_sampling == EmitterSampling::lights) weight = 0;
+    if (s_.options.emitter_sampling == EmitterSampling::combined) {
+        const float distance = path.travelled + hit.distance;
+        const float probability = s_.lights.probability(hit.patch, start_of(ray, path), path.normal);
+        const float of_light = light_density(s_.geometry[hit.patch], probability, ray.direction, distance * distance);
         weight = balance(path.normal.dot(ray.direction) / pi, of_light);
     }
     add(path.index, vertex_ - 1, radiance * weight);
@@ -131,9 +204,9 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
 bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Path& path) {
     if (!s_.known || vertex_ == 1) return false;
     const KnownLight::Place place = s_.known->place(hit.patch, ray.origin + hit.distance * ray.direction);
-    const float distance2 = hit.distance * hit.distance;
+    const float distance = path.travelled + hit.distance, distance2 = distance * distance;
     if (!s_.known->is_far(place, distance2)) return false;
-    const float of_light = density_towards(place, ray.origin, path.normal, ray.direction, distance2);
+    const float of_light = density_towards(place, start_of(ray, path), path.normal, ray.direction, distance2);
     const float weight = balance(path.normal.dot(ray.direction) / pi, of_light);
     add(path.index, vertex_, path.throughput * s_.known->radiance(place) * weight);
     return true;
@@ -171,8 +244,8 @@ void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& r
 
 void PathWavefront::connect_to_light(const V3f& x, const Path& path, const VertexSample& sample) {
     const LightTree::Choice choice = s_.lights.choose(x, path.normal, sample.light);
-    if (choice.patch == none) return;
-    const PatchGeometry& lamp = s_.geometry[choice.patch];
+    if (choice.index == none) return;
+    const PatchGeometry& lamp = s_.geometry[choice.index];
     const Parameters on_lamp = lamp.uniform_parameters(sample.light_u, sample.light_v);
     const V3f to_light = lamp.point(on_lamp) - x;
     const float distance2 = to_light.length2();
@@ -181,41 +254,50 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
     const float of_direction = path.normal.dot(direction) / pi;  // density; also cosine / pi
     const float of_light = light_density(lamp, choice.probability, direction, distance2);
     if (!(of_direction > 0 && of_light > 0)) return;
-    const float weight = s_.sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
+    const float weight = s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
     // The integral over the hemisphere of (rho / pi) (M / pi) cosine.
-    const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.patch], on_lamp) / pi;
+    const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.index], on_lamp) / pi;
     shadow_rays_.push_back({x, direction});
     connections_.push_back(
-        {choice.patch, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
+        {choice.index, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
 }
 
 void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample) {
-    const auto irradiance_from = [&](const Luminaire& luminaire, V3f& towards, float& distance) {
-        const Illumination light = illumination(luminaire, x, sample.light_u, sample.light_v);
-        towards = light.towards, distance = light.distance;
-        return light.irradiance * std::max(0.0f, path.normal.dot(light.towards));
-    };
-    V3f towards;
-    float distance = 0;
-    double all = 0, chosen = 0;
-    for (const Luminaire& luminaire : s_.scene.luminaires)
-        all += channel_sum(irradiance_from(luminaire, towards, distance));
-    if (!(all > 0)) return;
-    for (const Luminaire& luminaire : s_.scene.luminaires) {
-        const Rgb irradiance = irradiance_from(luminaire, towards, distance);
-        const double share = channel_sum(irradiance) / all;
-        chosen += share;
-        if (!(share > 0) || sample.light > chosen) continue;
-        shadow_rays_.push_back({x, towards});
-        connections_.push_back(
-            {none, path.index, path.throughput * irradiance / (pi * static_cast<float>(share)), distance, vertex_});
-        return;
+    const Illumination light = s_.luminaires.choose(x, path.normal, sample);
+    if (!(channel_sum(light.irradiance) > 0)) return;
+    shadow_rays_.push_back({x, light.towards});
+    connections_.push_back({none, path.index, path.throughput * light.irradiance / pi, light.distance, vertex_});
+}
+
+void PathWavefront::pass_panes() {
+    if (s_.panes.empty()) return;
+    std::vector<std::size_t> passing;
+    std::vector<Ray> rest;
+    std::vector<Hit> behind;
+    for (int round = 0; round < Panes::most_in_a_row; ++round) {
+        passing.clear(), rest.clear();
+        for (std::size_t i = 0; i < connections_.size(); ++i) {
+            Connection& c = connections_[i];
+            if (hits_[i].patch == c.patch || !s_.panes.has(hits_[i].patch)) continue;
+            if (c.patch == none && hits_[i].distance > c.distance) continue;
+            passing.push_back(i);
+            rest.push_back(s_.panes.behind(shadow_rays_[i], hits_[i]));
+            c.radiance *= s_.panes.transmittance(hits_[i].patch);
+            c.distance -= hits_[i].distance;
+        }
+        if (passing.empty()) return;
+        behind.resize(rest.size());
+        s_.ray_caster.trace(rest, behind);
+        counts_.rays += static_cast<std::int64_t>(rest.size());
+        for (std::size_t k = 0; k < passing.size(); ++k)
+            shadow_rays_[passing[k]] = rest[k], hits_[passing[k]] = behind[k];
     }
 }
 
 void PathWavefront::trace_shadow_rays() {
     hits_.resize(shadow_rays_.size());
     s_.ray_caster.trace(shadow_rays_, hits_);
+    pass_panes();
     counts_.rays += static_cast<std::int64_t>(shadow_rays_.size());
     counts_.shadow_rays += static_cast<std::int64_t>(shadow_rays_.size());
     for (std::size_t i = 0; i < connections_.size(); ++i) {

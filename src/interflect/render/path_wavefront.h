@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,26 +11,37 @@
 #include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/render/gauge.h"
 #include "interflect/render/known_light.h"
 #include "interflect/render/light_tree.h"
+#include "interflect/render/luminaire_choice.h"
 #include "interflect/render/path_samples.h"
 #include "interflect/scene.h"
 
 namespace interflect::inline detail {
 
+/// Where paths start, one pixel each: on the squares of a picture, or at gauges.
+struct PathStart {
+    std::optional<Camera> camera;
+    float pixel_angle = 0;            // that a pixel's side fills in the middle of the picture [rad]; 0 if orthographic
+    std::span<const Gauge> gauges{};  // without a camera
+    float pixel_size = 0;             // of an orthographic picture [m]
+};
+
 /// What all paths of a picture share.
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
-    Camera camera;
+    const PathStart& start;
     std::span<const PatchGeometry> geometry;  // of each patch
-    const LightTree& lights;
+    const LightTree& lights;                  // patches
+    const LuminaireChoice& luminaires;
     Rgb sky;  // its radiance
-    EmitterSampling sampling;
-    std::uint64_t seed;
-    int width;
-    float pixel_angle;  // that a pixel's side fills in the middle of the picture [rad]
+    const PathOptions& options;
     std::size_t batch_size;
+    Panes panes;
+    bool splits;                        // at panes, or at mirrors
     const KnownLight* known = nullptr;  // that paths end at; null: they go on until roulette ends them
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
@@ -40,9 +52,10 @@ struct FirstHit {
     RgbD albedo{0, 0, 0};  // its reflectance
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
     double distance = 0;  // from the eye [m]
+    double level = 0;     // of the element, where a solution is known
 
     FirstHit& operator+=(const FirstHit& o) {
-        albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance;
+        albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
         return *this;
     }
 };
@@ -80,8 +93,10 @@ class PathWavefront {
   private:
     struct Path {
         Rgb throughput;
-        std::uint32_t index;  // in light_
-        V3f normal;           // of the surface that its ray leaves
+        std::uint32_t index;   // in light_
+        V3f normal;            // of the surface that its ray leaves
+        float travelled = 0;   // from there to where its ray starts, behind panes [m]
+        bool is_first = true;  // nothing that reflects diffusely lies before it in the picture
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
@@ -91,22 +106,35 @@ class PathWavefront {
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;         // to the luminaire [m]
+        float distance;         // to the luminaire, from where the shadow ray starts [m]
         std::uint32_t bounces;  // of the light that it brings
     };
 
-    void start_paths(std::span<const BatchOfPaths> batches);
+    void start_at_camera(std::span<const BatchOfPaths> batches);
+    /// Their light is gathered as a white surface would, so that paths begin by leaving it.
+    void start_at_gauges(std::span<const BatchOfPaths> batches);
     /// Traces the rays of all paths and keeps those that go on.
     void advance_paths();
+    /// Where a path left the last surface.
+    static V3f start_of(const Ray& ray, const Path& path);
+    /// Adds the paths that go straight on behind panes of glass, and from the camera's point of view in mirrors.
+    void split_paths();
+    /// A path that splits off another; where its throughput would not count it is not added.
+    void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     /// What happens where a ray hits; afterwards `ray` and `path` are the reflected ones. @return Whether it goes on.
     bool interact(const Hit& hit, Ray& ray, Path& path);
+    /// Joins `ray.origin`, on a surface with `path.normal`, to the light, and chooses the direction in which the path
+    /// leaves it. @return Whether it goes on.
+    bool leave(Ray& ray, Path& path);
     /// Light from the emitting patch that a ray has hit.
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
     /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample);
-    /// The same for luminaires: one of them, chosen by what it would bring if nothing were in its way.
+    /// The same for luminaires.
     void connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample);
     void trace_shadow_rays();
+    /// Lets shadow rays that have hit a pane of glass on their way go on behind it.
+    void pass_panes();
     /// Ends a path at the solution's light, unless the element that its ray hit is too near.
     /// @return Whether it has ended.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);

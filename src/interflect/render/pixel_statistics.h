@@ -33,6 +33,7 @@ struct PixelStatistics {
         first.normal += (b.first.normal / batch_size - first.normal) / count;
         first.position += (b.first.position / batch_size - first.position) / count;
         first.distance += (b.first.distance / batch_size - first.distance) / count;
+        first.level += (b.first.level / batch_size - first.level) / count;
     }
     /// Mean of the channels of what is reflected.
     double reflected() const { return mean_channel(direct + indirect); }

@@ -8,6 +8,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
+#include "interflect/raycast/panes.h"
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
@@ -16,12 +17,12 @@ namespace interflect {
 
 namespace {
 
-/// Luminance at points of the scene's surfaces.
+/// Radiance or irradiance at points of the scene's surfaces.
 class Shader {
   public:
     Shader(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance,
            const RenderOptions& options)
-        : scene_(scene), forest_(forest), irradiance_(irradiance) {
+        : scene_(scene), forest_(forest), irradiance_(irradiance), shows_irradiance_(options.irradiance) {
         if (options.shading == Shading::flat) return;
         vertices_.emplace(scene, forest, options.smoothing);
         smooth_.emplace(forest, *vertices_, irradiance);
@@ -29,8 +30,9 @@ class Shader {
     Shader(const Shader&) = delete;  // smooth_ refers to vertices_
     Shader& operator=(const Shader&) = delete;
 
-    /// L = B / pi with B = M + rho H, where `ray` hit; M and rho are those of the texels there.
-    Rgb radiance_at(const Ray& ray, const Hit& hit) const {
+    /// H or L = B / pi with B = M + rho H, where `ray` hit; M and rho are those of the texels there.
+    Rgb value_at(const Ray& ray, const Hit& hit) const {
+        if (shows_irradiance_) return irradiance_at(ray, hit);
         const Patch& patch = scene_.patches[hit.patch];
         const Material& material = scene_.materials[patch.material];
         Rgb exitance = material.exitance, reflectance = material.reflectance;
@@ -52,6 +54,7 @@ class Shader {
     const Scene& scene_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
+    bool shows_irradiance_;
     std::optional<ElementVertices> vertices_;
     std::optional<SmoothField> smooth_;
 };
@@ -64,22 +67,26 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
     const Camera camera(view, options.width, options.height, scene.origin);
-    const RgbD sky(sky_radiance(scene));
+    const RgbD sky(options.irradiance ? Rgb(0) : sky_radiance(scene));
     const Shader shader(scene, forest, irradiance, options);
 
     Rendering result;
     result.image = Image(options.width, options.height);
     std::atomic<std::int64_t> escaped_rays{0};
     const CameraSampling sampling{options.width, options.height, options.samples, options.seed};
+    const Panes panes(scene, ray_caster);
     trace_pixels(camera, ray_caster, sampling, monitor, [&](const PixelSamples& samples) {
         RgbD sum(0, 0, 0);
         std::int64_t escaped = 0;
-        for (std::size_t i = 0; i < samples.rays.size(); ++i) {
-            if (samples.hits[i].patch == none)
-                ++escaped, sum += sky;
-            else
-                sum += RgbD(shader.radiance_at(samples.rays[i], samples.hits[i]));
-        }
+        const auto value = [&](const Ray& ray, const Hit& hit) {
+            escaped += hit.patch == none ? 1 : 0;
+            return hit.patch == none ? sky : RgbD(shader.value_at(ray, hit));
+        };
+        for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
+        thread_local std::vector<Panes::HitBehind> behind;
+        behind.clear();
+        if (!options.irradiance) panes.trace(samples.rays, samples.hits, behind);  // irradiance is that of the pane
+        for (const auto& [ray, transmittance, hit] : behind) sum += value(samples.rays[ray], hit) * RgbD(transmittance);
         result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
         if (escaped > 0) escaped_rays += escaped;
     });

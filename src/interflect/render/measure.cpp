@@ -1,0 +1,84 @@
+#include "interflect/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "interflect/error.h"
+#include "interflect/geometry/tangent_frame.h"
+#include "interflect/render/gauge.h"
+#include "interflect/render/path_picture.h"
+
+namespace interflect {
+
+namespace {
+
+/// By what the ray caster's offset is at the scene's farthest vertex, whatever surface the point may lie on.
+float offset_for(const Scene& scene, const V3f& position) {
+    constexpr float relative_offset = 0x1p-17f;
+    float reach = 0;
+    for (const V3f& v : scene.vertices)
+        for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(v[k]));
+    for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(position[k]));
+    return relative_offset * reach;
+}
+
+V3f direction_of(const V3f& v, const char* what, std::size_t point) {
+    const float length = v.length();
+    if (!(length > 0 && std::isfinite(length)))
+        throw InputError(fmt::format("measuring point {}: its {} has no direction", point, what));
+    return v / length;
+}
+
+Gauge gauge_of(const MeasuringPoint& point, std::size_t index, const Imath::V3d& origin) {
+    constexpr float pi = std::numbers::pi_v<float>;
+    Gauge gauge;
+    gauge.position = V3f(point.position - origin);
+    if (!std::isfinite(gauge.position.length2()))
+        throw InputError(fmt::format("measuring point {}: its position is not finite", index));
+    if (point.receiver == Receiver::planar) {
+        gauge.normal = direction_of(point.normal, "normal", index);
+        return gauge;
+    }
+    const V3f axis = direction_of(point.axis, "axis", index);
+    const bool is_whole = point.receiver == Receiver::cylindrical;
+    gauge.half_arc = is_whole ? pi : pi / 2;
+    gauge.normal =
+        is_whole ? TangentFrame(axis).s : direction_of(point.normal - axis * axis.dot(point.normal), "normal", index);
+    gauge.tangent = axis.cross(gauge.normal);
+    return gauge;
+}
+
+}  // namespace
+
+std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Solution* solution,
+                                                   const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
+                                                   PathOptions options, const PathMonitor& monitor) {
+    if (points.empty()) return {};
+    std::vector<Gauge> gauges;
+    gauges.reserve(points.size());
+    for (const MeasuringPoint& point : points) gauges.push_back(gauge_of(point, gauges.size(), scene.origin));
+    V3f farthest(0);
+    for (const Gauge& gauge : gauges)
+        if (gauge.position.length2() > farthest.length2()) farthest = gauge.position;
+    const float offset = offset_for(scene, farthest);
+    for (Gauge& gauge : gauges) gauge.offset = offset;
+
+    options.width = static_cast<int>(points.size());
+    options.height = 1;
+    options.quantity = PathQuantity::irradiance;
+    const PathStart start{{}, 0, gauges};
+    std::optional<KnownIrradiance> known;
+    if (solution) known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
+    const PathTracing traced = trace_picture(scene, ray_caster, start, options, monitor, known ? &*known : nullptr);
+    std::vector<MeasuredIrradiance> measured(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        measured[i] = {traced.layers.direct.pixels[i], traced.layers.indirect.pixels[i],
+                       traced.standard_error.pixels[i]};
+    return measured;
+}
+
+}  // namespace interflect

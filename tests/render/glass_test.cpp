@@ -1,0 +1,167 @@
+// Thin glass, in the solver, in paths and in pictures; mirrors in pictures.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "interflect/error.h"
+#include "interflect/gather.h"
+#include "interflect/measure.h"
+#include "interflect/path_tracer.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+const Rgb colour{0.8f, 0.5f, 0.25f};
+
+std::uint32_t add_glass(Scene& scene, const Rgb& transmittance, const Rgb& reflectance) {
+    const std::uint32_t glass = add_material(scene, reflectance, Rgb(0));
+    scene.materials[glass].transmittance = transmittance;
+    return glass;
+}
+
+/// Two panes one behind the other across a room of 2 x 1 x 1 m, halfway along it. They reflect what they do not let
+/// through, so that light is the same everywhere, M / (1 - rho), as if they were not there.
+Scene divided_furnace() {
+    Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0.5f, 0.6f, 0.4f), Rgb(30)}});
+    const std::uint32_t glass = add_glass(scene, {0.7f, 0.2f, 1}, {0.3f, 0.8f, 0});
+    for (const float x : {0.9f, 1.1f}) add_rectangle(scene, {x, 0, 0}, {0, 1, 0}, {0, 0, 1}, glass, 1, 1, true);
+    return scene;
+}
+const View along{"along", {0.1, 0.5, 0.5}, {2, 0.5, 0.5}, {0, 0, 1}, 40};
+
+class EveryMethod : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Method, EveryMethod, testing::Values("srr", "isrr", "wdrs", "hwdrs", "hsrr", "ihsrr", "pr"),
+                         [](const auto& tested) { return tested.param; });
+
+/// Seen to fail where rays go on unfiltered.
+TEST_P(EveryMethod, FillsAFurnaceThroughGlass) {
+    const Scene scene = divided_furnace();
+    const RayCaster ray_caster(scene);
+    SolveOptions options{.method = find_method(GetParam()), .limits = {.rays = 1'000'000}};
+    if (options.method.importance != ImportanceUse::off) options.views = {{along, 1, 1.5f, 48}};
+    const Solution solution = solve(scene, ray_caster, options);
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const float expected = 30 / (1 - scene.materials[0].reflectance[c]);
+            EXPECT_NEAR(solution.irradiance[p][c] / expected, 1, 0.03) << "patch " << p << ", channel " << c;
+        }
+}
+
+TEST(Glass, IsRefusedByMethodsThatLetNothingThrough) {
+    const Scene scene = divided_furnace();
+    const RayCaster ray_caster(scene);
+    for (const char* method : {"hr", "global-lines", "random-walk"})
+        EXPECT_THROW(solve(scene, ray_caster, {.method = find_method(method)}), InputError) << method;
+}
+
+TEST(Glass, PicturesOfAFurnaceAreEven) {
+    const Scene scene = divided_furnace();
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 500'000}});
+    const PathOptions options{.width = 6, .height = 4, .samples = 1024};
+    RgbD expected;
+    for (int c = 0; c < 3; ++c)
+        expected[c] = 30 / (1 - static_cast<double>(scene.materials[0].reflectance[c])) / std::numbers::pi;
+    for (const bool is_gathered : {false, true}) {
+        const PathTracing picture = is_gathered ? gather(scene, solution, ray_caster, along, options)
+                                                : trace_paths(scene, ray_caster, along, options);
+        for (std::size_t i = 0; i < picture.image.pixels.size(); ++i)
+            for (int c = 0; c < 3; ++c) {
+                const double error = 5 * static_cast<double>(picture.standard_error.pixels[i][c]);
+                EXPECT_LT(error, 0.2 * expected[c]);
+                EXPECT_NEAR(picture.image.pixels[i][c], expected[c], error + (is_gathered ? 0.01 : 0) * expected[c]);
+            }
+    }
+    const Rendering drawn = render(scene, solution, ray_caster, along, {.width = 6, .height = 4});
+    for (const Rgb& pixel : drawn.image.pixels)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c] / expected[c], 1, 0.04);
+}
+
+/// A lamp and a floor with a coloured pane between them.
+struct LampBehindGlass {
+    Scene scene;
+    V3f x{2, 2, 0};
+
+    LampBehindGlass(const Luminaire* luminaire, const Rgb& transmittance) {
+        add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, add_material(scene, Rgb(0), Rgb(0)));
+        if (luminaire)
+            scene.luminaires.push_back(*luminaire);
+        else
+            add_rectangle(scene, {1.9f, 1.9f, 2.9f}, {0, 0.2f, 0}, {0.2f, 0, 0},
+                          add_material(scene, Rgb(0), Rgb(5000)));
+        if (transmittance != Rgb(1))
+            add_rectangle(scene, {-2, -2, 1.5f}, {8, 0, 0}, {0, 8, 0}, add_glass(scene, transmittance, Rgb(0)), 1, 1,
+                          true);
+    }
+    MeasuredIrradiance measured(const Solution* solution) const {
+        const RayCaster ray_caster(scene);
+        return measure_irradiance(scene, solution, ray_caster, std::vector<MeasuringPoint>{{Imath::V3d(x)}},
+                                  {.samples = 4096})
+            .front();
+    }
+};
+
+/// Seen to fail where shadow rays go on unfiltered. Light on the floor is what it would be without the pane times its transmittance, of lamps, luminaires and the sun,
+/// each channel by itself.
+TEST(Glass, FiltersLightByItsColour) {
+    const Luminaire point{"lamp", 0, PointLight{{2, 2, 2.5f}, Rgb(100)}};
+    const Luminaire parallel{"sun", 0, DirectionalLight{{0.2f, 0.1f, -1}, Rgb(100)}};
+    for (const Luminaire* luminaire : {static_cast<const Luminaire*>(nullptr), &point, &parallel}) {
+        LampBehindGlass clear(luminaire, Rgb(1)), tinted(luminaire, colour);
+        const MeasuredIrradiance expected = clear.measured(nullptr), found = tinted.measured(nullptr);
+        for (int c = 0; c < 3; ++c) {
+            const double error = 5 * static_cast<double>(found.standard_error[c] + expected.standard_error[c]);
+            EXPECT_GT(expected.sum()[c], 1);
+            EXPECT_NEAR(found.sum()[c], expected.sum()[c] * colour[c], error + 1e-4 * expected.sum()[c]);
+        }
+        const RayCaster ray_caster(tinted.scene), of_clear(clear.scene);
+        const SolveOptions options{.method = find_method("srr"), .limits = {.rays = 400'000}};
+        const Solution solution = solve(tinted.scene, ray_caster, options);
+        const Solution unfiltered = solve(clear.scene, of_clear, options);
+        for (int c = 0; c < 3; ++c)  // patch 0 is the floor
+            EXPECT_NEAR(solution.irradiance[0][c] / unfiltered.irradiance[0][c], colour[c], 0.02f * colour[c]);
+    }
+}
+
+/// A mirror that faces the camera shows the wall behind it, darker by what it does not reflect; --no-mirrors does not.
+TEST(Mirror, ShowsWhatIsBehindTheCamera) {
+    Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(0)}});
+    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(7));
+    const std::uint32_t mirror = add_material(scene, Rgb(0), Rgb(0));
+    scene.materials[mirror].specular_reflectance = {0.9f, 0.5f, 0.1f};
+    add_rectangle(scene, {1.9f, 0, 0}, {0, 0, 1}, {0, 1, 0}, mirror);
+    add_rectangle(scene, {0.05f, 0, 0}, {0, 1, 0}, {0, 0, 1}, lamp);
+    const RayCaster ray_caster(scene);
+    const View view{"mirror", {1, 0.5, 0.5}, {2, 0.5, 0.5}, {0, 0, 1}, 10};
+    PathOptions options{.width = 4, .height = 4, .samples = 16};
+    const Image seen = trace_paths(scene, ray_caster, view, options).image;
+    for (const Rgb& pixel : seen.pixels)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(pixel[c], scene.materials[mirror].specular_reflectance[c] * 7 / std::numbers::pi_v<float>,
+                        1e-4);
+    options.mirrors = false;
+    for (const Rgb& pixel : trace_paths(scene, ray_caster, view, options).image.pixels) EXPECT_EQ(pixel, Rgb(0));
+}
+
+/// Two that face each other end.
+TEST(Mirror, FacingAnotherEnds) {
+    Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(1)}});
+    scene.materials[0].specular_reflectance = Rgb(0.9f);
+    const RayCaster ray_caster(scene);
+    const PathTracing traced = trace_paths(scene, ray_caster, along, {.width = 4, .height = 4, .samples = 16});
+    // 1 + s + s^2 + ...: what is below a thousandth, and beyond 32 mirrors, is left out.
+    EXPECT_NEAR(traced.image.pixels[5].x * std::numbers::pi_v<float>, (1 - std::pow(0.9, 33)) / (1 - 0.9), 0.01);
+}
+
+}  // namespace
+}  // namespace interflect
