@@ -104,6 +104,30 @@ Imath::V3d parse_vector(const std::string& text) {
     return v;
 }
 
+Section parse_section(const std::string& text) {
+    constexpr const char* expected = "a plane such as x=3 or -y=2.5, or a point on it and a direction, X,Y,Z,DX,DY,DZ";
+    std::string_view rest = text;
+    Section section;
+    const double sign = take(rest, '-') ? -1 : 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!take(rest, "xyz"[axis])) continue;
+        double value = 0;
+        if (!take(rest, '=') || !take_number(rest, value) || !rest.empty()) refuse(text, expected);
+        section.direction = Imath::V3d(0);
+        section.point[axis] = value;
+        section.direction[axis] = sign;
+        return section;
+    }
+    rest = text;
+    for (int i = 0; i < 6; ++i) {
+        double& number = i < 3 ? section.point[i] : section.direction[i - 3];
+        if ((i > 0 && !take(rest, ',')) || !take_number(rest, number)) refuse(text, expected);
+    }
+    if (!rest.empty() || !(V3f(section.direction.normalized()).length() > 0) || !is_finite(V3f(section.direction)))
+        refuse(text, expected);
+    return section;
+}
+
 PlacedLuminaire parse_luminaire(const std::string& text) {
     constexpr const char* expected =
         "FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR], such as lamp.ies@2,1.5,2.7";
@@ -161,6 +185,35 @@ Exposure parse_exposure(const std::string& text) {
         refuse(text, "stops from -100 to 100, such as 2, or auto, or stops from there, such as auto+1");
     exposure.stops = static_cast<float>(stops);
     return exposure;
+}
+
+Range parse_range(const std::string& text) {
+    constexpr double highest = 1e12;
+    const std::size_t dots = text.find("..");
+    std::string_view low_text = std::string_view(text).substr(0, dots);
+    std::string_view high_text = dots == text.npos ? "" : std::string_view(text).substr(dots + 2);
+    double low = 0, high = 0;
+    const bool parsed =
+        take_number(low_text, low) && low_text.empty() && take_number(high_text, high) && high_text.empty();
+    const Range range{static_cast<float>(low), static_cast<float>(high)};
+    if (!parsed || low < 0 || high > highest || !(range.low < range.high))
+        refuse(text, "LOW..HIGH, such as 50..2000: two rising numbers from 0 to 1e12");
+    return range;
+}
+
+std::vector<float> parse_isolines(const std::string& text) {
+    if (text == "auto") return {};
+    constexpr std::size_t most = 100;
+    std::vector<float> values;
+    std::string_view rest = text;
+    double value = 0;
+    do {
+        if (!take_number(rest, value) || !(value > 0 && value <= 1e12) || values.size() == most)
+            refuse(text, "auto, or up to 100 numbers above 0 to 1e12 with commas between, such as 100,300,500");
+        values.push_back(static_cast<float>(value));
+    } while (take(rest, ','));
+    if (!rest.empty()) refuse(text, "auto, or numbers above 0 with commas between, such as 100,300,500");
+    return values;
 }
 
 float parse_mesh_size(const std::string& text) {

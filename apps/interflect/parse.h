@@ -31,6 +31,12 @@ std::uint64_t parse_seed(const std::string& text);
 double parse_share(const std::string& text);
 /// "1,2.5,-3" -> (1, 2.5, -3), finite also in single precision.
 Imath::V3d parse_vector(const std::string& text);
+/// "x=3" -> {(3, 0, 0), (1, 0, 0)}, "-z=1" -> {(0, 0, 1), (0, 0, -1)}, "1,2,3,0,1,1" -> {(1, 2, 3), (0, 1, 1)}.
+struct Section {
+    Imath::V3d point{0, 0, 0};      // [m]
+    Imath::V3d direction{1, 0, 0};  // of the view; has a length
+};
+Section parse_section(const std::string& text);
 /// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
 /// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
 PlacedLuminaire parse_luminaire(const std::string& text);
@@ -46,6 +52,13 @@ struct Exposure {
     bool relative = true;
 };
 Exposure parse_exposure(const std::string& text);
+/// "50..2000" -> {50, 2000}: rising, from 0 to 10^12.
+struct Range {
+    float low = 0, high = 1;
+};
+Range parse_range(const std::string& text);
+/// "auto" -> none, "100,300,500" -> these: numbers above 0 to 10^12.
+std::vector<float> parse_isolines(const std::string& text);
 /// "0.05" -> 0.05, above 0; "auto" -> automatic_mesh_size; "none" -> whole_patches.
 float parse_mesh_size(const std::string& text);
 inline constexpr float automatic_mesh_size = 0, whole_patches = -1;

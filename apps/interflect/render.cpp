@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/cut_options.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/drawing_progress.h"
+#include "apps/interflect/false_colour_options.h"
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/refused_options.h"
@@ -43,26 +47,40 @@ enum class PictureShading {
     path,  ///< Path tracing, with no solution.
 };
 
+bool traces_paths(PictureShading shading) {
+    return shading == PictureShading::gather || shading == PictureShading::path;
+}
+
 struct RenderArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
+    CutOptions cut;
     DimmingOptions dimming;
     SolverOptions solver;
     PathTracerArguments path;
     std::filesystem::path output;
     Size size;
-    PictureShading shading = PictureShading::smooth;
+    PictureShading shading = PictureShading::gather;
     std::optional<int> samples;
     RenderOptions render;
     Exposure exposure;
-    Tonemap tonemap = Tonemap::filmic;
+    Tonemap tonemap = Tonemap::srgb;
+    float display_luminance = usual_display_luminance;
     Shown shown = Shown::light;
+    FalseColourOptions false_colour;
+    int legend_rows = 0;  // of the picture, at its foot
+
+    bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
+    bool shows_irradiance() const { return false_colour.measured == Measured::illuminance; }
+    /// Of the view, above the legend [pixels].
+    int rows() const { return size.height - legend_rows; }
 };
 
 /// The one view to draw: as asked for, else the scene's first, else an overview.
-View view_to_draw(const Scene& scene, const ViewOptions& options) {
-    const std::vector<View> views = options.views(scene);
+View view_to_draw(const Scene& scene, const RenderArguments& options) {
+    if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
+    const std::vector<View> views = options.view.views(scene);
     if (views.size() > 1) throw InputError("a picture has one view, but several were given");
     if (views.size() == 1) return views.front();
     if (!scene.views.empty()) return scene.views.front();
@@ -77,6 +95,8 @@ struct Picture {
     std::string quantity = "radiance [cd/m^2]";
     std::optional<float> exposure;  // none where it has no meaning
     std::int64_t non_finite_pixels = 0;
+    bool is_dark = false;  // no light is seen
+    PathTracing traced{};  // what its layers are taken from
 };
 
 bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
@@ -85,31 +105,58 @@ bool is_black(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
 }
 
-/// Tone-mapped in formats for people.
-Picture picture_of_light(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
+/// [stops]. Operators that need absolute luminance choose the brightness themselves: automatic is 0 there.
+float exposure_of(const Image& light, const RenderArguments& options) {
+    const bool automatic = options.exposure.relative && !is_absolute(options.tonemap);
+    return options.exposure.stops + (automatic ? automatic_exposure(light) : 0);
+}
+
+/// In false colours for people, as numbers in formats to measure with.
+Picture picture_of_numbers(const Image& values, const RenderArguments& options) {
     Picture picture;
-    picture.exposure = options.exposure.stops + (options.exposure.relative ? automatic_exposure(light) : 0);
+    picture.quantity = options.false_colour.label();
+    picture.image = is_for_people(options) ? options.false_colour.draw(values, options.legend_rows > 0) : values;
+    return picture;
+}
+
+/// Tone-mapped in formats for people.
+Picture picture_of_light(const Image& light, const RenderArguments& options) {
+    Picture picture;
+    picture.exposure = exposure_of(light, options);
+    picture.image =
+        is_for_people(options) ? tone_map(light, *picture.exposure, options.tonemap, options.display_luminance) : light;
+    return picture;
+}
+
+/// @param light  Radiance, or irradiance where that is to be shown.
+Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
+    Picture picture = options.false_colour.measured ? picture_of_numbers(luminances(light), options)
+                                                    : picture_of_light(light, options);
     picture.non_finite_pixels = non_finite_pixels;
-    picture.image = is_for_people(options) ? tone_map(light, *picture.exposure, options.tonemap) : light;
-    if (is_black(light)) spdlog::warn("the view shows no light: the picture is black");
+    picture.is_dark = is_black(light);
     return picture;
 }
 
 PathOptions path_options(const RenderArguments& options) {
     PathOptions result;
     result.width = options.size.width;
-    result.height = options.size.height;
-    result.samples = options.samples.value_or(result.samples);
+    result.height = options.rows();
+    constexpr int gathered_samples = 16;  // which a filter makes look even
+    result.samples =
+        options.samples.value_or(options.shading == PictureShading::gather ? gathered_samples : result.samples);
     result.until = options.solver.until();
     result.seed = options.solver.seed();
+    if (options.shows_irradiance()) result.quantity = PathQuantity::irradiance;
     return result;
 }
 
-Picture draw_gathered(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                      const RenderArguments& options) {
-    const PathTracing gathered =
-        run_path_tracer(solved.scene, &solved.solution, ray_caster, view, path_options(options), options.path);
-    return picture_of_light(gathered.image, gathered.non_finite_pixels, options);
+/// @param solution  Null: by path tracing.
+Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
+    PathTracing traced = run_path_tracer(scene, solution, ray_caster, view, path_options(options), options.path);
+    Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
+    picture.traced = std::move(traced);
+    return picture;
 }
 
 Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
@@ -117,18 +164,23 @@ Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const
     DrawingProgress progress;
     const Rendering rendering = render(solved.scene, *solved.solution.forest, ray_caster, view,
                                        solved.solution.irradiance, options.render, progress.monitor());
-    Picture picture = picture_of_light(rendering.image, rendering.non_finite_pixels, options);
+    Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
                                       options.render.samples, options.render.seed, {}, progress.monitor());
     return picture;
 }
 
+/// What false colours stand for.
+std::string label(const RenderArguments& options) {
+    return options.false_colour.measured ? options.false_colour.label() : label_of(options.shown);
+}
+
 /// Rows of the picture that its legend takes; 0 where there is no room for one.
 int legend_rows(const RenderArguments& options) {
     const auto [width, height] = options.size;
-    if (!is_for_people(options)) return 0;
-    if (legend_fits(width, height, label_of(options.shown))) return legend_height(width);
+    if (!is_for_people(options) || !options.is_in_false_colours()) return 0;
+    if (legend_fits(width, height, label(options))) return legend_height(width);
     spdlog::warn("{} x {} pixels have no room for a legend: the colours are not explained", width, height);
     return 0;
 }
@@ -136,21 +188,19 @@ int legend_rows(const RenderArguments& options) {
 /// In false colours for people, as numbers in formats to measure with.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
-    const int rows = legend_rows(options);
-    const CameraSampling sampling{options.size.width, options.size.height - rows, options.render.samples,
-                                  options.render.seed};
+    const CameraSampling sampling{options.size.width, options.rows(), options.render.samples, options.render.seed};
     DrawingProgress progress;
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
-    const std::string label = label_of(options.shown);
-    if (rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label);
-    return {
-        is_for_people(options) ? std::move(drawn.shown) : std::move(drawn.values), label, {}, drawn.non_finite_pixels};
+    if (options.legend_rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label(options));
+    Image& image = is_for_people(options) ? drawn.shown : drawn.values;
+    return {std::move(image), label(options), {}, drawn.non_finite_pixels};
 }
 
 void write_picture(PendingFile& output, const Picture& picture, const View& view, const Scene& scene,
                    std::uint64_t seed, const RenderArguments& options) {
     write_image(output, picture.image,
-                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)});
+                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)},
+                options.path.layers ? layers_of(picture.traced) : std::vector<ImageLayer>());
     if (picture.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", picture.non_finite_pixels);
     const bool is_exposed = picture.exposure && is_for_people(options);
     spdlog::info("{}: {} x {}, view '{}', {}{}", options.output.string(), picture.image.width, picture.image.height,
@@ -169,7 +219,7 @@ SolvedScene read(const RenderArguments& options, const CLI::App& command) {
     }
     solved = read_solution(options.scene.path);
     options.dimming.dim(solved);
-    refuse_scene_options(command, options.scene.path, options.shading == PictureShading::path);
+    refuse_scene_options(command, options.scene.path, traces_paths(options.shading));
     return solved;
 }
 
@@ -177,12 +227,14 @@ SolvedScene read(const RenderArguments& options, const CLI::App& command) {
 void run_solution(RenderArguments& options, const CLI::App& command, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read(options, command);
-    const View view = view_to_draw(solved.scene, options.view);
+    const View view = view_to_draw(solved.scene, options);
     Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses what defines no picture
     if (options.shown == Shown::mesh && !is_for_people(options))
         throw InputError(options.output, 0, "outlines of the mesh are for pictures to look at: expected .png or .jpg");
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    const SolveOptions solve_options = options.solver.resolved({view}, aspect, options.size.height);
+    // A plan shows all of the scene alike: nothing is gained by importance.
+    const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
+    const SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
@@ -191,13 +243,15 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
     options.render.width = options.size.width;
-    options.render.height = options.size.height;
+    options.render.height = options.rows();
+    options.render.irradiance = options.shows_irradiance();
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
-    const bool is_gathered = options.shading == PictureShading::gather && options.shown == Shown::light;
     const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                            : is_gathered              ? draw_gathered(solved, ray_caster, view, options)
-                                                       : draw_light(solved, ray_caster, view, options);
+                            : traces_paths(options.shading)
+                                ? draw_paths(solved.scene, &solved.solution, ray_caster, view, options)
+                                : draw_light(solved, ray_caster, view, options);
+    if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
 }
@@ -205,36 +259,58 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
 /// Draws the light that path tracing finds; of a solution file the scene alone counts.
 void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
     const Scene scene = read(options, command).scene;
-    const View view = view_to_draw(scene, options.view);
+    const View view = view_to_draw(scene, options);
     const RayCaster ray_caster(scene);
-    warn_of_camera_outside(scene, ray_caster, view,
-                           static_cast<float>(options.size.width) / static_cast<float>(options.size.height));
-    const PathTracing traced = run_path_tracer(scene, nullptr, ray_caster, view, path_options(options), options.path);
-    const Picture picture = picture_of_light(traced.image, traced.non_finite_pixels, options);
+    const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
+    warn_of_camera_outside(scene, ray_caster, view, aspect);
+    const Picture picture = draw_paths(scene, nullptr, ray_caster, view, options);
+    if (picture.is_dark) warn_of_darkness(scene, ray_caster, view, aspect);
     write_picture(output, picture, view, scene, options.solver.seed(), options);
 }
 
-/// Curves and exposure are for light on a display.
-void warn_of_tone_options(const RenderArguments& options, const CLI::App& command) {
+/// Curves and exposure are for light on a display. @throws InputError for a display that no operator asks about.
+void check_tone_options(const RenderArguments& options, const CLI::App& command) {
+    if (command.get_option("--display-luminance")->count() > 0 && !is_absolute(options.tonemap))
+        throw InputError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");
     for (const char* name : {"--exposure", "--tonemap"}) {
         if (command.get_option(name)->count() == 0) continue;
-        if (is_quantity(options.shown))
-            spdlog::warn("{} has no effect: numbers of the elements are drawn in false colours", name);
+        if (options.is_in_false_colours())
+            spdlog::warn("{} has no effect: numbers are drawn in false colours", name);
         else if (!is_for_people(options))
             spdlog::warn("{} does not change linear values, which {} holds: it is for .png and .jpg", name,
                          options.output.string());
     }
 }
 
+void check_false_colours(const RenderArguments& options) {
+    options.false_colour.check();
+    if (options.false_colour.measured && options.shown != Shown::light)
+        throw InputError("--false-colour measures the light: expected no --show beside it");
+    const bool is_drawn =
+        options.false_colour.scale || options.false_colour.logarithmic || options.false_colour.isolines;
+    if (is_drawn && !is_for_people(options))
+        spdlog::warn("{} holds the numbers themselves: --scale, --logarithmic and --isolines are for .png and .jpg",
+                     options.output.string());
+}
+
 /// Everything that can be refused is refused before the first ray.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     require_image_format(options.output);
+    if (options.shown != Shown::light && options.shading == PictureShading::gather)
+        options.shading = PictureShading::smooth;  // of elements
     if (options.shading == PictureShading::path)
         refuse_solver_options(command);
-    else if (options.shading != PictureShading::gather)
+    else if (!traces_paths(options.shading))
         refuse_path_options(command);
-    warn_of_tone_options(options, command);
+    if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
+        throw InputError(options.output, 0, "layers need a picture in OpenEXR: expected .exr");
+    if (options.shading == PictureShading::gather && command.get_option("--denoise")->count() == 0)
+        options.path.denoise = is_for_people(options);
+    check_tone_options(options, command);
+    check_false_colours(options);
+    options.cut.check();
+    options.legend_rows = legend_rows(options);
     require_distinct_files(input_files(options.scene, options.view),
                            std::array<NamedFile, 3>{{{"--output", options.output},
                                                      {"--stats", options.solver.stats},
@@ -245,6 +321,31 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     else
         run_solution(options, command, output);
     if (is_stop_requested()) exit_code = interrupted;
+}
+
+void add_tone_options(CLI::App& command, RenderArguments& options) {
+    add_parsed(command, "--exposure", options.exposure, parse_exposure,
+               "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as by itself. For "
+               "ward, tumblin and ferwerda auto is 0: they choose the brightness")
+        ->type_name("STOPS|auto[+-STOPS]")
+        ->default_str("auto");
+    add_choice<Tonemap>(command, "--tonemap", options.tonemap,
+                        {{"srgb", Tonemap::srgb},
+                         {"reinhard", Tonemap::reinhard},
+                         {"filmic", Tonemap::filmic},
+                         {"agx", Tonemap::agx},
+                         {"ward", Tonemap::ward},
+                         {"tumblin", Tonemap::tumblin},
+                         {"ferwerda", Tonemap::ferwerda}},
+                        "Tone mapping of .png and .jpg. srgb: true ratios, clipped; reinhard, filmic, agx: curves with "
+                        "soft highlights; ward, tumblin, ferwerda: as bright as the scene looks, from cd/m^2")
+        ->default_str("srgb");
+    command
+        .add_option("--display-luminance", options.display_luminance,
+                    "Of the white of the display, for ward, tumblin and ferwerda [cd/m^2]")
+        ->check(number_between(1, 10000))
+        ->type_name("CD/M2")
+        ->default_str("100");
 }
 
 }  // namespace
@@ -258,12 +359,11 @@ void add_render(CLI::App& app, int& exit_code) {
         ->required()
         ->type_name("FILE");
     options->view.add_to(command);
+    options->cut.add_to(command, {"--view", "--view-file", "--eye"});
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command
-        .add_option("--samples", options->samples,
-                    "Camera rays a pixel (default: 16; with --shading gather and path 64)")
+    command.add_option("--samples", options->samples, "Camera rays a pixel (default: 16; with --shading path 64)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,
@@ -273,17 +373,11 @@ void add_render(CLI::App& app, int& exit_code) {
          {"path", PictureShading::path}},
         "gather: each pixel finds its own light, from the solution; smooth: interpolated over each surface; "
         "flat: one value an element; path: path tracing, without solving")
-        ->default_str("smooth");
+        ->default_str("gather");
     options->path.add_to(command);
-    add_parsed(command, "--exposure", options->exposure, parse_exposure,
-               "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as by itself")
-        ->type_name("STOPS|auto[+-STOPS]")
-        ->default_str("auto");
-    add_choice<Tonemap>(command, "--tonemap", options->tonemap,
-                        {{"filmic", Tonemap::filmic}, {"reinhard", Tonemap::reinhard}, {"linear", Tonemap::linear}},
-                        "Curve of .png and .jpg")
-        ->default_str("filmic");
+    add_tone_options(command, *options);
     add_show(command, options->shown);
+    options->false_colour.add_to(command);
     options->dimming.add_to(command);
     options->solver.add_to(command);
     options->mesh.add_to(command);

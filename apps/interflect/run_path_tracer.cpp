@@ -41,16 +41,44 @@ void PathTracerArguments::add_to(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24))
         ->group(path_group);
-    app.add_flag("--denoise", denoise, "Filter noise from the light, but not from textures and edges")
+    app.add_flag("--denoise,!--no-denoise", denoise,
+                 "Filter noise from the light, but not from textures and edges (default: where a .png or .jpg is "
+                 "gathered)")
+        ->group(path_group);
+    app.add_flag("--layers", layers,
+                 "Write direct and indirect light, albedo, normal, depth, variance and element level too: .exr")
+        ->group(path_group);
+    app.add_flag(
+           "--mirrors,!--no-mirrors", mirrors,
+           "Show what mirrors reflect to the camera (default), or leave it out, as all other light that they reflect")
         ->group(path_group);
     app.add_option("--error-image", error_image, "Write the standard error of each pixel: .exr .hdr")
         ->type_name("FILE")
         ->group(path_group);
 }
 
+std::vector<ImageLayer> layers_of(const PathTracing& traced) {
+    const PictureLayers& l = traced.layers;
+    const auto of_image = [](const std::string& name, const char* channels, const Image& image) {
+        static_assert(sizeof(Rgb) == 3 * sizeof(float));
+        return ImageLayer{name, channels, {&image.pixels.data()->x, 3 * image.pixels.size()}};
+    };
+    return {of_image("emitted", "RGB", l.emitted),
+            of_image("direct", "RGB", l.direct),
+            of_image("indirect", "RGB", l.indirect),
+            of_image("albedo", "RGB", l.albedo),
+            of_image("normal", "XYZ", l.normal),
+            of_image("standard_error", "RGB", traced.standard_error),
+            {"depth", "Z", l.depth},
+            {"element_level", "V", l.level},
+            {"direct_variance", "V", l.direct_variance},
+            {"indirect_variance", "V", l.indirect_variance}};
+}
+
 PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                             PathOptions options, const PathTracerArguments& arguments) {
     options.max_samples = arguments.max_samples;
+    options.mirrors = arguments.mirrors;
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) {
         require_linear_format(arguments.error_image);
@@ -71,8 +99,9 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
     if (arguments.denoise) traced.image = denoise(traced.layers);
     log_outcome(solution ? "final gathering" : "path tracing", traced, seconds());
     if (error_image) {
+        const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
         write_image(*error_image, traced.standard_error,
-                    {view, "standard error of radiance [cd/m^2]", scene.name, INTERFLECT_VERSION, options.seed});
+                    {view, std::string("standard error of ") + unit, scene.name, INTERFLECT_VERSION, options.seed});
     }
     return traced;
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "interflect/image_files.h"
 #include "interflect/path_tracer.h"
 #include "interflect/solve.h"
 
@@ -16,9 +17,14 @@ struct PathTracerArguments {
     int max_samples = PathOptions().max_samples;
     std::filesystem::path error_image;  ///< Empty: none.
     bool denoise = false;
+    bool layers = false;
+    bool mirrors = true;
 
     void add_to(CLI::App& app);
 };
+
+/// What else is known of the pixels, in the layers of an OpenEXR file; refers to `traced`.
+std::vector<ImageLayer> layers_of(const PathTracing& traced);
 
 /// Traces paths with a progress bar, says what came of it, and writes the image of the standard error if asked for.
 /// Ctrl-C ends it early with what there is.

@@ -13,6 +13,7 @@
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
 #include "interflect/error.h"
+#include "interflect/power_balance.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
 
@@ -30,7 +31,15 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
             percent(escapes.share()));
 }
 
-void log_outcome(const Solution& solution) {
+/// What is emitted is absorbed or escapes; what is left over tells how far to trust the solution.
+std::string text_of_balance(const Scene& scene, const Solution& solution) {
+    const PowerBalance balance = power_balance(scene, solution);
+    if (!(channel_sum(balance.emitted) > 0)) return {};
+    return fmt::format(", {:.6g} lm emitted = {:.6g} absorbed + {:.6g} escaped ({:+.3f}%)", luminance(balance.emitted),
+                       luminance(balance.absorbed), luminance(balance.escaped), 100 * balance.relative_difference());
+}
+
+void log_outcome(const Scene& scene, const Solution& solution) {
     if (solution.non_finite > 0)
         spdlog::warn("{} powers were not finite and were ignored: the result is not reliable", solution.non_finite);
     if (solution.iterations.empty()) {
@@ -39,7 +48,7 @@ void log_outcome(const Solution& solution) {
         return;
     }
     const IterationReport& last = solution.iterations.back();
-    spdlog::info("{}: {} rays in {}, {} elements{}{}", solution.options.method.name,
+    spdlog::info("{}: {} rays in {}, {} elements{}{}{}", solution.options.method.name,
                  magnitude(static_cast<double>(last.rays)), duration(last.seconds), last.elements,
                  std::isfinite(last.error_estimate)
                      ? fmt::format(", estimated relative error {} (noise {}, mesh {})", percent(last.error_estimate),
@@ -48,7 +57,8 @@ void log_outcome(const Solution& solution) {
                  last.escaped_rays > 0
                      ? fmt::format(", {} of the rays left the scene",
                                    percent(static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays)))
-                     : "");
+                     : "",
+                 text_of_balance(scene, solution));
     if (!solution.options.views.empty() && !std::isfinite(last.error_estimate) && solution.iterations.size() > 2)
         spdlog::warn("no view shows a lit surface that reflects light: the error is not known");
     if (solution.options.method.refines && last.elements + std::size_t{4} > solution.options.refinement.max_elements)
@@ -110,7 +120,7 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
     const std::shared_ptr<const Scene> scene = solver.shared_scene();
     const std::shared_ptr<const RayCaster> ray_caster = solver.shared_ray_caster();
     Solution solution = std::move(solver).take_solution();
-    log_outcome(solution);
+    log_outcome(*scene, solution);
     warn_of_leaks(*scene, *ray_caster, solution);
     return solution;
 }

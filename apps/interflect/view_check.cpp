@@ -7,12 +7,14 @@
 
 #include "apps/interflect/percent.h"
 #include "interflect/raycast/camera.h"
+#include "interflect/scene/limits.h"
 
 namespace interflect::command {
 
 namespace {
 
 constexpr int check_rows = 36;
+constexpr double all = 1;                 // as a share
 constexpr int most_check_columns = 1024;  // of a picture that is very wide
 
 std::vector<Ray> camera_rays(const Scene& scene, const View& view, float aspect) {
@@ -53,25 +55,38 @@ FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& 
         backwards.push_back({rays[i].origin + distance * rays[i].direction, -rays[i].direction});
     }
     const std::vector<Hit> hits_backwards = hits_of(ray_caster, backwards);
-    FirstMet met;
-    const double share = 1 / static_cast<double>(rays.size());
+    std::size_t backs = 0, nothing = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const float distance = (backwards[i].origin - rays[i].origin).length();
         if (hits_backwards[i].patch != none && hits_backwards[i].distance < distance)
-            met.backs += share;
+            ++backs;
         else if (hits[i].patch == none)
-            met.nothing += share;
+            ++nothing;
     }
-    return met;
+    const auto count = static_cast<double>(rays.size());
+    return {static_cast<double>(nothing) / count, static_cast<double>(backs) / count};
 }
 
 void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
     const FirstMet met = first_met(scene, ray_caster, view, aspect);
+    if (view.extent > 0) {  // around a plan there is nothing, and cut walls show their backs
+        if (met.nothing == all) spdlog::warn("{}: nothing of the scene lies beyond the cut", view.name);
+        return;
+    }
     if (met.nothing + met.backs <= 0.5) return;
     spdlog::warn(
         "view '{}': the camera seems to be outside the scene: {} of the picture shows nothing and {} is seen through "
         "the backs of one-sided faces",
         view.name, percent(met.nothing), percent(met.backs));
+}
+
+void warn_of_darkness(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
+    const char* reason = "what it sees is unlit; is the camera inside a closed object?";
+    if (brightest_source(scene) == 0)
+        reason = "nothing in the scene emits";
+    else if (first_met(scene, ray_caster, view, aspect).nothing == all)
+        reason = "it meets no surface";
+    spdlog::warn("the view shows no light: {}", reason);
 }
 
 }  // namespace interflect::command

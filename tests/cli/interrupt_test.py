@@ -79,19 +79,22 @@ class Interrupt(CommandTest):
         self.assertEqual(self.files(), ["out.exr", "room.mgf"])
         self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
 
-    def test_path_tracing_keeps_a_picture_and_its_error(self):
-        self.interrupt_after_first_progress(
-            *("render", "room.mgf", "--shading", "path", "-o", "out.exr", "--error-image", "error.exr", *VIEW),
-            *("--size", "32x18", "--samples", "65536"),
-        )
-        self.assertEqual(self.files(), ["error.exr", "out.exr", "room.mgf"])
-        self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
+    def test_path_tracing_and_gathering_keep_a_picture_and_its_error(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
+        for source in ("room.mgf", "room.h5"):
+            shading = "path" if source == "room.mgf" else "gather"
+            self.interrupt_after_first_progress(
+                *("render", source, "--shading", shading, "-o", "out.exr", "--error-image", "error.exr", *VIEW),
+                *("--size", "32x18", "--samples", "65536"),
+            )
+            self.assertEqual(self.files(), ["error.exr", "out.exr", "room.h5", "room.mgf"])
+            self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
 
     def test_drawing_ends_at_once_and_leaves_nothing(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
-        large = ("render", "room.h5", "-o", "out.png", *VIEW, "--size", "4000x3000", "--samples", "4096")
+        large = ("render", "room.h5", "-o", "out.png", *VIEW, "--size", "4000x3000", "--samples", "4096", "--shading")
         for shown in ("light", "mesh", "level"):
-            process = self.start(*large, "--show", shown)
+            process = self.start(*large, "smooth", "--show", shown)
             self.assertRegex(process.stderr.readline(), r"^ *\d+%  .* rays, .*/s, .* left$")
             process.send_signal(signal.SIGINT)
             rest = process.communicate(timeout=SOON)[1]

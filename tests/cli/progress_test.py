@@ -47,14 +47,15 @@ class Progress(CommandTest):
 
     def test_drawing_has_none_unless_it_takes_long(self):
         self.interflect(*self.SOLVE)
-        result = self.interflect("render", "out.h5", "-o", "out.png", *VIEW, "--size", "32x18")
+        draw = ("render", "out.h5", "-o", "out.png", *VIEW, "--shading", "smooth", "--size")
+        result = self.interflect(*draw, "32x18")
         self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
         size = 128
         seconds = 0
         while seconds < 3:  # of a picture that takes long enough on this machine
             size *= 2
             start = time.monotonic()
-            said = self.interflect("render", "out.h5", "-o", "out.png", *VIEW, "--size", f"{size}x{size}").stderr
+            said = self.interflect(*draw, f"{size}x{size}").stderr
             seconds = time.monotonic() - start
         self.assertRegex(said, r"(?m)^ *\d+%  [\d.]+ [kMG] rays, [\d.]+ [kMG]/s, [\d.]+ s left$")
         self.assertRegex(said, r"(?m)^100%  ")

@@ -10,7 +10,8 @@ import unittest
 
 from command import ROOT, CommandTest
 
-LESS_WORK = {r"--rays \d+M": "--rays 300k", r"--time \d+": "--time 1", r"--until \d+%": "--until 20%"}
+SMALL = "--size 160x90"
+LESS_WORK = {r"--rays \d+M": "--rays 300k", r"--time \d+": "--time 1", r"--until \d+%": "--until 20%", r"--size \d+x\d+": SMALL}
 
 
 def examples():
@@ -37,6 +38,8 @@ class Readme(CommandTest):
             arguments = shlex.split(example)
             if arguments[0] == "bench":
                 arguments += ["--rays", "100k", "--rounds", "1"]
+            if arguments[0] == "render" and "--size" not in arguments:
+                arguments += shlex.split(SMALL)
             subcommands.add(arguments[0])
             printed = self.interflect(*arguments, timeout=120).stdout.splitlines()
             for line in output:

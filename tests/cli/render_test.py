@@ -1,11 +1,12 @@
 """Pictures: reproducible, of the view that was asked for, and labelled with how they came to be."""
 
 import json
+import math
 import re
 import struct
 import unittest
 
-from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, CommandTest, methods, room
+from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, WRONG_USAGE, CommandTest, methods, room, vertices
 
 SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
@@ -135,6 +136,130 @@ class Shown(RenderTest):
         self.assertEqual(self.files(), ["room.h5", "room.mgf", "room.views.json"])
 
 
+class FalseColours(RenderTest):
+    def test_exr_has_the_numbers(self):
+        self.solve()
+        for name, quantity in (("lux", b"illuminance [lx]"), ("cd/m2", b"luminance [cd/m^2]")):
+            attributes = exr_attributes(self.render("out.exr", "--false-colour", name, source="room.h5"))
+            self.assertEqual(attributes["interflect.quantity"][1], quantity)
+
+    def test_illuminance_is_the_irradiance_of_the_elements(self):
+        """Where all that is seen reflects the same and emits nothing, luminance is rho / pi times as much: a little more,
+        since the paint is warm, and so is the light in the room."""
+        self.solve()
+        floor = ("--view", "floor", "--shading", "flat")
+        self.render("lux.exr", "--false-colour", "lux", *floor, source="room.h5")
+        self.render("elements.exr", "--show", "irradiance", *floor, source="room.h5")
+        self.assertAlmostEqual(self.json("compare", "lux.exr", "elements.exr")["ratio_of_means"], 1, places=6)
+        self.render("luminance.exr", "--false-colour", "cd/m2", *floor, source="room.h5")
+        ratio = self.json("compare", "luminance.exr", "lux.exr")["ratio_of_means"]
+        self.assertAlmostEqual(ratio, 0.6 / math.pi, delta=0.01)
+
+    def test_all_shadings_agree(self):
+        self.solve()
+        size = ("--view", "floor", "--size", "32x18")
+        self.interflect("solve", "room.mgf", "-o", "fine.h5", "--rays", "2M")
+        for name in ("lux", "cd/m2"):
+            measure = ("--false-colour", name, *size)
+            self.interflect("render", "fine.h5", "-o", "smooth.exr", *measure)
+            for shading in ("path", "gather"):
+                self.interflect("render", "fine.h5", "-o", "out.exr", *measure, "--shading", shading, "--samples", "256")
+                difference = self.json("compare", "out.exr", "smooth.exr")
+                self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.02, msg=f"{name} {shading}")
+
+    def test_pictures_differ_by_scale_and_lines(self):
+        self.solve()
+        lux = ("--false-colour", "lux")
+        size = ("--size", "240x160", "--samples", "4")
+        choices = ((), ("--logarithmic",), ("--scale", "10..2000"), ("--scale", "10..2000", "--logarithmic"),
+                   ("--isolines", "auto"), ("--isolines", "60,100"))
+        pictures = [self.render("out.png", *lux, *more, source="room.h5", size=size) for more in choices]
+        self.assertEqual(len(set(pictures)), len(pictures))
+        for picture in pictures:
+            self.assertEqual(struct.unpack_from(">II", picture, 16), (240, 160))
+
+    def test_what_has_no_effect_is_refused_or_told(self):
+        self.solve()
+
+        def said(*options, exit_code=BAD_INPUT, name="out.png"):
+            return self.interflect("render", "room.h5", "-o", name, *SMALL, *options, exit_code=exit_code).stderr
+
+        for options in (("--scale", "1..2"), ("--logarithmic",), ("--isolines", "auto")):
+            self.assertIn("--false-colour", said(*options))
+        lux = ("--false-colour", "lux")
+        self.assertIn("--show", said(*lux, "--show", "mesh"))
+        self.assertIn("logarithmic", said(*lux, "--scale", "0..5", "--logarithmic"))
+        self.assertIn("--isolines", said(*lux, "--isolines", "5", exit_code=0, name="out.exr"))
+        self.assertIn("--tonemap has no effect", said(*lux, "--tonemap", "agx", exit_code=0))
+
+
+class PlansAndSections(RenderTest):
+    """The room is 2 x 3 m and 2.5 m high; its lamp hangs at 2.4 m."""
+
+    LUX = ("--false-colour", "lux")
+
+    def said(self, name, *options, source="room.h5", exit_code=0):
+        return self.interflect("render", source, "-o", name, *options, exit_code=exit_code).stderr
+
+    def ratio(self, image, reference):
+        return self.json("compare", image, reference)["ratio_of_means"]
+
+    def test_are_to_scale(self):
+        self.solve()
+        flat = ("--shading", "flat", *self.LUX, "--samples", "4")
+        self.assertIn("plan: 2 x 3 m, a pixel is 50 mm",
+                      self.said("near.exr", "--plan", "1", "--extent", "3", "--size", "40x60", *flat))
+        self.said("far.exr", "--plan", "1", "--extent", "6", "--size", "40x60", *flat)
+        self.assertAlmostEqual(self.ratio("near.exr", "far.exr"), 4, delta=0.02)
+        self.said("half.exr", "--plan", "1", "--extent", "3", "--centre", "2,1.5,9", "--size", "40x60", *flat)
+        self.assertAlmostEqual(self.ratio("near.exr", "half.exr"), 2, delta=0.2)
+
+    def test_show_the_light_of_what_is_cut_away(self):
+        """The lamp above the plan lights the floor, in every shading; without the lamp there is no light."""
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "2M")
+        plan = ("--plan", "1", "--extent", "3", "--size", "20x30", *self.LUX)
+        self.said("smooth.exr", *plan, "--shading", "smooth")
+        for shading in ("flat", "gather", "path"):
+            self.said("out.exr", *plan, "--shading", shading, "--samples", "64")
+            self.assertAlmostEqual(self.ratio("out.exr", "smooth.exr"), 1, delta=0.02, msg=shading)
+
+    def test_ways_to_name_a_cut_agree(self):
+        self.solve()
+        size = ("--size", "32x32", "--shading", "flat")
+        self.said("plan.hdr", "--plan", "1", *size)
+        self.said("section.hdr", "--section", "-z=1", *size)
+        self.said("general.hdr", "--section", "7,8,1,0,0,-3", *size)
+        self.said("up.hdr", "--section", "z=1", *size)
+        self.assertEqual(self.bytes("section.hdr"), self.bytes("plan.hdr"))
+        self.assertEqual(self.bytes("general.hdr"), self.bytes("plan.hdr"))
+        self.assertNotEqual(self.bytes("up.hdr"), self.bytes("plan.hdr"))
+
+    def test_a_scene_is_solved_without_importance(self):
+        said = self.said("out.png", "--plan", "1", *SMALL, *SOLVED, source="room.mgf")
+        self.assertIn("hsrr:", said)
+        self.assertNotIn("ihsrr", said)
+        self.assertNotIn("warning", said)
+
+    def test_what_makes_no_sense_is_refused(self):
+        self.solve()
+        for other in (("--view", "door"), VIEW, ("--section", "x=1")):
+            self.assertIn("--plan", self.said("out.png", "--plan", "1", *other, exit_code=WRONG_USAGE))
+        for option in (("--extent", "3"), ("--centre", "1,1,1")):
+            self.assertIn("--plan", self.said("out.png", *option, exit_code=BAD_INPUT))
+
+    def test_a_cut_beyond_the_scene(self):
+        self.solve()
+        said = self.said("out.exr", "--plan", "-3", *SMALL)
+        self.assertIn("warning: plan: nothing of the scene lies beyond the cut", said)
+        self.assertIn("warning: the view shows no light: it meets no surface", said)
+
+    def test_exr_has_the_extent(self):
+        self.solve()
+        attributes = exr_attributes(self.render("out.exr", "--plan", "1", "--extent", "5", source="room.h5"))
+        self.assertEqual(attributes["interflect.extent"], ("float", struct.pack("<f", 5)))
+        self.assertNotIn("interflect.fov", attributes)
+
+
 class Methods(RenderTest):
     def test_all_show_the_same_room(self):
         """Flat ones on a mesh: what it smooths away is the difference, which noise adds to."""
@@ -176,13 +301,15 @@ class OptionsWithoutEffect(RenderTest):
             "--stats": "stats.json",
         }.items():
             self.assertIn(
-                f"room.h5: it is solved already: {option} has no effect, expected a scene", self.refused(option, value)
+                f"room.h5: it is solved already: {option} has no effect, expected a scene",
+                self.refused("--shading", "smooth", option, value),
             )
         self.assertIn("--contact-cuts", self.refused("--no-contact-cuts"))
         self.assertIn("--rays", self.refused("--shading", "path", "--rays", "5M"))
         self.assertIn("--max-patches", self.refused("--shading", "path", "--max-patches", "1M"))
-        path = ("--shading", "path", "--samples", "2", "--seed", "3", "--until", "50%", "--threads", "1")
-        self.interflect("render", "room.h5", "-o", "out.png", "--size", "8x4", *path)
+        for shading in ("path", "gather"):
+            path = ("--shading", shading, "--samples", "2", "--seed", "3", "--until", "50%", "--threads", "1")
+            self.interflect("render", "room.h5", "-o", "out.png", "--size", "8x4", *path)
 
     def test_linear_formats_are_not_exposed_and_quantities_not_tone_mapped(self):
         self.solve()
@@ -193,9 +320,9 @@ class OptionsWithoutEffect(RenderTest):
         for name in ("a.hdr", "a.exr"):
             self.assertIn("warning: --exposure does not change linear values", said(name, "--exposure", "3"))
             self.assertNotIn("exposure", said(name))
-        self.assertIn("warning: --tonemap does not change linear values", said("a.hdr", "--tonemap", "linear"))
+        self.assertIn("warning: --tonemap does not change linear values", said("a.hdr", "--tonemap", "srgb"))
         self.assertIn("warning: --exposure has no effect", said("a.png", "--exposure", "3", "--show", "level"))
-        self.assertNotIn("warning", said("a.png", "--exposure", "3", "--tonemap", "linear"))
+        self.assertNotIn("warning", said("a.png", "--exposure", "3", "--tonemap", "srgb"))
 
 
 class Pictures(RenderTest):
@@ -224,7 +351,7 @@ class Pictures(RenderTest):
 
     def test_exposure_is_in_stops(self):
         for stops in (-9, -8):
-            self.render(f"{stops + 9}.png", "--tonemap", "linear", "--exposure", stops)
+            self.render(f"{stops + 9}.png", "--tonemap", "srgb", "--exposure", stops)
         # PNG is read back as linear values: one stop more is twice as bright, but for 8 bits.
         self.assertAlmostEqual(self.json("compare", "1.png", "0.png")["ratio_of_means"], 2, delta=0.05)
 
@@ -240,6 +367,30 @@ class Pictures(RenderTest):
         self.assertAlmostEqual(exposure("--exposure", "auto+1"), automatic + 1, delta=0.011)
         self.assertAlmostEqual(exposure("--exposure", "auto-0.5"), automatic - 0.5, delta=0.011)
         self.assertEqual(exposure("--exposure", "+1.5"), 1.5)
+
+    def test_operators_make_pictures_of_their_own(self):
+        self.solve()
+        names = ("srgb", "reinhard", "filmic", "agx", "ward", "tumblin", "ferwerda")
+        pictures = [self.render("out.png", "--tonemap", name, source="room.h5") for name in names]
+        self.assertEqual(len(set(pictures)), len(pictures))
+        self.assertEqual(self.render("out.png", source="room.h5"), pictures[0], "srgb is the default")
+
+    def test_operators_of_absolute_luminance_choose_the_brightness(self):
+        self.solve()
+
+        def draw(*options):
+            arguments = ("render", "room.h5", "-o", "out.png", *SMALL, *options)
+            return self.interflect(*arguments).stderr, self.bytes("out.png")
+
+        ward = ("--tonemap", "ward")
+        said, plain = draw(*ward)
+        self.assertIn("exposure +0.00", said)
+        self.assertEqual(draw(*ward, "--exposure", "0")[1], plain)
+        self.assertEqual(draw(*ward, "--exposure", "auto-1")[1], draw(*ward, "--exposure", "-1")[1])
+        self.assertEqual(draw(*ward, "--display-luminance", "100")[1], plain)
+        self.assertNotEqual(draw(*ward, "--display-luminance", "500")[1], plain)
+        refused = ("render", "room.h5", "-o", "no.png", "--display-luminance", "500")
+        self.assertIn("--tonemap ward", self.interflect(*refused, exit_code=BAD_INPUT).stderr)
 
     def test_exposure_does_not_touch_linear_pictures(self):
         self.assertEqual(self.render("a.hdr"), self.render("b.hdr", "--exposure", "3"))
@@ -257,6 +408,41 @@ class Pictures(RenderTest):
             difference = self.json("compare", f"dark.{kind}", f"lit.{kind}")
             self.assertEqual(difference["ratio_of_means"], 0)
             self.assertEqual(difference["non_finite_pixels"], 0)
+
+
+class FinalGathering(RenderTest):
+    """What is drawn unless something else is asked for."""
+
+    def setUp(self):
+        super().setUp()
+        self.solve()
+
+    def gathered(self, name, *options):
+        return self.interflect("render", "room.h5", "-o", name, *SMALL, *VIEW, *options).stderr
+
+    def test_is_the_default_and_agrees_with_path_tracing(self):
+        self.assertRegex(self.gathered("out.exr"), r"info: final gathering: 2\.3 k paths, .* a pixel")
+        self.interflect("render", "room.mgf", "-o", "path.exr", "--size", "32x18", *VIEW, "--shading", "path", "--samples", "256")
+        self.assertAlmostEqual(self.json("compare", "out.exr", "path.exr")["ratio_of_means"], 1, delta=0.03)
+
+    def test_pictures_for_people_are_filtered_unless_refused(self):
+        for kind, filtered in (("png", True), ("exr", False)):
+            pictures = {}
+            for option in ("", "--denoise", "--no-denoise"):
+                self.gathered(f"out.{kind}", *filter(None, [option]))
+                pictures[option] = self.bytes(f"out.{kind}")
+            self.assertEqual(pictures[""], pictures["--denoise" if filtered else "--no-denoise"])
+            self.assertNotEqual(pictures["--denoise"], pictures["--no-denoise"])
+
+    def test_layers_lie_beside_the_picture(self):
+        self.gathered("out.exr", "--layers")
+        _, channels = exr_attributes(self.bytes("out.exr"))["channels"]
+        names = {name.decode() for name in re.findall(rb"([A-Za-z_.]+)\0", channels)}
+        for layer in ("", "emitted.", "direct.", "indirect.", "albedo.", "standard_error."):
+            self.assertLessEqual({layer + c for c in "RGB"}, names)
+        self.assertLessEqual({"normal.X", "depth.Z", "element_level.V", "direct_variance.V"}, names)
+        refused = self.interflect("render", "room.h5", "-o", "out.png", "--layers", exit_code=BAD_INPUT).stderr
+        self.assertIn(".exr", refused)
 
 
 class PathTracing(CommandTest):
@@ -331,7 +517,9 @@ class PathTracing(CommandTest):
             (("--shading", "path", "--samples", "1"), "samples"),
             (("--shading", "path", "--until", "5%", "--max-samples", "3"), "at most 3"),
             (("--shading", "path", "--error-image", "e.png"), "e.png"),
-            (("--error-image", "e.exr"), "--error-image"),
+            (("--shading", "flat", "--error-image", "e.exr"), "--error-image"),
+            (("--shading", "flat", "--denoise"), "--denoise"),
+            (("--show", "level", "--layers"), "--layers"),
             (("--shading", "flat", "--max-samples", "99"), "--max-samples"),
         ):
             stderr = self.interflect(*render, *options, exit_code=BAD_INPUT).stderr
@@ -369,10 +557,17 @@ class Camera(CommandTest):
     def test_looking_away(self):
         said = self.said(room(), view=("--eye", "1,-4,1.2", "--look-at", "1,-9,1.2"))
         self.assertRegex(said, self.WARNING + ": 100% of the picture shows nothing")
-        self.assertIn("the view shows no light", said)
+        self.assertIn("the view shows no light: it meets no surface", said)
+
+    def test_inside_a_closed_object(self):
+        corners = [(0.1 + 0.4 * x, 0.1 + 0.4 * y, 1.4 + 0.4 * z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        faces = "f v0 v1 v3 v2\nf v4 v6 v7 v5\nf v0 v2 v6 v4\nf v1 v5 v7 v3\nf v0 v4 v5 v1\nf v2 v3 v7 v6\n"
+        said = self.said(room() + vertices(*corners) + PAINT + faces)
+        self.assertIn("the view shows no light: what it sees is unlit; is the camera inside a closed object?", said)
 
     def test_in_the_dark(self):
-        self.assertIn("warning: the view shows no light", self.said(room().replace("ed 1000", "ed 0")))
+        said = self.said(room().replace("ed 1000", "ed 0"))
+        self.assertIn("warning: the view shows no light: nothing in the scene emits", said)
         self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
         path = ("--shading", "path", "--samples", "2", "--size", "8x4")
         said = self.interflect("render", "dark.mgf", "-o", "out.png", *path, *VIEW).stderr

@@ -69,13 +69,21 @@ class WrongUsage(CommandTest):
         self.assert_wrong([*RENDER, "--show", "all"], "--show", "importance", "level", "mesh")
         self.assert_wrong([*SOLVE, "--points", "grid"], "--points", "sobol", "random")
         self.assert_wrong([*RENDER, "--shading", "phong"], "--shading", "flat", "smooth")
-        self.assert_wrong([*RENDER, "--tonemap", "1"], "--tonemap", "filmic", "reinhard", "linear")
+        self.assert_wrong([*RENDER, "--false-colour", "candela"], "--false-colour", "lux", "cd/m2")
+        self.assert_wrong([*RENDER, "--tonemap", "1"], "--tonemap", "srgb", "filmic", "agx", "ferwerda")
 
     def test_pictures(self):
         for option, values in {
             "--size": ("64", "0x9", "9x-1", "1.5x9", "99999x9", "64x36x3"),
             "--samples": ("0",),
             "--exposure": ("nan", "inf", "1000", "auto1", "auto+", "auto+x", "auto+1000", "automatic", "1 auto", ""),
+            "--display-luminance": ("0", "-1", "nan", "bright"),
+            "--scale": ("5", "5..", "..5", "5..5", "9..3", "-1..2", "0..1e30", "nan..2", "1..2..3"),
+            "--isolines": ("", "0", "-5", "100,", ",100", "1,nan", "1;2", "automatic", "1e30"),
+            "--plan": ("low", "nan", ""),
+            "--section": ("x", "x=", "w=3", "x=3,4", "1,2,3", "1,2,3,0,0,0", "x=nan", "3", "+x=3", "1,2,3,4,5,6,7"),
+            "--extent": ("0", "-1", "nan"),
+            "--centre": ("1,2",),
             "--fov": ("0", "180", "nan"),
             "--up": ("1,2", "x,y,z", "0,0,nan"),
         }.items():
@@ -97,7 +105,7 @@ class Help(CommandTest):
         expected = {
             "info": ("SCENE", "--json"),
             "solve": ("--rays COUNT", "20M", "--time SECONDS", "--seed NUMBER=1", "--threads", "--stats FILE", "[m]"),
-            "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "smooth|flat|path=smooth", "STOPS"),
+            "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "gather|smooth|flat|path=gather", "STOPS"),
             "compare": ("IMAGE", "REFERENCE", "--scale"),
             "bench": ("--rays COUNT=4M", "--rounds"),
             "make-scene": ("maze", "office", "boxes", "two-rooms"),

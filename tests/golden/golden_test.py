@@ -12,7 +12,8 @@ RATIO_OF_MEANS, BLOCKS_OF_5 = 0.01, 0.03  # tolerances: about the mean, in relat
 
 class Golden(CommandTest):
     def difference(self, scene=OFFICE, view="desk", seed=1):
-        self.interflect("render", scene, "-o", "out.exr", "--view", view, "--size", "160x90", "--rays", "6M", "--seed", seed)
+        picture = ("--view", view, "--size", "160x90", "--shading", "smooth")
+        self.interflect("render", scene, "-o", "out.exr", *picture, "--rays", "6M", "--seed", seed)
         difference = self.json("compare", "out.exr", REFERENCE)
         self.assertEqual(difference["non_finite_pixels"], 0)
         (blocks,) = (b["trimmed_relative_rmse"] for b in difference["blocks"] if b["block"] == 5)
