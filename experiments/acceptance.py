@@ -79,7 +79,7 @@ class Bench:
         name = re.sub(r"\W+", "-", f"{Path(scene).name} {view} {size} {paths}")
         path, error = WORK / f"{name}.exr", WORK / f"{name}-error.exr"
         if not error.is_file():
-            options = f"--shading path --size {size} --samples {paths} --seed 99"
+            options = f"--shading path --no-mirrors --size {size} --samples {paths} --seed 99"
             self.run(f"render {scene} {view} {options} -o {path} --error-image {error}")
         return path, luminance(read_exr(error))  # channels err together, as most light is nearly white
 

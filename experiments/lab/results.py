@@ -15,10 +15,10 @@ Row = dict[str, str | float]
 TEXT = {"series", "scene", "view", "picture", "version", "command", "reference", "machine"}
 
 
-def write_csv(path: Path, rows: Iterable[dict]) -> None:
+def write_csv(path: Path, rows: Iterable[dict], columns: Iterable[str] = COLUMNS) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
 

@@ -53,7 +53,7 @@ class Reference:
 
     @property
     def options(self) -> str:
-        return f"--shading path --samples {self.paths} --seed {self.seed}"
+        return f"--shading path --no-mirrors --samples {self.paths} --seed {self.seed}"
 
     def arguments(self, output: str, error: str) -> list[str]:
         view, options = shlex.split(self.view), shlex.split(self.options)
