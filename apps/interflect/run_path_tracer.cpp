@@ -64,15 +64,15 @@ std::vector<ImageLayer> layers_of(const PathTracing& traced) {
         return ImageLayer{name, channels, {&image.pixels.data()->x, 3 * image.pixels.size()}};
     };
     return {of_image("emitted", "RGB", l.emitted),
-            of_image("direct", "RGB", l.direct),
-            of_image("indirect", "RGB", l.indirect),
+            of_image("direct", "RGB", l.reflected.direct),
+            of_image("indirect", "RGB", l.reflected.indirect),
             of_image("albedo", "RGB", l.albedo),
             of_image("normal", "XYZ", l.normal),
             of_image("standard_error", "RGB", traced.standard_error),
             {"depth", "Z", l.depth},
             {"element_level", "V", l.level},
-            {"direct_variance", "V", l.direct_variance},
-            {"indirect_variance", "V", l.indirect_variance}};
+            {"direct_variance", "V", l.reflected.direct_variance},
+            {"indirect_variance", "V", l.reflected.indirect_variance}};
 }
 
 PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,

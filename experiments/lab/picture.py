@@ -10,8 +10,9 @@ LINES_PER_BLOCK = 16  # of ZIP compression
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709
 
 
-def read_exr(path: Path) -> np.ndarray:
-    """Height x width x RGB. Only what this program writes: channels B, G, R of 32 bit floats, scan lines, ZIP."""
+def read_exr(path: Path, layer: str = "") -> np.ndarray:
+    """Height x width x RGB, of a layer such as "emitted" (default: the picture itself). Only what this program writes: 32 bit
+    floats, scan lines, ZIP."""
     data = path.read_bytes()
     attributes, position = {}, 8
     while data[position]:
@@ -22,15 +23,26 @@ def read_exr(path: Path) -> np.ndarray:
         position = begin + size
     left, top, right, bottom = struct.unpack("<4i", attributes["dataWindow"])
     width, height = right - left + 1, bottom - top + 1
+    channels = _channel_names(attributes["channels"])
+    wanted = [channels.index(f"{layer}.{c}" if layer else c) for c in "RGB"]
     picture = np.empty((height, width, 3))
     blocks = -(-height // LINES_PER_BLOCK)
     for offset in struct.unpack_from(f"<{blocks}q", data, position + 1):
         line, size = struct.unpack_from("<2i", data, offset)
         lines = min(LINES_PER_BLOCK, height - (line - top))
-        raw = _unzipped(data[offset + 8 : offset + 8 + size], lines * 3 * width * 4)
-        block = np.frombuffer(raw, "<f4").reshape(lines, 3, width)
-        picture[line - top : line - top + lines] = block[:, ::-1].transpose(0, 2, 1)
+        raw = _unzipped(data[offset + 8 : offset + 8 + size], lines * len(channels) * width * 4)
+        block = np.frombuffer(raw, "<f4").reshape(lines, len(channels), width)
+        picture[line - top : line - top + lines] = block[:, wanted].transpose(0, 2, 1)
     return picture
+
+
+def _channel_names(attribute: bytes) -> list[str]:
+    description_size, names = 16, []
+    while attribute[0]:
+        name, rest = attribute.split(b"\0", 1)
+        names.append(name.decode())
+        attribute = rest[description_size:]
+    return names
 
 
 def _unzipped(packed: bytes, size: int) -> bytes:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -52,13 +53,21 @@ struct PathMonitor {
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
 };
 
-/// What a picture is made of: means over the samples of each pixel.
-struct PictureLayers {
-    Image emitted;   ///< Radiance that comes straight from where it is emitted, in the picture's unit.
-    Image direct;    ///< Reflected once, likewise.
-    Image indirect;  ///< Reflected more often. The picture is the sum of the three.
+/// Light of some of a picture's samples.
+struct SampledLight {
+    Image direct;    ///< Reflected once, in the picture's unit.
+    Image indirect;  ///< Reflected more often.
     /// Estimated variance of the mean over the channels of `direct` and `indirect`, [y * width + x].
     std::vector<float> direct_variance, indirect_variance;
+};
+
+/// What a picture is made of: means over the samples of each pixel.
+struct PictureLayers {
+    Image emitted;  ///< Radiance that comes straight from where it is emitted, in the picture's unit.
+    /// Beside what is emitted all light of the picture.
+    SampledLight reflected;
+    /// The same of every other batch of samples and of the rest: independent of each other.
+    std::array<SampledLight, 2> halves;
     Image albedo;              ///< Reflectance of what is seen; 1 in a picture of irradiance.
     Image normal;              ///< Its normal, towards the eye; shorter than 1 where several are seen.
     Image position;            ///< Where it is, relative to the scene's origin [m].

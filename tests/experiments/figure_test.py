@@ -64,7 +64,7 @@ class Figure(CommandTest):
             self.assertEqual(row["version"], "0.1.0")
             self.assertIn(row["command"].split()[0:3], [["interflect", "solve", "maze:1"]])
             self.assertIn(f"--rays {row['rays']} --seed {row['seed']}", row["command"])
-            self.assertEqual(row["reference"], "--shading path --samples 64 --seed 99")
+            self.assertEqual(row["reference"], "--shading path --no-mirrors --samples 64 --seed 99")
             self.assertTrue(0 < float(row["reference_noise"]) < 0.1, row["reference_noise"])
             self.assertRegex(row["machine"], r"\w.*, \d+ cores")
             self.assertGreater(int(row["threads"]), 0)

@@ -49,12 +49,13 @@ TEST(Gather, HasTheMeanOfPathTracing) {
     options.seed = 2;
     const PathTracing gathered = gather(scene, solution, ray_caster, into_corner, options);
     EXPECT_NEAR(mean_of(gathered.image) / mean_of(reference.image), 1, 0.005);
-    EXPECT_NEAR(mean_of(gathered.layers.direct) / mean_of(reference.layers.direct), 1, 0.005);
+    EXPECT_NEAR(mean_of(gathered.layers.reflected.direct) / mean_of(reference.layers.reflected.direct), 1, 0.005);
     EXPECT_EQ(gathered.non_finite_pixels, 0);
     for (Rgb& h : solution.irradiance) h *= 1.1f;
     const PathTracing brighter = gather(scene, solution, ray_caster, into_corner, options);
-    EXPECT_EQ(mean_of(brighter.layers.direct), mean_of(gathered.layers.direct));
-    EXPECT_GT(mean_of(brighter.layers.indirect) / mean_of(gathered.layers.indirect), 1.07);  // near light is traced
+    EXPECT_EQ(mean_of(brighter.layers.reflected.direct), mean_of(gathered.layers.reflected.direct));
+    EXPECT_GT(mean_of(brighter.layers.reflected.indirect) / mean_of(gathered.layers.reflected.indirect),
+              1.07);  // near light is traced
 }
 
 /// A lamp close to a corner of whole walls, each one element: their one value is not what the corner receives, whose
@@ -66,8 +67,8 @@ TEST(Gather, TracesPathsInCornersOfACoarseSolution) {
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 100'000}});
     const View view{"corner", {1, 1, 1}, {0, 0, 0}, {0, 0, 1}, 50};
     const PathOptions options{.width = 32, .height = 24, .samples = 128};
-    const Image expected = box_downsample(trace_paths(scene, ray_caster, view, options).layers.indirect, 8);
-    const Image found = box_downsample(gather(scene, solution, ray_caster, view, options).layers.indirect, 8);
+    const Image expected = box_downsample(trace_paths(scene, ray_caster, view, options).layers.reflected.indirect, 8);
+    const Image found = box_downsample(gather(scene, solution, ray_caster, view, options).layers.reflected.indirect, 8);
     for (std::size_t i = 0; i < expected.pixels.size(); ++i)
         EXPECT_NEAR(found.pixels[i].x / expected.pixels[i].x, 1, 0.05);
 }
@@ -113,27 +114,40 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     EXPECT_LT(z_test(mean, 1.02 * in_front, error), false_alarm);
 }
 
-/// A wall of even light with noise, its left half in shadow, of a chequered reflectance.
-PictureLayers noisy_wall(int side) {
+/// A wall, 1 m away and evenly lit: layers without light.
+PictureLayers wall(int side) {
     PictureLayers layers;
-    for (Image* image :
-         {&layers.emitted, &layers.direct, &layers.indirect, &layers.albedo, &layers.normal, &layers.position})
-        *image = Image(side, side);
-    for (auto* numbers : {&layers.direct_variance, &layers.indirect_variance, &layers.depth})
-        numbers->assign(static_cast<std::size_t>(side * side), 0.0f);
+    layers.emitted = layers.albedo = layers.normal = layers.position = Image(side, side);
+    const auto pixels = layers.albedo.pixels.size();
+    for (SampledLight* light : {&layers.reflected, &layers.halves[0], &layers.halves[1]})
+        *light = {Image(side, side), Image(side, side), std::vector<float>(pixels), std::vector<float>(pixels)};
+    layers.depth.assign(pixels, 1);
     layers.pixel_angle = 0.01f;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            layers.albedo.at(x, y) = Rgb(1);
+            layers.normal.at(x, y) = Rgb(0, 0, 1);
+            layers.position.at(x, y) = Rgb(static_cast<float>(x), static_cast<float>(y), 0) * 0.01f;
+        }
+    return layers;
+}
+
+/// The left half in shadow, of a chequered reflectance, with noise of 30% / sqrt(3).
+PictureLayers noisy_wall(int side) {
+    PictureLayers layers = wall(side);
     constexpr float noise = 0.3f;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             const auto i = static_cast<std::size_t>(y * side + x);
             const float albedo = (x / 2 + y / 2) % 2 == 0 ? 0.2f : 0.8f, level = x < side / 2 ? 0.1f : 1.0f;
-            const float even = 2 * unit_float(random_words(1, i)[0]) - 1;  // variance 1/3
             layers.albedo.pixels[i] = Rgb(albedo);
-            layers.direct.pixels[i] = Rgb(albedo * level * (1 + noise * even));
-            layers.direct_variance[i] = albedo * albedo * level * level * noise * noise / 3;
-            layers.normal.pixels[i] = Rgb(0, 0, 1);
-            layers.position.pixels[i] = Rgb(static_cast<float>(x), static_cast<float>(y), 0) * 0.01f;
-            layers.depth[i] = 1;
+            for (std::uint32_t h = 0; h < 2; ++h) {
+                const float even = 2 * unit_float(random_words(1, i)[h]) - 1;  // variance 1/3, of the mean of two 1/6
+                const float light = albedo * level * (1 + std::sqrt(2.0f) * noise * even);
+                layers.halves[h].direct.pixels[i] = Rgb(light);
+                layers.halves[h].direct_variance[i] = albedo * albedo * level * level * noise * noise * 2 / 3;
+                layers.reflected.direct.pixels[i] += Rgb(light / 2);
+            }
         }
     return layers;
 }
@@ -148,11 +162,34 @@ TEST(Denoise, RemovesNoiseAlone) {
         for (int x = 0; x < side; ++x) {
             const double level = x < side / 2 ? 0.1 : 1.0;
             const auto albedo = static_cast<double>(layers.albedo.at(x, y).x);
-            before += std::pow(static_cast<double>(layers.direct.at(x, y).x) / (albedo * level) - 1, 2);
+            before += std::pow(static_cast<double>(layers.reflected.direct.at(x, y).x) / (albedo * level) - 1, 2);
             after += std::pow(static_cast<double>(picture.at(x, y).x) / (albedo * level) - 1, 2);
         }
     EXPECT_NEAR(std::sqrt(before) / side, 0.3 / std::sqrt(3), 0.01);
     EXPECT_LT(std::sqrt(after), std::sqrt(before) / 5);
+}
+
+/// One batch in twenty brings twenty times the light of the others: the mean stays. It would not if the weights of
+/// pixels followed their own values.
+TEST(Denoise, KeepsTheMeanOfSkewedNoise) {
+    constexpr int side = 192, batches = 4;  // of each half
+    PictureLayers layers = wall(side);
+    for (std::size_t i = 0; i < layers.albedo.pixels.size(); ++i)
+        for (std::size_t h = 0; h < 2; ++h) {
+            double mean = 0, mean_square = 0;
+            for (std::size_t b = 0; b < batches; ++b) {
+                const auto word = random_words(2, (2 * i + h) * batches + b)[0];
+                const double light = unit_float(word) < 0.05f ? 20 : 1;
+                mean += light / batches;
+                mean_square += light * light / batches;
+            }
+            layers.halves[h].direct.pixels[i] = Rgb(static_cast<float>(mean));
+            layers.halves[h].direct_variance[i] = static_cast<float>((mean_square - mean * mean) / (batches - 1));
+        }
+    const double mean = (mean_of(layers.halves[0].direct) + mean_of(layers.halves[1].direct)) / 2;
+    EXPECT_NEAR(mean_of(denoise(layers)) / mean, 1, 0.005);
+    layers.halves[1] = layers.halves[0];
+    EXPECT_GT(std::abs(mean_of(denoise(layers)) / mean_of(layers.halves[0].direct) - 1), 0.02);
 }
 
 /// Where nothing is hit there is the sky, and none of it on what is beside it.
@@ -164,9 +201,9 @@ TEST(Denoise, LeavesTheSkyAsItIs) {
         for (int x = 0; x < side / 2; ++x) {
             const auto i = static_cast<std::size_t>(y * side + x);
             layers.emitted.pixels[i] = Rgb(50);
-            layers.direct.pixels[i] = layers.albedo.pixels[i] = layers.normal.pixels[i] = Rgb(0);
-            layers.position.pixels[i] = Rgb(0);
-            layers.direct_variance[i] = layers.depth[i] = 0;
+            layers.albedo.pixels[i] = layers.normal.pixels[i] = layers.position.pixels[i] = Rgb(0);
+            layers.depth[i] = 0;
+            for (SampledLight& half : layers.halves) half.direct.pixels[i] = Rgb(half.direct_variance[i] = 0);
         }
     const Image picture = denoise(layers);
     for (int y = 0; y < side; ++y) {
@@ -180,17 +217,18 @@ TEST(Denoise, StopsAtEdges) {
     constexpr int side = 32;
     for (const bool is_step : {false, true}) {
         PictureLayers layers = noisy_wall(side);
+        const auto light_at = [&](int x, int y) { return layers.albedo.at(x, y) * (x < side / 2 ? 1.0f : 1.1f); };
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {
                 const bool is_left = x < side / 2;
-                layers.direct.at(x, y) = layers.albedo.at(x, y) * (is_left ? 1.0f : 1.1f);  // within the noise
+                for (SampledLight& half : layers.halves) half.direct.at(x, y) = light_at(x, y);  // within the noise
                 if (is_left && is_step) layers.position.at(x, y).z = 0.5f;
                 if (is_left && !is_step) layers.normal.at(x, y) = Rgb(1, 0, 0);
             }
         const Image picture = denoise(layers);
         for (int y = 0; y < side; ++y)
             for (const int x : {side / 2 - 1, side / 2})
-                EXPECT_NEAR(picture.at(x, y).x / layers.direct.at(x, y).x, 1, 0.01) << is_step;
+                EXPECT_NEAR(picture.at(x, y).x / light_at(x, y).x, 1, 0.01) << is_step;
     }
 }
 

@@ -28,7 +28,7 @@ CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
 REASON = re.compile(rb"^(?:error: .|stopping)", re.MULTILINE)
 NOT_FINITE = re.compile(rb"^ .*[ :(]-?(?:nan|inf)\b", re.MULTILINE)  # in the indented lines of figures
 SOLVING = re.compile(rb"rays|stopping")  # on stderr, once the solver has begun
-DRAW = ("--eye", "1,1,1", "--look-at", "2,2,1", "--size", "4x4", "--samples", "1")
+DRAW = ("--eye", "1,1,1", "--look-at", "2,2,1", "--size", "4x4", "--samples", "2")
 
 
 def faults_of(run):

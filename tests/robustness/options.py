@@ -153,7 +153,7 @@ def solve(rng, seeds):
 
 def draw(rng, seeds, inputs, *options):
     chosen = some_choices(rng, seeds, ("render",), most=3, without=LIMITS)
-    small = limits_besides(chosen, size="8x6", samples="1")
+    small = limits_besides(chosen, size="8x6", samples="2")
     arguments = ["render", inputs[0], "-o", "out.exr", *looking(chosen), *small, *options, *chosen]
     return Case("", arguments, seeds.some(*inputs), outputs=("out.exr",), checks=(check.picture_is_finite("out.exr"),))
 

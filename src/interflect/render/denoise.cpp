@@ -26,10 +26,10 @@ float fall(float d) {
     return t4 * t4;
 }
 
-/// A kind of light as irradiance over pi, channel by channel, with the variance of the channels' mean.
+/// A kind of light by half of the samples, as irradiance over pi: channel by channel, their mean and its variance.
 struct Field {
     std::array<std::vector<float>, 3> value;
-    std::vector<float> variance;
+    std::vector<float> grey, variance;
 };
 
 std::size_t pixel_at(int x, int y, int width) {
@@ -59,11 +59,13 @@ Rgb floored(const Rgb& albedo) {
 
 Field make_field(const Image& light, const std::vector<float>& variance, const Image& albedo) {
     Field field;
-    for (auto& channel : field.value) channel.resize(light.pixels.size());
-    field.variance.resize(light.pixels.size());
+    for (std::vector<float>* numbers :
+         {&field.value[0], &field.value[1], &field.value[2], &field.grey, &field.variance})
+        numbers->resize(light.pixels.size());
     for (std::size_t i = 0; i < light.pixels.size(); ++i) {
         const Rgb reflectance = floored(albedo.pixels[i]), irradiance = light.pixels[i] / reflectance;
         for (int c = 0; c < 3; ++c) field.value[static_cast<std::size_t>(c)][i] = irradiance[c];
+        field.grey[i] = channel_sum(irradiance) / 3;
         const float mean = channel_sum(reflectance) / 3;
         field.variance[i] = variance[i] / (mean * mean);
     }
@@ -71,30 +73,40 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
     return field;
 }
 
+/// Direct and indirect light.
+using Fields = std::array<Field, 2>;
+
+Fields make_fields(const SampledLight& light, const Image& albedo) {
+    return {make_field(light.direct, light.direct_variance, albedo),
+            make_field(light.indirect, light.indirect_variance, albedo)};
+}
+
 /// The filter over some rows of the picture.
 class Band {
   public:
-    Band(const PictureLayers& layers, const Field& direct, const Field& indirect, int first_row, int end_row)
+    Band(const PictureLayers& layers, const std::array<Fields, 2>& halves, int first_row, int end_row)
         : layers_(layers),
-          fields_{&direct, &indirect},
+          halves_(halves),
           width_(layers.albedo.width),
           height_(layers.albedo.height),
           first_(first_row),
           end_(end_row),
           difference_(at(0, end_row - first_row + 2 * patch_radius)),
           shape_(at(0, end_row - first_row)) {
-        for (auto& sums : sums_)
-            for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
+        for (auto& of_half : sums_)
+            for (Sums& sums : of_half)
+                for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
     }
 
     void filter(Image& picture) {
         for (int dy = -window_radius; dy <= window_radius; ++dy)
             for (int dx = -window_radius; dx <= window_radius; ++dx) {
                 compare_shapes(dx, dy);
-                for (std::size_t f = 0; f < fields_.size(); ++f) {
-                    compare_light(*fields_[f], dx, dy);
-                    add_neighbours(*fields_[f], sums_[f], dx, dy);
-                }
+                for (std::size_t h = 0; h < 2; ++h)
+                    for (std::size_t kind = 0; kind < 2; ++kind) {
+                        compare_light(halves_[1 - h][kind], dx, dy);
+                        add_neighbours(halves_[h][kind], sums_[h][kind], dx, dy);
+                    }
             }
         for (int y = first_; y < end_; ++y)
             for (int x = 0; x < width_; ++x) {
@@ -102,12 +114,15 @@ class Band {
                 picture.pixels[i] = layers_.emitted.pixels[i];
                 if (!(layers_.depth[i] > 0)) continue;  // nothing is there that could reflect
                 Rgb irradiance(0);
-                for (const auto& sums : sums_) irradiance += Rgb(sums[0][k], sums[1][k], sums[2][k]) / sums[3][k];
+                for (const auto& of_half : sums_)
+                    for (const Sums& s : of_half) irradiance += Rgb(s[0][k], s[1][k], s[2][k]) / (2 * s[3][k]);
                 picture.pixels[i] += floored(layers_.albedo.pixels[i]) * irradiance;
             }
     }
 
   private:
+    using Sums = std::array<std::vector<float>, 4>;  // three channels, and the weights
+
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
     /// Columns of which the neighbour is in the picture.
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
@@ -146,16 +161,14 @@ class Band {
             const std::size_t i = at(0, y), k = at(0, y + dy) + static_cast<std::size_t>(dx);
             for (int x = begin; x < end; ++x) {
                 const auto c = static_cast<std::size_t>(x);
-                const float d = (field.value[0][i + c] + field.value[1][i + c] + field.value[2][i + c] -
-                                 field.value[0][k + c] - field.value[1][k + c] - field.value[2][k + c]) /
-                                3;
+                const float d = field.grey[i + c] - field.grey[k + c];
                 const float here = field.variance[i + c], there = field.variance[k + c];
                 row[x] = (d * d - (here + std::min(here, there))) / (noise_share * (here + there) + tiny);
             }
         }
     }
 
-    void add_neighbours(const Field& field, std::array<std::vector<float>, 4>& sums, int dx, int dy) const {
+    void add_neighbours(const Field& field, Sums& sums, int dx, int dy) const {
         const auto [begin, end] = columns(dx);
         for (int y = first_; y < end_; ++y) {
             if (!has_row(y + dy)) continue;
@@ -177,22 +190,22 @@ class Band {
     }
 
     const PictureLayers& layers_;
-    std::array<const Field*, 2> fields_;
+    const std::array<Fields, 2>& halves_;
     int width_, height_, first_, end_;
     std::vector<float> difference_, shape_;
-    std::array<std::array<std::vector<float>, 4>, 2> sums_;  // of each field: three channels, and the weights
+    std::array<std::array<Sums, 2>, 2> sums_;  // of each half and kind of light
 };
 
 }  // namespace
 
 Image denoise(const PictureLayers& layers) {
     const int width = layers.albedo.width, height = layers.albedo.height;
-    const Field direct = make_field(layers.direct, layers.direct_variance, layers.albedo);
-    const Field indirect = make_field(layers.indirect, layers.indirect_variance, layers.albedo);
+    const std::array<Fields, 2> halves{make_fields(layers.halves[0], layers.albedo),
+                                       make_fields(layers.halves[1], layers.albedo)};
     Image picture(width, height);
     constexpr std::size_t rows = 16;
     parallel_for_ranges(static_cast<std::size_t>(height), rows, [&](std::size_t begin, std::size_t end) {
-        Band(layers, direct, indirect, static_cast<int>(begin), static_cast<int>(end)).filter(picture);
+        Band(layers, halves, static_cast<int>(begin), static_cast<int>(end)).filter(picture);
     });
     return picture;
 }

@@ -76,7 +76,7 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
     const PathTracing traced = trace_picture(scene, ray_caster, start, options, monitor, known ? &*known : nullptr);
     std::vector<MeasuredIrradiance> measured(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
-        measured[i] = {traced.layers.direct.pixels[i], traced.layers.indirect.pixels[i],
+        measured[i] = {traced.layers.reflected.direct.pixels[i], traced.layers.reflected.indirect.pixels[i],
                        traced.standard_error.pixels[i]};
     return measured;
 }

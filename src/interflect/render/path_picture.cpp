@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "interflect/base/parallel.h"
@@ -81,23 +82,35 @@ class PathPicture {
     }
 
   private:
+    /// @param parts  Of a pixel: the statistics of its direct and of its indirect light.
+    SampledLight light_of(const auto& parts) const {
+        SampledLight light{Image(options_.width, options_.height), Image(options_.width, options_.height),
+                           std::vector<float>(pixels_.size()), std::vector<float>(pixels_.size())};
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const auto& [direct, indirect] = parts(pixels_[i]);
+            light.direct.pixels[i] = Rgb(direct.mean);
+            light.indirect.pixels[i] = Rgb(indirect.mean);
+            light.direct_variance[i] = static_cast<float>(direct.squared_error());
+            light.indirect_variance[i] = static_cast<float>(indirect.squared_error());
+        }
+        return light;
+    }
+
     PictureLayers layers() const {
         PictureLayers layers;
         layers.pixel_angle = s_.start.pixel_angle;
         layers.pixel_size = s_.start.pixel_size;
-        for (Image* image :
-             {&layers.emitted, &layers.direct, &layers.indirect, &layers.albedo, &layers.normal, &layers.position})
+        layers.reflected = light_of([](const PixelStatistics& p) { return std::tie(p.direct, p.indirect); });
+        for (std::size_t h = 0; h < layers.halves.size(); ++h)
+            layers.halves[h] =
+                light_of([h](const PixelStatistics& p) { return std::tie(p.direct_halves[h], p.indirect_halves[h]); });
+        for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
             *image = Image(options_.width, options_.height);
-        for (std::vector<float>* numbers :
-             {&layers.direct_variance, &layers.indirect_variance, &layers.depth, &layers.level})
-            numbers->resize(pixels_.size());
+        layers.depth.resize(pixels_.size());
+        layers.level.resize(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
             const PixelStatistics& p = pixels_[i];
             layers.emitted.pixels[i] = Rgb(p.emitted);
-            layers.direct.pixels[i] = Rgb(p.direct);
-            layers.indirect.pixels[i] = Rgb(p.indirect);
-            layers.direct_variance[i] = static_cast<float>(p.squared_error(p.direct_squares));
-            layers.indirect_variance[i] = static_cast<float>(p.squared_error(p.indirect_squares));
             layers.albedo.pixels[i] = Rgb(p.first.albedo);
             layers.normal.pixels[i] = Rgb(V3f(p.first.normal));
             layers.position.pixels[i] = Rgb(V3f(p.first.position));
