@@ -11,9 +11,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
 from lab import drawing, program, results
 from lab.picture import luminance, read_exr
+from lab.reference import Reference
 
 WORK = program.ROOT / "out/experiments/cache/gathering"
 TABLE = program.ROOT / "experiments/results/gathering.csv"
@@ -36,38 +36,6 @@ OPTIONS = {
 TARGET, TARGET_SECONDS = 0.05, 20
 
 
-class Reference:
-    """Two path-traced pictures. Pixels where a lamp is seen, and those next to them, do not count."""
-
-    def __init__(self, command: program.Program):
-        WORK.mkdir(parents=True, exist_ok=True)
-        files = [self._picture(command, seed) for seed in (98, 99)]
-        self.pictures = [luminance(read_exr(file)) for file in files]
-        mean_picture = sum(self.pictures) / 2
-        lamps = np.pad(sum(luminance(read_exr(file, "emitted")) for file in files) > 0, 1)
-        height, width = mean_picture.shape
-        self.counts = ~np.any([lamps[y : y + height, x : x + width] for y in range(3) for x in range(3)], axis=0)
-        self.mean = mean_picture[self.counts].mean()
-        self.scale = np.maximum(mean_picture, self.mean)  # dark pixels need not be exact
-
-    @staticmethod
-    def _picture(command: program.Program, seed: int) -> Path:
-        path = WORK / f"{REFERENCE_PATHS}-{seed}.exr"
-        if not path.is_file():
-            options = f"--shading path --no-mirrors --samples {REFERENCE_PATHS} --seed {seed} --layers"
-            program.run(command, f"render {SCENE} {VIEW} {options} -o {path}".split())
-        return path
-
-    def relative_rmse(self, picture: np.ndarray) -> float:
-        """Relative to a pixel's luminance, but at least to the picture's mean. The product of the differences from two independent
-        pictures has the expected value of the square without their noise."""
-        first, second = ((picture - p) / self.scale for p in self.pictures)
-        return float(np.sqrt(max(0.0, (first * second)[self.counts].mean())))
-
-    def ratio_of_means(self, picture: np.ndarray) -> float:
-        return float(picture[self.counts].mean() / self.mean)
-
-
 def processor_seconds() -> float:
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
@@ -82,7 +50,7 @@ def measure() -> None:
         for rays, samples in works:
             if (series, samples, rays) in done:
                 continue
-            reference = reference or Reference(command)
+            reference = reference or Reference(command, WORK, "", f"{SCENE} {VIEW}", REFERENCE_PATHS)
             print(f"{series}: {samples} samples, {rays} rays", file=sys.stderr, flush=True)
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / "picture.exr"
