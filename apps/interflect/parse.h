@@ -37,6 +37,12 @@ struct Section {
     Imath::V3d direction{1, 0, 0};  // of the view; has a length
 };
 Section parse_section(const std::string& text);
+/// "0,0,1:2,0,1:5" -> from (0, 0, 1) to (2, 0, 1) with 5 points, from 2 to 10^6; 11 where the text tells none.
+struct Line {
+    Imath::V3d a{0, 0, 0}, b{0, 0, 0};  // [m]
+    int count = 11;
+};
+Line parse_line(const std::string& text);
 /// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
 /// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
 PlacedLuminaire parse_luminaire(const std::string& text);
