@@ -20,8 +20,8 @@ double grid_spacing(double length, double width);
 
 /// How the points of a grid lie.
 struct GridOptions {
-    std::optional<double> spacing;  ///< Largest distance between points [m], > 0; none: grid_spacing() of the area.
-    double boundary = 0;            ///< Width of a strip along the border of the area that is left out [m], >= 0.
+    std::optional<double> spacing{};  ///< Largest distance between points [m], > 0; none: grid_spacing() of the area.
+    double boundary = 0;              ///< Width of a strip along the border of the area that is left out [m], >= 0.
 };
 
 /// The strip along walls that EN 12464-1 leaves out of an area [m].

@@ -29,13 +29,16 @@ bool is_part_of(const std::string& name, const std::string& object) {
     return name == object || (name.starts_with(object) && name[object.size()] == '.');
 }
 
+/// Name of a patch's object; a scene that was made by a program may have none.
+std::string object_name(const Scene& scene, std::uint32_t patch) {
+    const std::uint32_t object = scene.patches[patch].object;
+    return object < scene.objects.size() ? scene.objects[object] : std::string();
+}
+
 std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& object) {
-    std::vector<bool> is_meant(scene.objects.size());
-    std::transform(scene.objects.begin(), scene.objects.end(), is_meant.begin(),
-                   [&](const std::string& name) { return !name.empty() && is_part_of(name, object); });
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
-        if (is_meant[scene.patches[i].object]) patches.push_back(i);
+        if (!object.empty() && is_part_of(object_name(scene, i), object)) patches.push_back(i);
     if (patches.empty())
         throw InputError(
             scene.name, 0,
@@ -155,7 +158,7 @@ std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& a
     for (const std::uint32_t i : area.patches) {
         const Patch& patch = scene.patches[i];
         PlanarArea& part = parts[patch.object];
-        part.name = scene.objects[patch.object].empty() ? area.name : scene.objects[patch.object];
+        part.name = object_name(scene, i).empty() ? area.name : object_name(scene, i);
         part.normal = area.normal;
         part.patches.push_back(i);
         part.area += static_cast<double>(patch_area(scene, patch));
