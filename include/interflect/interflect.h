@@ -7,6 +7,7 @@
 #include "interflect/dimming.h"
 #include "interflect/error.h"
 #include "interflect/gather.h"
+#include "interflect/glare.h"
 #include "interflect/image_files.h"
 #include "interflect/load_scene.h"
 #include "interflect/measure.h"
