@@ -11,20 +11,6 @@ namespace {
 constexpr const char* places_group = "Where to measure (each may be repeated)";
 constexpr const char* grid_group = "Grids";
 
-/// Adds an option that may be repeated, each text of which goes through `parse`.
-template <class Value>
-CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>& values,
-                      Value (*parse)(const std::string&), const std::string& help) {
-    const auto add = [name, &values, parse](const std::vector<std::string>& texts) {
-        for (const std::string& text : texts) try {
-                values.push_back(parse(text));
-            } catch (const std::invalid_argument& e) {
-                throw CLI::ValidationError(name, e.what());
-            }
-    };
-    return app.add_option_function<std::vector<std::string>>(name, add, help)->allow_extra_args(false);
-}
-
 }  // namespace
 
 void GridArguments::add_to(CLI::App& app) {

@@ -86,6 +86,20 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Pa
     return app.add_option_function<std::string>(name, set, help);
 }
 
+/// Adds an option that may be repeated, each text of which goes through `parse`.
+template <class Value>
+CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>& values,
+                      Value (*parse)(const std::string&), const std::string& help) {
+    const auto add = [name, &values, parse](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) try {
+                values.push_back(parse(text));
+            } catch (const std::invalid_argument& e) {
+                throw CLI::ValidationError(name, e.what());
+            }
+    };
+    return app.add_option_function<std::vector<std::string>>(name, add, help)->allow_extra_args(false);
+}
+
 /// Adds an option that takes one of a few words and sets the Target, a Value or std::optional<Value>; the help lists
 /// them.
 template <class Value, class Target>

@@ -2,16 +2,17 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/csv_file.h"
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/measuring_places.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/path_progress.h"
+#include "apps/interflect/probe_glare.h"
 #include "apps/interflect/read_light.h"
 #include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
@@ -28,7 +29,7 @@ namespace interflect::command {
 
 namespace {
 
-enum class ProbedQuantity { surface, horizontal, vertical, cylindrical, semicylindrical };
+enum class ProbedQuantity { surface, horizontal, vertical, cylindrical, semicylindrical, ugr };
 
 /// Where the light comes from.
 enum class ProbedLight {
@@ -43,7 +44,7 @@ struct ProbeArguments {
     SolverOptions solver;
     MeasuringPlaces places;
     ProbedQuantity quantity = ProbedQuantity::surface;
-    std::optional<Imath::V3d> direction;
+    std::vector<Imath::V3d> directions;
     ProbedLight light = ProbedLight::gather;
     PathOptions path{.samples = 4096};
     std::optional<double> exterior;
@@ -67,25 +68,39 @@ const char* name_of(ProbedQuantity quantity) {
             return "cylindrical illuminance";
         case ProbedQuantity::semicylindrical:
             return "semicylindrical illuminance";
+        case ProbedQuantity::ugr:
+            return "UGR";
     }
     return "";
 }
 
 void check_direction(const ProbeArguments& options) {
-    if (!needs_direction(options.quantity)) {
-        if (options.direction)
-            throw InputError("--direction has no effect: it is for --quantity vertical and semicylindrical");
+    if (options.quantity == ProbedQuantity::ugr) {
+        for (const Imath::V3d& d : options.directions)
+            if (!(V3f(d).length() > 0)) throw InputError("--direction 0,0,0 is no direction");
         return;
     }
-    if (!options.direction)
-        throw InputError("--quantity vertical and semicylindrical need --direction X,Y,Z: the way that they face");
-    if (!(std::hypot(options.direction->x, options.direction->y) > 0))
+    if (!needs_direction(options.quantity)) {
+        if (!options.directions.empty())
+            throw InputError("--direction has no effect: it is for --quantity vertical, semicylindrical and ugr");
+        return;
+    }
+    if (options.directions.size() != 1)
+        throw InputError("--quantity vertical and semicylindrical need one --direction X,Y,Z: the way that they face");
+    if (!(std::hypot(options.directions[0].x, options.directions[0].y) > 0))
         throw InputError("--direction: expected a direction that is not vertical (z)");
+}
+
+/// Lines of sight: along the four axes of a plan unless they were told.
+std::vector<V3f> lines_of_sight(const ProbeArguments& options) {
+    if (options.directions.empty()) return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    return {options.directions.begin(), options.directions.end()};
 }
 
 /// What measures at a point of a grid.
 MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& grid, const ProbeArguments& options) {
-    const V3f faces = options.direction ? V3f(Imath::V3d(options.direction->x, options.direction->y, 0)) : V3f(0);
+    V3f faces(0);
+    if (!options.directions.empty()) faces = V3f(Imath::V3d(options.directions[0].x, options.directions[0].y, 0));
     switch (options.quantity) {
         case ProbedQuantity::surface:
             return {position, grid.normal};
@@ -97,6 +112,8 @@ MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& 
             return {position, {}, Receiver::cylindrical};
         case ProbedQuantity::semicylindrical:
             return {position, faces, Receiver::semicylindrical};
+        case ProbedQuantity::ugr:
+            break;
     }
     return {};
 }
@@ -107,15 +124,14 @@ struct MeasuredGrid {
     std::vector<MeasuredIrradiance> measured;
 };
 
-std::vector<MeasuredGrid> measure(const SolvedScene& solved, const RayCaster& ray_caster,
+std::vector<MeasuredGrid> measure(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   std::vector<MeasuringGrid> grids, const ProbeArguments& options) {
     std::vector<MeasuringPoint> points;
     for (const MeasuringGrid& grid : grids)
         for (const Imath::V3d& position : grid.points) points.push_back(measuring_point(position, grid, options));
-    const Solution* solution = options.light == ProbedLight::gather ? &solved.solution : nullptr;
     std::vector<MeasuredIrradiance> measured;
     with_path_progress([&](const PathMonitor& monitor) {
-        measured = measure_irradiance(solved.scene, solution, ray_caster, points, options.path, monitor);
+        measured = measure_irradiance(scene, solution, ray_caster, points, options.path, monitor);
     });
     std::vector<MeasuredGrid> result;
     std::size_t next = 0, lost = 0;
@@ -138,29 +154,17 @@ std::vector<MeasuredGrid> measure(const SolvedScene& solved, const RayCaster& ra
     return result;
 }
 
-/// A field of CSV (RFC 4180).
-std::string csv_text(const std::string& text) {
-    const std::string safe = escaped(text);
-    if (safe.find_first_of("\",") == safe.npos) return safe;
-    std::string quoted = "\"";
-    for (const char c : safe) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + "\"";
-}
-
 void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
-    std::ofstream file(output.temporary_path(), std::ios::binary);
-    file << "x [m],y [m],z [m],E [lx],standard error [lx],direct [lx],indirect [lx],area\n";
+    CsvFile file(output, "x [m],y [m],z [m],E [lx],standard error [lx],direct [lx],indirect [lx],area");
     for (const MeasuredGrid& g : grids)
         for (std::size_t i = 0; i < g.measured.size(); ++i) {
             const MeasuredIrradiance& e = g.measured[i];
             const Imath::V3d& p = g.grid.points[i];
-            file << fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{:.6g},{:.6g},{}\n", p.x, p.y, p.z,
-                                e.illuminance(), e.illuminance_error(), luminance(e.direct), luminance(e.indirect),
-                                csv_text(g.grid.name));
+            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{:.6g},{:.6g},{}", p.x, p.y, p.z,
+                                      e.illuminance(), e.illuminance_error(), luminance(e.direct),
+                                      luminance(e.indirect), csv_field(g.grid.name)));
         }
-    file.close();
-    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", output.final_path().string()));
-    output.commit();
+    file.commit();
 }
 
 /// Outside, which daylight factors are relative to [lx]; none: there are none.
@@ -243,9 +247,18 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
 
     options.path.until = options.solver.until();
     options.path.seed = options.solver.seed();
-    const std::vector<MeasuredGrid> measured = measure(solved, ray_caster, std::move(grids), options);
-    if (output) write_csv(*output, measured);
-    print_summaries(solved.scene, measured, options);
+    const Solution* solution = traces_paths ? nullptr : &solved.solution;
+    if (options.quantity == ProbedQuantity::ugr) {
+        const std::vector<RatedGrid> rated =
+            rate_grids(solved.scene, solution, ray_caster, grids, lines_of_sight(options), options.path);
+        if (output) write_ratings(*output, rated);
+        print_ratings(rated, options.json);
+    } else {
+        const std::vector<MeasuredGrid> measured =
+            measure(solved.scene, solution, ray_caster, std::move(grids), options);
+        if (output) write_csv(*output, measured);
+        print_summaries(solved.scene, measured, options);
+    }
     if (solves) stats.write(solved.scene, solved.solution);
     if (is_stop_requested()) exit_code = interrupted;
 }
@@ -256,14 +269,14 @@ void add_quantity(CLI::App& command, ProbeArguments& options) {
                                 {"horizontal", ProbedQuantity::horizontal},
                                 {"vertical", ProbedQuantity::vertical},
                                 {"cylindrical", ProbedQuantity::cylindrical},
-                                {"semicylindrical", ProbedQuantity::semicylindrical}},
+                                {"semicylindrical", ProbedQuantity::semicylindrical},
+                                {"ugr", ProbedQuantity::ugr}},
                                "Illuminance: of the surface that a grid lies on (of points and lines horizontal), "
-                               "horizontal, of a vertical plane, of a cylinder or of half of one")
+                               "horizontal, of a vertical plane, of a cylinder or of half of one; or glare, by UGR")
         ->default_str("surface");
-    add_parsed(
-        command, "--direction", options.direction,
-        +[](const std::string& text) { return std::optional(parse_vector(text)); },
-        "The way that a vertical plane or half a cylinder faces")
+    add_each(command, "--direction", options.directions, parse_vector,
+             "The way that a vertical plane, half a cylinder or an observer faces (for ugr may be repeated; default: "
+             "x, -x, y and -y)")
         ->type_name("X,Y,Z");
     command
         .add_option("--exterior", options.exterior,
@@ -276,7 +289,7 @@ void add_quantity(CLI::App& command, ProbeArguments& options) {
 
 void add_probe(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<ProbeArguments>();
-    CLI::App& command = *app.add_subcommand("probe", "Measure illuminance at points and on grids");
+    CLI::App& command = *app.add_subcommand("probe", "Measure illuminance or glare at points and on grids");
     options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
     command.add_option("-o,--output", options->output, "Table of the points to write (.csv)")->type_name("FILE");
     command.add_flag("--json", options->json, "The summary as JSON on stdout");
