@@ -30,6 +30,12 @@ bool take(std::string_view& text, char c) {
     return true;
 }
 
+/// Reads three numbers that are finite in single precision too.
+bool take_vector(std::string_view& text, Imath::V3d& v) {
+    return take_number(text, v.x) && take(text, ',') && take_number(text, v.y) && take(text, ',') &&
+           take_number(text, v.z) && is_finite(V3f(v));
+}
+
 /// Reads a number from 1 to 10^18 that may end in k, M, G or T for powers of `thousand`.
 std::int64_t take_all(const std::string& text, double thousand, const char* expected) {
     std::string_view rest = text;
@@ -96,12 +102,22 @@ double parse_share(const std::string& text) {
 
 Imath::V3d parse_vector(const std::string& text) {
     std::string_view rest = text;
-    double x = 0, y = 0, z = 0;
-    const bool parsed = take_number(rest, x) && take(rest, ',') && take_number(rest, y) && take(rest, ',') &&
-                        take_number(rest, z) && rest.empty();
-    const Imath::V3d v(x, y, z);
-    if (!parsed || !is_finite(V3f(v))) refuse(text, "three numbers with commas between, such as 1,2.5,-3");
+    Imath::V3d v(0);
+    if (!take_vector(rest, v) || !rest.empty()) refuse(text, "three numbers with commas between, such as 1,2.5,-3");
     return v;
+}
+
+Line parse_line(const std::string& text) {
+    constexpr double most_points = 1e6;
+    std::string_view rest = text;
+    Line line;
+    double count = line.count;
+    const bool parsed = take_vector(rest, line.a) && take(rest, ':') && take_vector(rest, line.b) &&
+                        (rest.empty() || (take(rest, ':') && take_number(rest, count) && rest.empty()));
+    if (!parsed || !(count >= 2 && count <= most_points && count == std::floor(count)))
+        refuse(text, "two ends and perhaps a number of points from 2 to 1e6, such as 0,1,0.75:4,1,0.75:9");
+    line.count = static_cast<int>(count);
+    return line;
 }
 
 Section parse_section(const std::string& text) {

@@ -37,6 +37,12 @@ struct Section {
     Imath::V3d direction{1, 0, 0};  // of the view; has a length
 };
 Section parse_section(const std::string& text);
+/// "0,0,1:2,0,1:5" -> from (0, 0, 1) to (2, 0, 1) with 5 points, from 2 to 10^6; 11 where the text tells none.
+struct Line {
+    Imath::V3d a{0, 0, 0}, b{0, 0, 0};  // [m]
+    int count = 11;
+};
+Line parse_line(const std::string& text);
 /// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
 /// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
 PlacedLuminaire parse_luminaire(const std::string& text);
@@ -78,6 +84,20 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Pa
         }
     };
     return app.add_option_function<std::string>(name, set, help);
+}
+
+/// Adds an option that may be repeated, each text of which goes through `parse`.
+template <class Value>
+CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>& values,
+                      Value (*parse)(const std::string&), const std::string& help) {
+    const auto add = [name, &values, parse](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) try {
+                values.push_back(parse(text));
+            } catch (const std::invalid_argument& e) {
+                throw CLI::ValidationError(name, e.what());
+            }
+    };
+    return app.add_option_function<std::vector<std::string>>(name, add, help)->allow_extra_args(false);
 }
 
 /// Adds an option that takes one of a few words and sets the Target, a Value or std::optional<Value>; the help lists

@@ -14,6 +14,7 @@
 #include "apps/interflect/false_colour_options.h"
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/parse.h"
+#include "apps/interflect/read_light.h"
 #include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
@@ -207,26 +208,10 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
                  view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
 }
 
-/// A solution, or a scene that is not solved yet.
-SolvedScene read(const RenderArguments& options, const CLI::App& command) {
-    SolvedScene solved;
-    if (!is_solution_file(options.scene.path)) {
-        if (!options.dimming.factors.empty())
-            throw InputError(options.scene.path, 0,
-                             "--dim needs the light of a solution: solve the scene with --light-groups first");
-        solved.scene = options.scene.load();
-        return solved;
-    }
-    solved = read_solution(options.scene.path);
-    options.dimming.dim(solved);
-    refuse_scene_options(command, options.scene.path, traces_paths(options.shading));
-    return solved;
-}
-
 /// Draws the light of a solution; solves a scene first.
 void run_solution(RenderArguments& options, const CLI::App& command, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
-    SolvedScene solved = read(options, command);
+    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming, command, traces_paths(options.shading));
     const View view = view_to_draw(solved.scene, options);
     Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses what defines no picture
     if (options.shown == Shown::mesh && !is_for_people(options))
@@ -258,7 +243,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
 
 /// Draws the light that path tracing finds; of a solution file the scene alone counts.
 void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
-    const Scene scene = read(options, command).scene;
+    const Scene scene = read_scene_or_solution(options.scene, options.dimming, command, true).scene;
     const View view = view_to_draw(scene, options);
     const RayCaster ray_caster(scene);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <optional>
 
+#include "apps/interflect/path_progress.h"
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
-#include "apps/interflect/signals.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/denoise.h"
 #include "interflect/error.h"
@@ -84,20 +83,13 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         require_linear_format(arguments.error_image);
         error_image.emplace(arguments.error_image);
     }
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
     PathTracing traced;
-    {
-        ProgressBar bar;
-        const auto show = [&](const PathProgress& p) { bar.show({p.fraction, seconds(), p.rays, p.relative_error}); };
-        const PathMonitor monitor{show, &stop_on_signal()};
+    const double seconds = with_path_progress([&](const PathMonitor& monitor) {
         traced = solution ? gather(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);
-    }
+    });
     if (arguments.denoise) traced.image = denoise(traced.layers);
-    log_outcome(solution ? "final gathering" : "path tracing", traced, seconds());
+    log_outcome(solution ? "final gathering" : "path tracing", traced, seconds);
     if (error_image) {
         const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
         write_image(*error_image, traced.standard_error,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -33,14 +34,21 @@ struct MeasuredIrradiance {
     Rgb indirect{0, 0, 0};  ///< Reflected at least once.
     /// Of the sum: of gathering alone, the solution's own error comes on top.
     Rgb standard_error{0, 0, 0};
+    float indirect_error = 0;  ///< Standard error of the mean over the channels of `indirect`.
     Rgb sum() const { return direct + indirect; }
+    /// Whether enough was traced to tell; false where a measurement was interrupted before.
+    bool is_measured() const { return std::isfinite(standard_error.x); }
+    float illuminance() const { return luminance(sum()); }                 ///< [lux]
+    float illuminance_error() const { return luminance(standard_error); }  ///< Its standard error [lux].
 };
 
 /// Measures irradiance by final gathering, see gather(): the way in which each point's light is found is that of a
 /// pixel. Cylinders have the mean over their normals (CIE 136).
 /// @param solution  Of the same scene, as is `ray_caster`; null: by path tracing alone, see trace_paths().
 /// @param options   Of each point; its width and height mean nothing. `until` is a share of the point's irradiance.
-/// @return          As many as there are points; those that an interrupted measurement has not reached are 0.
+/// @return          As many as there are points; those that an interrupted measurement has hardly reached have an
+/// infinite
+///                  standard error.
 /// @throws InputError as gather() does, and for a point, normal or axis that is not finite, or without a direction.
 std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Solution* solution,
                                                    const RayCaster& ray_caster, std::span<const MeasuringPoint> points,

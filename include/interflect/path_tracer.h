@@ -93,6 +93,7 @@ struct PathTracing {
     std::int64_t rays = 0;         ///< Camera rays, reflected rays and shadow rays.
     std::int64_t shadow_rays = 0;  ///< Of these.
     std::int64_t paths = 0;
+    std::vector<std::uint32_t> batches;  ///< Of paths, of each pixel; its standard error needs two.
     std::int64_t escaped_rays = 0;       ///< Camera rays and reflected rays that hit nothing.
     std::int64_t non_finite_pixels = 0;  ///< They keep their value (infinite or not a number) in `image`.
     bool interrupted = false;

@@ -7,8 +7,7 @@ from pathlib import Path
 # A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
 LAYERS = [
     "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "elements", "solver", "render",
-    "metrics",
-    "exports", "cluster",
+    "photometry", "metrics", "exports", "cluster",
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -75,9 +76,13 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
     if (solution) known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
     const PathTracing traced = trace_picture(scene, ray_caster, start, options, monitor, known ? &*known : nullptr);
     std::vector<MeasuredIrradiance> measured(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        measured[i] = {traced.layers.reflected.direct.pixels[i], traced.layers.reflected.indirect.pixels[i],
-                       traced.standard_error.pixels[i]};
+    const SampledLight& light = traced.layers.reflected;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool is_measured = traced.batches[i] > 1;
+        measured[i] = {light.direct.pixels[i], light.indirect.pixels[i],
+                       is_measured ? traced.standard_error.pixels[i] : Rgb(std::numeric_limits<float>::infinity()),
+                       std::sqrt(light.indirect_variance[i])};
+    }
     return measured;
 }
 

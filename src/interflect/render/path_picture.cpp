@@ -65,7 +65,9 @@ class PathPicture {
         PathTracing result;
         result.image = Image(options_.width, options_.height);
         result.standard_error = Image(options_.width, options_.height);
+        result.batches.reserve(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            result.batches.push_back(pixels_[i].batches);
             const RgbD e = pixels_[i].squared_error();
             result.image.pixels[i] = Rgb(pixels_[i].mean);
             result.standard_error.pixels[i] = Rgb(RgbD(std::sqrt(e.x), std::sqrt(e.y), std::sqrt(e.z)));

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <functional>
+
+#include "interflect/path_tracer.h"
+
+namespace interflect::command {
+
+/// Calls `work`, whose rays a progress bar shows and Ctrl-C ends early, keeping what there is.
+/// @return How long it took [s].
+double with_path_progress(const std::function<void(const PathMonitor&)>& work);
+
+}  // namespace interflect::command

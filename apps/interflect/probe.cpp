@@ -1,0 +1,316 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "apps/interflect/commands.h"
+#include "apps/interflect/csv_file.h"
+#include "apps/interflect/light_group_options.h"
+#include "apps/interflect/measuring_places.h"
+#include "apps/interflect/messages.h"
+#include "apps/interflect/path_progress.h"
+#include "apps/interflect/probe_glare.h"
+#include "apps/interflect/read_light.h"
+#include "apps/interflect/refused_options.h"
+#include "apps/interflect/run_path_tracer.h"
+#include "apps/interflect/run_solve.h"
+#include "apps/interflect/signals.h"
+#include "apps/interflect/stats_file.h"
+#include "apps/interflect/threads.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/error.h"
+#include "interflect/exports/json_text.h"
+#include "interflect/photometry.h"
+
+namespace interflect::command {
+
+namespace {
+
+enum class ProbedQuantity { surface, horizontal, vertical, cylindrical, semicylindrical, ugr };
+
+/// Where the light comes from.
+enum class ProbedLight {
+    gather,  ///< Final gathering from a solution.
+    path,    ///< Path tracing, with no solution.
+};
+
+struct ProbeArguments {
+    SceneOptions scene;
+    MeshOptions mesh;
+    DimmingOptions dimming;
+    SolverOptions solver;
+    MeasuringPlaces places;
+    ProbedQuantity quantity = ProbedQuantity::surface;
+    std::vector<Imath::V3d> directions;
+    ProbedLight light = ProbedLight::gather;
+    PathOptions path{.samples = 4096};
+    std::optional<double> exterior;
+    std::filesystem::path output;
+    bool json = false;
+};
+
+bool needs_direction(ProbedQuantity quantity) {
+    return quantity == ProbedQuantity::vertical || quantity == ProbedQuantity::semicylindrical;
+}
+
+const char* name_of(ProbedQuantity quantity) {
+    switch (quantity) {
+        case ProbedQuantity::surface:
+            return "illuminance of the surface";
+        case ProbedQuantity::horizontal:
+            return "horizontal illuminance";
+        case ProbedQuantity::vertical:
+            return "vertical illuminance";
+        case ProbedQuantity::cylindrical:
+            return "cylindrical illuminance";
+        case ProbedQuantity::semicylindrical:
+            return "semicylindrical illuminance";
+        case ProbedQuantity::ugr:
+            return "UGR";
+    }
+    return "";
+}
+
+void check_direction(const ProbeArguments& options) {
+    if (options.quantity == ProbedQuantity::ugr) {
+        for (const Imath::V3d& d : options.directions)
+            if (!(V3f(d).length() > 0)) throw InputError("--direction 0,0,0 is no direction");
+        return;
+    }
+    if (!needs_direction(options.quantity)) {
+        if (!options.directions.empty())
+            throw InputError("--direction has no effect: it is for --quantity vertical, semicylindrical and ugr");
+        return;
+    }
+    if (options.directions.size() != 1)
+        throw InputError("--quantity vertical and semicylindrical need one --direction X,Y,Z: the way that they face");
+    if (!(std::hypot(options.directions[0].x, options.directions[0].y) > 0))
+        throw InputError("--direction: expected a direction that is not vertical (z)");
+}
+
+/// Lines of sight: along the four axes of a plan unless they were told.
+std::vector<V3f> lines_of_sight(const ProbeArguments& options) {
+    if (options.directions.empty()) return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    return {options.directions.begin(), options.directions.end()};
+}
+
+/// What measures at a point of a grid.
+MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& grid, const ProbeArguments& options) {
+    V3f faces(0);
+    if (!options.directions.empty()) faces = V3f(Imath::V3d(options.directions[0].x, options.directions[0].y, 0));
+    switch (options.quantity) {
+        case ProbedQuantity::surface:
+            return {position, grid.normal};
+        case ProbedQuantity::horizontal:
+            return {position};
+        case ProbedQuantity::vertical:
+            return {position, faces};
+        case ProbedQuantity::cylindrical:
+            return {position, {}, Receiver::cylindrical};
+        case ProbedQuantity::semicylindrical:
+            return {position, faces, Receiver::semicylindrical};
+        case ProbedQuantity::ugr:
+            break;
+    }
+    return {};
+}
+
+/// What was measured on one grid: only the points that were reached.
+struct MeasuredGrid {
+    MeasuringGrid grid;
+    std::vector<MeasuredIrradiance> measured;
+};
+
+std::vector<MeasuredGrid> measure(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                                  std::vector<MeasuringGrid> grids, const ProbeArguments& options) {
+    std::vector<MeasuringPoint> points;
+    for (const MeasuringGrid& grid : grids)
+        for (const Imath::V3d& position : grid.points) points.push_back(measuring_point(position, grid, options));
+    std::vector<MeasuredIrradiance> measured;
+    with_path_progress([&](const PathMonitor& monitor) {
+        measured = measure_irradiance(scene, solution, ray_caster, points, options.path, monitor);
+    });
+    std::vector<MeasuredGrid> result;
+    std::size_t next = 0, lost = 0;
+    for (MeasuringGrid& grid : grids) {
+        MeasuredGrid& of_grid = result.emplace_back();
+        std::vector<Imath::V3d> reached;
+        for (const Imath::V3d& position : grid.points) {
+            const MeasuredIrradiance& e = measured[next++];
+            if (!e.is_measured()) {
+                ++lost;
+                continue;
+            }
+            reached.push_back(position);
+            of_grid.measured.push_back(e);
+        }
+        grid.points = std::move(reached);
+        of_grid.grid = std::move(grid);
+    }
+    if (lost > 0) spdlog::warn("{} of {} points were not measured before the end", lost, points.size());
+    return result;
+}
+
+void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
+    CsvFile file(output, "x [m],y [m],z [m],E [lx],standard error [lx],direct [lx],indirect [lx],area");
+    for (const MeasuredGrid& g : grids)
+        for (std::size_t i = 0; i < g.measured.size(); ++i) {
+            const MeasuredIrradiance& e = g.measured[i];
+            const Imath::V3d& p = g.grid.points[i];
+            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{:.6g},{:.6g},{}", p.x, p.y, p.z,
+                                      e.illuminance(), e.illuminance_error(), luminance(e.direct),
+                                      luminance(e.indirect), csv_field(g.grid.name)));
+        }
+    file.commit();
+}
+
+/// Outside, which daylight factors are relative to [lx]; none: there are none.
+std::optional<double> exterior_of(const Scene& scene, const ProbeArguments& options) {
+    if (options.exterior) return options.exterior;
+    const std::optional<double> exterior = exterior_illuminance(scene);
+    if (exterior && has_other_light_than_sky(scene)) {
+        spdlog::warn("not only the sky shines: no daylight factors (--exterior LUX gives them all the same)");
+        return std::nullopt;
+    }
+    return exterior;
+}
+
+void print_text(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArguments& options,
+                const std::optional<double>& exterior) {
+    print_line("{}: {}", g.grid.name, text_of(g.grid));
+    print_line("  {}", name_of(options.quantity));
+    print_line("  mean              {:.4g} lx, standard error {:.2g} lx", s.mean, s.mean_error);
+    print_line("  minimum           {:.4g} lx, standard error {:.2g} lx", s.min, s.min_error);
+    print_line("  maximum           {:.4g} lx", s.max);
+    print_line("  Emin/Emean (U0)   {:.3f}", s.uniformity());
+    print_line("  Emin/Emax         {:.3f}", s.diversity());
+    if (exterior)
+        print_line("  daylight factor   mean {:.3g}%, minimum {:.3g}%, maximum {:.3g}%, of {:.4g} lx outside",
+                   100 * s.mean / *exterior, 100 * s.min / *exterior, 100 * s.max / *exterior, *exterior);
+}
+
+Json to_json(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArguments& options,
+             const std::optional<double>& exterior) {
+    Json json{{"name", g.grid.name},
+              {"quantity", name_of(options.quantity)},
+              {"points", s.points},
+              {"columns", g.grid.columns},
+              {"rows", g.grid.rows},
+              {"spacing", {g.grid.column_spacing, g.grid.row_spacing}},
+              {"mean", s.mean},
+              {"standard_error", s.mean_error},
+              {"min", s.min},
+              {"max", s.max},
+              {"uniformity", s.uniformity()},
+              {"diversity", s.diversity()}};
+    if (exterior) json["daylight_factor"] = s.mean / *exterior;
+    return json;
+}
+
+void print_summaries(const Scene& scene, const std::vector<MeasuredGrid>& grids, const ProbeArguments& options) {
+    const std::optional<double> exterior = exterior_of(scene, options);
+    Json areas = Json::array();
+    for (const MeasuredGrid& g : grids) {
+        const IlluminanceSummary summary = summarise(g.measured);
+        if (options.json)
+            areas.push_back(to_json(g, summary, options, exterior));
+        else
+            print_text(g, summary, options, exterior);
+    }
+    if (options.json) std::cout << json_text({{"areas", areas}}, 2) << '\n';
+}
+
+void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
+    const ThreadLimit threads(options.solver.threads);
+    const bool traces_paths = options.light == ProbedLight::path;
+    if (traces_paths) refuse_solver_options(command);
+    options.places.check();
+    check_direction(options);
+    require_distinct_files(input_files(options.scene, {}),
+                           std::array<NamedFile, 2>{{{"--output", options.output}, {"--stats", options.solver.stats}}});
+    std::optional<PendingFile> output;
+    if (!options.output.empty()) output.emplace(options.output);
+
+    const bool solved_before = is_solution_file(options.scene.path);
+    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming, command, true);
+    std::vector<MeasuringGrid> grids = options.places.grids(solved.scene);
+    const bool solves = !solved_before && !traces_paths;
+    const SolveOptions solve_options = options.solver.resolved({});
+    if (solves)
+        solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
+    StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
+    const RayCaster ray_caster(solved.scene);
+    if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
+
+    options.path.until = options.solver.until();
+    options.path.seed = options.solver.seed();
+    const Solution* solution = traces_paths ? nullptr : &solved.solution;
+    if (options.quantity == ProbedQuantity::ugr) {
+        const std::vector<RatedGrid> rated =
+            rate_grids(solved.scene, solution, ray_caster, grids, lines_of_sight(options), options.path);
+        if (output) write_ratings(*output, rated);
+        print_ratings(rated, options.json);
+    } else {
+        const std::vector<MeasuredGrid> measured =
+            measure(solved.scene, solution, ray_caster, std::move(grids), options);
+        if (output) write_csv(*output, measured);
+        print_summaries(solved.scene, measured, options);
+    }
+    if (solves) stats.write(solved.scene, solved.solution);
+    if (is_stop_requested()) exit_code = interrupted;
+}
+
+void add_quantity(CLI::App& command, ProbeArguments& options) {
+    add_choice<ProbedQuantity>(command, "--quantity", options.quantity,
+                               {{"surface", ProbedQuantity::surface},
+                                {"horizontal", ProbedQuantity::horizontal},
+                                {"vertical", ProbedQuantity::vertical},
+                                {"cylindrical", ProbedQuantity::cylindrical},
+                                {"semicylindrical", ProbedQuantity::semicylindrical},
+                                {"ugr", ProbedQuantity::ugr}},
+                               "Illuminance: of the surface that a grid lies on (of points and lines horizontal), "
+                               "horizontal, of a vertical plane, of a cylinder or of half of one; or glare, by UGR")
+        ->default_str("surface");
+    add_each(command, "--direction", options.directions, parse_vector,
+             "The way that a vertical plane, half a cylinder or an observer faces (for ugr may be repeated; default: "
+             "x, -x, y and -y)")
+        ->type_name("X,Y,Z");
+    command
+        .add_option("--exterior", options.exterior,
+                    "Horizontal illuminance outside [lx], for daylight factors (default: that of the scene's sky)")
+        ->type_name("LUX")
+        ->check(number_between(1e-12, 1e12));
+}
+
+}  // namespace
+
+void add_probe(CLI::App& app, int& exit_code) {
+    const auto options = std::make_shared<ProbeArguments>();
+    CLI::App& command = *app.add_subcommand("probe", "Measure illuminance or glare at points and on grids");
+    options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
+    command.add_option("-o,--output", options->output, "Table of the points to write (.csv)")->type_name("FILE");
+    command.add_flag("--json", options->json, "The summary as JSON on stdout");
+    options->places.add_to(command);
+    add_quantity(command, *options);
+    command.add_option("--samples", options->path.samples, "Paths a point")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 1 << 24));
+    command.add_option("--max-samples", options->path.max_samples, "Most paths a point with --until")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 1 << 24))
+        ->group(path_group);
+    add_choice<ProbedLight>(command, "--shading", options->light,
+                            {{"gather", ProbedLight::gather}, {"path", ProbedLight::path}},
+                            "gather: each point finds its own light, from the solution; path: path tracing, without "
+                            "solving")
+        ->default_str("gather");
+    options->dimming.add_to(command);
+    options->solver.add_to(command);
+    options->mesh.add_to(command);
+    command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
+}
+
+}  // namespace interflect::command

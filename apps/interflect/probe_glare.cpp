@@ -1,0 +1,146 @@
+#include "apps/interflect/probe_glare.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "apps/interflect/csv_file.h"
+#include "apps/interflect/measuring_places.h"
+#include "apps/interflect/messages.h"
+#include "apps/interflect/path_progress.h"
+#include "apps/interflect/print_views.h"
+#include "interflect/exports/json_text.h"
+
+namespace interflect::command {
+
+namespace {
+
+void warn_of_sources_without_area(const Scene& scene) {
+    const auto has_no_area = [](const Luminaire& l) {
+        if (const auto* light = std::get_if<MeasuredLight>(&l.kind)) return light->web->opening.is_point();
+        return std::holds_alternative<PointLight>(l.kind) || std::holds_alternative<SpotLight>(l.kind);
+    };
+    const auto count = std::count_if(scene.luminaires.begin(), scene.luminaires.end(), has_no_area);
+    if (count > 0) spdlog::warn("{} light sources have no luminous area: their glare is left out", count);
+}
+
+/// CIE 117 rates sources of 0.0003 to 0.1 sr.
+void warn_of_large_sources(const std::vector<RatedGrid>& grids) {
+    constexpr double largest = 0.1;  // [sr]
+    const GlareSource* found = nullptr;
+    for (const RatedGrid& grid : grids)
+        for (const GlareRating& rating : grid.ratings)
+            for (const GlareSource& source : rating.sources)
+                if (source.solid_angle > (found ? found->solid_angle : largest)) found = &source;
+    if (found)
+        spdlog::warn("'{}' fills up to {:.2g} sr: UGR is made for sources of 0.0003 to {} sr (CIE 117)", found->name,
+                     found->solid_angle, largest);
+}
+
+/// JSON has no infinity.
+Json number_or_null(double rating) { return std::isfinite(rating) ? Json(rating) : Json(nullptr); }
+
+Json to_json(const RatedGrid& g) {
+    Json json{{"name", g.grid.name}, {"quantity", "UGR"}, {"points", g.observers.size()}};
+    if (g.ratings.empty()) return json;
+    const GlareRating& worst = g.ratings[g.worst()];
+    Json sources = Json::array();
+    for (const GlareSource& s : worst.sources)
+        sources.push_back({{"name", s.name},
+                           {"luminance", s.luminance},
+                           {"solid_angle", s.solid_angle},
+                           {"position_index", s.position_index},
+                           {"glare", s.glare}});
+    const Observer& observer = g.observers[g.worst()];
+    json.update({{"max", number_or_null(worst.ugr)},
+                 {"standard_error", number_or_null(worst.standard_error)},
+                 {"background_luminance", worst.background_luminance},
+                 {"eye", json_of(observer.eye)},
+                 {"direction", json_of(observer.line_of_sight)},
+                 {"sources", sources}});
+    return json;
+}
+
+void print_text(const RatedGrid& g) {
+    print_line("{}: {}, {} ratings", g.grid.name, text_of(g.grid), g.ratings.size());
+    if (g.ratings.empty()) return;
+    const GlareRating& worst = g.ratings[g.worst()];
+    if (!std::isfinite(worst.ugr)) return print_line("  UGR               no source is seen");
+    const Observer& observer = g.observers[g.worst()];
+    print_line("  largest UGR       {:.1f}, standard error {:.2g}", worst.ugr, worst.standard_error);
+    print_line("  observer          at {}, looking {}", text_of(observer.eye), text_of(observer.line_of_sight));
+    print_line("  background        {:.3g} cd/m2", worst.background_luminance);
+    constexpr std::size_t most_told = 5;
+    for (std::size_t i = 0; i < std::min(worst.sources.size(), most_told); ++i) {
+        const GlareSource& s = worst.sources[i];
+        print_line("  source            {}: {:.4g} cd/m2, {:.3g} sr, position index {:.3g}", s.name, s.luminance,
+                   s.solid_angle, s.position_index);
+    }
+}
+
+}  // namespace
+
+std::size_t RatedGrid::worst() const {
+    const auto less = [](const GlareRating& a, const GlareRating& b) { return a.ugr < b.ugr; };
+    return static_cast<std::size_t>(std::max_element(ratings.begin(), ratings.end(), less) - ratings.begin());
+}
+
+std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                                  const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
+                                  const PathOptions& options) {
+    warn_of_sources_without_area(scene);
+    std::vector<Observer> observers;
+    for (const MeasuringGrid& grid : grids)
+        for (const Imath::V3d& eye : grid.points)
+            for (const V3f& direction : directions) observers.push_back({eye, direction});
+    std::vector<GlareRating> ratings;
+    with_path_progress([&](const PathMonitor& monitor) {
+        ratings = rate_glare(scene, solution, ray_caster, observers, options, monitor);
+    });
+    std::vector<RatedGrid> result;
+    std::size_t next = 0, lost = 0;
+    for (const MeasuringGrid& grid : grids) {
+        RatedGrid& rated = result.emplace_back();
+        rated.grid = grid;
+        for (const std::size_t end = next + grid.points.size() * directions.size(); next < end; ++next) {
+            if (!std::isfinite(ratings[next].standard_error)) {
+                ++lost;
+                continue;
+            }
+            rated.observers.push_back(observers[next]);
+            rated.ratings.push_back(std::move(ratings[next]));
+        }
+    }
+    if (lost > 0) spdlog::warn("{} of {} ratings were not found before the end", lost, observers.size());
+    warn_of_large_sources(result);
+    return result;
+}
+
+void write_ratings(PendingFile& output, const std::vector<RatedGrid>& grids) {
+    CsvFile file(output, "x [m],y [m],z [m],direction x,direction y,direction z,UGR,standard error,Lb [cd/m^2],area");
+    for (const RatedGrid& g : grids)
+        for (std::size_t i = 0; i < g.ratings.size(); ++i) {
+            const auto& [eye, sight] = g.observers[i];
+            const GlareRating& r = g.ratings[i];
+            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.5g},{:.3g},{:.5g},{}", eye.x,
+                                      eye.y, eye.z, sight.x, sight.y, sight.z, r.ugr, r.standard_error,
+                                      r.background_luminance, csv_field(g.grid.name)));
+        }
+    file.commit();
+}
+
+void print_ratings(const std::vector<RatedGrid>& grids, bool json) {
+    Json areas = Json::array();
+    for (const RatedGrid& grid : grids) {
+        if (json)
+            areas.push_back(to_json(grid));
+        else
+            print_text(grid);
+    }
+    if (json) std::cout << json_text({{"areas", areas}}, 2) << '\n';
+}
+
+}  // namespace interflect::command

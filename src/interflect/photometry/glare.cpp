@@ -1,0 +1,224 @@
+#include "interflect/glare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "interflect/base/parallel.h"
+#include "interflect/error.h"
+#include "interflect/geometry/texture_mapping.h"
+#include "interflect/luminaires/illumination.h"
+#include "interflect/luminaires/opening.h"
+#include "interflect/measure.h"
+#include "interflect/raycast/panes.h"
+
+namespace interflect {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A place of a source, which stands for some of its solid angle.
+struct Place {
+    V3f towards;
+    float distance = 0;          // [m]
+    std::uint32_t patch = none;  // that a ray there must hit; none: it must hit nothing before `distance`
+    Rgb radiance{0, 0, 0};       // [cd/m^2]
+    double solid_angle = 0;      // [sr]
+    double position_index = 1;
+    std::size_t source = 0;
+};
+
+/// What a source adds up to.
+struct Sums {
+    std::string name;
+    double solid_angle = 0, luminance = 0, squared = 0,
+           glare = 0;  // integrals over the solid angle of 1, L, L^2, L^2/p^2
+
+    void add(double l, double omega, double p) {
+        solid_angle += omega;
+        luminance += l * omega;
+        squared += l * l * omega;
+        glare += l * l * omega / (p * p);
+    }
+    GlareSource source() const {
+        return {name, luminance / solid_angle, solid_angle, std::sqrt(squared / glare), glare};
+    }
+};
+
+/// All places of all sources, as seen by one observer.
+class SourcePlaces {
+  public:
+    SourcePlaces(const Scene& scene, const Observer& observer)
+        : scene_(scene), eye_(observer.eye - scene.origin), line_of_sight_(observer.line_of_sight.normalized()) {
+        for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+            if (largest_channel(scene.materials[scene.patches[i].material].exitance) > 0) add_patch(i);
+        for (const Luminaire& luminaire : scene.luminaires)
+            if (const auto* light = std::get_if<MeasuredLight>(&luminaire.kind)) add_luminaire(luminaire, *light);
+    }
+
+    const V3f& eye() const { return eye_; }
+    const std::vector<Place>& places() const { return places_; }
+    std::vector<Sums>& sums() { return sums_; }
+
+  private:
+    /// Cells are no wider than an eighth of their distance, so that direction and distance hardly change over one.
+    void add_patch(std::uint32_t index) {
+        constexpr float cells_per_distance = 8;
+        constexpr int fewest = 2, most = 16;
+        const Patch& patch = scene_.patches[index];
+        const PatchGeometry geometry(scene_, patch);
+        if (!((eye_ - geometry.centre()).dot(geometry.normal()) > 0)) return;
+        const float width = std::sqrt(geometry.area()), distance = (eye_ - geometry.centre()).length();
+        const int n = static_cast<int>(std::clamp(std::ceil(cells_per_distance * width / distance),
+                                                  static_cast<float>(fewest), static_cast<float>(most)));
+        const std::size_t source = source_of(patch);
+        for (int i = 0; i < n * n; ++i) {
+            const auto column = static_cast<float>(i % n), row = static_cast<float>(i / n);
+            const Parameters p = geometry.uniform_parameters((column + 0.5f) / static_cast<float>(n),
+                                                             (row + 0.5f) / static_cast<float>(n));
+            const V3f d = geometry.point(p) - eye_;
+            const float r = d.length();
+            const double cosine = static_cast<double>(-geometry.normal().dot(d) / r);
+            add({d / r, r, index, exitance_at(scene_, patch, p) / std::numbers::pi_v<float>,
+                 cosine * static_cast<double>(geometry.area()) / (n * n) / (static_cast<double>(r) * r), 1, source});
+        }
+    }
+
+    /// Each point of the opening causes a share of the irradiance that all of it causes: L times its solid angle.
+    void add_luminaire(const Luminaire& luminaire, const MeasuredLight& light) {
+        constexpr int per_side = 8, count = per_side * per_side;
+        if (light.web->opening.is_point()) return;
+        const LuminaireFrame frame(light);
+        sums_.push_back({luminaire.name});
+        for (int i = 0; i < count; ++i) {
+            const Illumination seen =
+                illumination(luminaire, eye_, (static_cast<float>(i % per_side) + 0.5f) / per_side,
+                             (static_cast<float>(i / per_side) + 0.5f) / per_side);
+            const V3f d = frame.to_luminaire(-seen.towards);
+            const float area = projected_area(light.web->opening, d);
+            const Rgb radiance = light.factor * (light.web->intensity(d) / area);
+            const double l = luminance(RgbD(radiance)), e = luminance(RgbD(seen.irradiance));
+            if (!(area > 0 && l > 0)) continue;
+            add({seen.towards, seen.distance, none, radiance, e / l / count, 1, sums_.size() - 1});
+        }
+    }
+
+    void add(Place place) {
+        place.position_index = position_index(place.towards, line_of_sight_);
+        if (std::isfinite(place.position_index) && place.solid_angle > 0) places_.push_back(place);
+    }
+
+    std::size_t source_of(const Patch& patch) {
+        const std::string& object = patch.object < scene_.objects.size() ? scene_.objects[patch.object] : no_name_;
+        const std::string& name = object.empty() ? scene_.materials[patch.material].name : object;
+        const auto [entry, is_new] = by_name_.try_emplace(name, sums_.size());
+        if (is_new) sums_.push_back({name});
+        return entry->second;
+    }
+
+    const Scene& scene_;
+    const std::string no_name_;
+    V3f eye_, line_of_sight_;
+    std::vector<Place> places_;
+    std::vector<Sums> sums_;
+    std::map<std::string, std::size_t> by_name_;
+};
+
+/// How much of the light of a place gets to the eye: nothing, all, or what panes let through.
+Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, const RayCaster& ray_caster) {
+    Rgb transmittance(1);
+    float left = place.distance;
+    for (int passed = 0; passed <= Panes::most_in_a_row; ++passed) {
+        if (hit.patch == place.patch || (place.patch == none && hit.distance > left)) return transmittance;
+        if (!panes.has(hit.patch)) return Rgb(0);
+        transmittance *= panes.transmittance(hit.patch);
+        left -= hit.distance;
+        ray = panes.behind(ray, hit);
+        ray_caster.trace({&ray, 1}, {&hit, 1});
+    }
+    return Rgb(0);
+}
+
+void require_direction(const Observer& observer) {
+    const float length = observer.line_of_sight.length();
+    if (!(length > 0 && std::isfinite(length)) || !is_finite(V3f(observer.eye)))
+        throw InputError("an observer needs an eye and a line of sight that are finite, and a direction");
+}
+
+}  // namespace
+
+double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up) {
+    constexpr double degrees = 180 / pi;
+    const Imath::V3d source = Imath::V3d(towards).normalized(), sight = Imath::V3d(line_of_sight).normalized(),
+                     above = (Imath::V3d(up) - sight * sight.dot(Imath::V3d(up))).normalized();
+    const double cosine = source.dot(sight);
+    if (!(cosine > 0)) return std::numeric_limits<double>::infinity();
+    const Imath::V3d across = source - sight * cosine;
+    const double sine = across.length();
+    if (!(sine > 0)) return 1;
+    const double sigma = std::atan2(sine, cosine) * degrees,
+                 tau = std::acos(std::min(1.0, std::abs(across.dot(above)) / sine)) * degrees;
+    return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2 * tau / 9)) * 1e-3 * sigma +
+                    (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
+}
+
+double unified_glare_rating(double background_luminance, std::span<const GlareSource> sources) {
+    double sum = 0;
+    for (const GlareSource& source : sources) sum += source.glare;
+    if (!(sum > 0)) return -std::numeric_limits<double>::infinity();
+    return 8 * std::log10(0.25 / background_luminance * sum);
+}
+
+std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_caster, const Observer& observer) {
+    require_direction(observer);
+    ray_caster.require_made_for(scene);
+    SourcePlaces seen(scene, observer);
+    const std::vector<Place>& places = seen.places();
+    std::vector<Ray> rays;
+    rays.reserve(places.size());
+    for (const Place& place : places) rays.push_back({seen.eye(), place.towards});
+    std::vector<Hit> hits(rays.size());
+    ray_caster.trace(rays, hits);
+    const Panes panes(scene, ray_caster);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Rgb transmittance = transmittance_to(places[i], rays[i], hits[i], panes, ray_caster);
+        const double l = luminance(RgbD(places[i].radiance * transmittance));
+        if (l > 0) seen.sums()[places[i].source].add(l, places[i].solid_angle, places[i].position_index);
+    }
+    std::vector<GlareSource> sources;
+    for (const Sums& sums : seen.sums())
+        if (sums.glare > 0) sources.push_back(sums.source());
+    std::stable_sort(sources.begin(), sources.end(),
+                     [](const GlareSource& a, const GlareSource& b) { return a.glare > b.glare; });
+    return sources;
+}
+
+std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                                    std::span<const Observer> observers, const PathOptions& options,
+                                    const PathMonitor& monitor) {
+    std::vector<MeasuringPoint> eyes;
+    for (const Observer& observer : observers) {
+        require_direction(observer);
+        eyes.push_back({observer.eye, observer.line_of_sight});
+    }
+    const std::vector<MeasuredIrradiance> measured =
+        measure_irradiance(scene, solution, ray_caster, eyes, options, monitor);
+    std::vector<GlareRating> ratings(observers.size());
+    parallel_for_ranges(observers.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            GlareRating& rating = ratings[i];
+            rating.standard_error = static_cast<double>(luminance(measured[i].standard_error));
+            if (!measured[i].is_measured()) continue;
+            rating.sources = glare_sources(scene, ray_caster, observers[i]);
+            rating.background_luminance = static_cast<double>(luminance(measured[i].indirect)) / pi;
+            rating.ugr = unified_glare_rating(rating.background_luminance, rating.sources);
+            const double error = static_cast<double>(measured[i].indirect_error) / pi;
+            rating.standard_error = error > 0 ? 8 / std::numbers::ln10 * error / rating.background_luminance : 0;
+        }
+    });
+    return ratings;
+}
+
+}  // namespace interflect

@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "interflect/error.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/measuring_grid.h"
+#include "interflect/photometry/nearest_names.h"
+
+namespace interflect {
+
+namespace {
+
+/// Cosine of the angle (0.8 degrees) up to which faces count as parallel.
+constexpr float same_plane_cosine = 0.9999f;
+/// Between two planes, relative to how far their faces reach.
+constexpr double same_plane_distance = 1e-4;
+/// What is made of more planes is curved: further ones are ignored.
+constexpr std::size_t most_planes = 256;
+/// Planes whose areas differ by less than this share are equally large.
+constexpr double equal_areas = 0.01;
+/// Cosine of the angle within which a surface faces a direction: 10 degrees.
+constexpr float facing_cosine = 0.98481f;
+
+bool is_part_of(const std::string& name, const std::string& object) {
+    return name == object || (name.starts_with(object) && name[object.size()] == '.');
+}
+
+/// Name of a patch's object; a scene that was made by a program may have none.
+std::string object_name(const Scene& scene, std::uint32_t patch) {
+    const std::uint32_t object = scene.patches[patch].object;
+    return object < scene.objects.size() ? scene.objects[object] : std::string();
+}
+
+std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& object) {
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (!object.empty() && is_part_of(object_name(scene, i), object)) patches.push_back(i);
+    if (patches.empty())
+        throw InputError(
+            scene.name, 0,
+            fmt::format("there is no object '{}' with faces; {}", object, text_of_nearest(object, scene.objects)));
+    return patches;
+}
+
+/// The faces by planes, the largest plane first.
+std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<std::uint32_t> patches, const std::string& name) {
+    std::vector<PatchGeometry> geometry;
+    geometry.reserve(patches.size());
+    for (const std::uint32_t i : patches) geometry.emplace_back(scene, scene.patches[i]);
+    std::vector<std::size_t> order(patches.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return geometry[a].area() > geometry[b].area(); });
+    Imath::Box3f box;
+    for (const PatchGeometry& g : geometry) box.extendBy(g.centre());
+    const double tolerance = same_plane_distance * (static_cast<double>(box.size().length()) +
+                                                    std::sqrt(static_cast<double>(geometry[order[0]].area())));
+    std::vector<PlanarArea> planes;
+    std::vector<V3f> on_plane;
+    for (const std::size_t k : order) {
+        const V3f normal = geometry[k].normal(), centre = geometry[k].centre();
+        std::size_t p = 0;
+        const auto holds = [&](std::size_t plane) {
+            return planes[plane].normal.dot(normal) > same_plane_cosine &&
+                   std::abs(static_cast<double>(planes[plane].normal.dot(centre - on_plane[plane]))) < tolerance;
+        };
+        while (p < planes.size() && !holds(p)) ++p;
+        if (p == most_planes) continue;
+        if (p == planes.size()) {
+            planes.push_back({name, normal, {}, 0});
+            on_plane.push_back(centre);
+        }
+        planes[p].patches.push_back(patches[k]);
+        planes[p].area += static_cast<double>(geometry[k].area());
+    }
+    for (PlanarArea& plane : planes) std::sort(plane.patches.begin(), plane.patches.end());
+    std::stable_sort(planes.begin(), planes.end(),
+                     [](const PlanarArea& a, const PlanarArea& b) { return a.area > b.area; });
+    return planes;
+}
+
+double height_of(const Scene& scene, const PlanarArea& plane) {
+    return scene.origin.z + static_cast<double>(PatchGeometry(scene, scene.patches[plane.patches.front()]).centre().z);
+}
+
+std::string text_of_direction(const V3f& direction) {
+    const V3f n = direction + V3f(0);  // no -0
+    return fmt::format("{:.3g},{:.3g},{:.3g}", n.x, n.y, n.z);
+}
+
+std::string text_of_directions(const std::vector<PlanarArea>& planes) {
+    constexpr std::size_t most_told = 6;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(planes.size(), most_told); ++i) {
+        text += (i > 0 ? "; " : "") + text_of_direction(planes[i].normal);
+    }
+    return planes.size() > most_told ? text + "; ..." : text;
+}
+
+}  // namespace
+
+PlanarArea find_surface(const Scene& scene, const std::string& object, const std::optional<V3f>& facing) {
+    std::vector<std::uint32_t> patches = patches_of(scene, object);
+    if (facing) {
+        const V3f direction = facing->normalized();
+        std::erase_if(patches, [&](std::uint32_t i) {
+            return !(PatchGeometry(scene, scene.patches[i]).normal().dot(direction) > facing_cosine);
+        });
+        if (patches.empty())
+            throw InputError(scene.name, 0,
+                             fmt::format("no face of '{}' faces {}, but {}", object, text_of_direction(direction),
+                                         text_of_directions(planes_of(scene, patches_of(scene, object), object))));
+    } else {
+        std::erase_if(patches, [&](std::uint32_t i) { return scene.patches[i].other_side < i; });
+    }
+    std::vector<PlanarArea> planes = planes_of(scene, std::move(patches), object);
+    if (planes.size() > 1 && planes[1].area > (1 - equal_areas) * planes[0].area)
+        throw InputError(scene.name, 0,
+                         fmt::format("'{}' has several planar surfaces of {:.3g} m2: expected the way that the one to "
+                                     "measure on faces, one of {}",
+                                     object, planes[0].area, text_of_directions(planes)));
+    return std::move(planes.front());
+}
+
+PlanarArea find_top(const Scene& scene, const std::string& object) {
+    std::vector<std::uint32_t> patches = patches_of(scene, object);
+    std::erase_if(patches, [&](std::uint32_t i) {
+        return !(PatchGeometry(scene, scene.patches[i]).normal().z > same_plane_cosine);
+    });
+    if (patches.empty())
+        throw InputError(scene.name, 0, fmt::format("'{}' has no horizontal face that faces up (z)", object));
+    std::vector<PlanarArea> planes = planes_of(scene, std::move(patches), object);
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < planes.size() && planes[i].area > (1 - equal_areas) * planes[0].area; ++i)
+        if (height_of(scene, planes[i]) > height_of(scene, planes[best])) best = i;
+    return std::move(planes[best]);
+}
+
+PlanarArea find_floor(const Scene& scene, double height) {
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const PatchGeometry geometry(scene, scene.patches[i]);
+        if (geometry.normal().z > same_plane_cosine &&
+            scene.origin.z + static_cast<double>(geometry.centre().z) < height)
+            patches.push_back(i);
+    }
+    if (patches.empty())
+        throw InputError(scene.name, 0, fmt::format("there is no floor: no face below z = {:.4g} m faces up", height));
+    return std::move(planes_of(scene, std::move(patches), "floor").front());
+}
+
+std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area) {
+    std::map<std::uint32_t, PlanarArea> parts;
+    for (const std::uint32_t i : area.patches) {
+        const Patch& patch = scene.patches[i];
+        PlanarArea& part = parts[patch.object];
+        part.name = object_name(scene, i).empty() ? area.name : object_name(scene, i);
+        part.normal = area.normal;
+        part.patches.push_back(i);
+        part.area += static_cast<double>(patch_area(scene, patch));
+    }
+    std::vector<PlanarArea> sorted;
+    for (auto& [object, part] : parts) sorted.push_back(std::move(part));
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const PlanarArea& a, const PlanarArea& b) { return a.area > b.area; });
+    return sorted;
+}
+
+}  // namespace interflect

@@ -1,0 +1,144 @@
+#include "interflect/photometry/planar_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+namespace interflect::inline detail {
+
+namespace {
+
+using V2d = Imath::V2d;
+using V3d = Imath::V3d;
+
+/// Relative to an area's size: what lies nearer to a line lies on it. Above the rounding of vertices.
+constexpr double on_line = 1e-5;
+
+double tolerance_of(const Imath::Box2d& box) { return on_line * (box.max - box.min).length(); }
+
+/// By Andrew's monotone chain, counter-clockwise.
+std::vector<V2d> convex_hull(std::vector<V2d> points) {
+    std::sort(points.begin(), points.end(),
+              [](const V2d& a, const V2d& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+    std::vector<V2d> hull;
+    const auto add_side = [&hull](auto begin, auto end) {
+        const std::size_t fixed = hull.size();
+        for (auto p = begin; p != end; ++p) {
+            while (hull.size() >= fixed + 2 &&
+                   (hull.back() - hull[hull.size() - 2]).cross(*p - hull[hull.size() - 2]) <= 0)
+                hull.pop_back();
+            hull.push_back(*p);
+        }
+        hull.pop_back();
+    };
+    add_side(points.begin(), points.end());
+    add_side(points.rbegin(), points.rend());
+    return hull;
+}
+
+V2d turned(const V2d& p, double angle) {
+    return {p.x * std::cos(angle) + p.y * std::sin(angle), p.y * std::cos(angle) - p.x * std::sin(angle)};
+}
+
+Imath::Box2d turned_box(const std::vector<V2d>& points, double angle) {
+    Imath::Box2d box;
+    for (const V2d& p : points) box.extendBy(turned(p, angle));
+    return box;
+}
+
+/// By which the frame must be turned to lie along the smallest rectangle, which has a side along one of the hull's; in
+/// (-45, 45] degrees, 0 where that is as good.
+double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
+    constexpr double quarter = std::numbers::pi / 2, better = 1 - 1e-4;
+    const auto area = [&](double angle) {
+        const V2d size = turned_box(hull, angle).size();
+        return size.x * size.y;
+    };
+    double best = 0, smallest = area(0);
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+        const V2d side = hull[(i + 1) % hull.size()] - hull[i];
+        const double angle = std::remainder(std::atan2(side.y, side.x), quarter), a = area(angle);
+        if (a >= better * smallest) continue;
+        best = angle, smallest = a;
+    }
+    return best;
+}
+
+}  // namespace
+
+PlanarOutline outline_of(const Scene& scene, const PlanarArea& area) {
+    const V3d n = V3d(area.normal).normalized();
+    constexpr double nearly_vertical = 0.9;
+    const V3d up = std::abs(n.z) > nearly_vertical ? V3d(0, 1, 0) : V3d(0, 0, 1);
+    PlanarOutline outline;
+    outline.v = (up - n * n.dot(up)).normalized();
+    outline.u = outline.v.cross(n);
+    const auto in_world = [&](std::uint32_t vertex) { return scene.origin + V3d(scene.vertices[vertex]); };
+    outline.origin = in_world(scene.patches[area.patches.front()].vertices[0]);
+    std::vector<V2d> corners;
+    for (const std::uint32_t i : area.patches) {
+        const Patch& patch = scene.patches[i];
+        std::vector<V2d>& face = outline.faces.emplace_back();
+        for (std::size_t k = 0; k < static_cast<std::size_t>(patch.vertex_count()); ++k) {
+            const V3d d = in_world(patch.vertices[k]) - outline.origin;
+            face.emplace_back(outline.u.dot(d), outline.v.dot(d));
+        }
+        corners.insert(corners.end(), face.begin(), face.end());
+    }
+    const double angle = angle_of_smallest_rectangle(convex_hull(corners));
+    const V3d u = outline.u, v = outline.v;
+    outline.u = u * std::cos(angle) + v * std::sin(angle);
+    outline.v = v * std::cos(angle) - u * std::sin(angle);
+    for (std::vector<V2d>& face : outline.faces)
+        for (V2d& p : face) outline.box.extendBy(p = turned(p, angle));
+    return outline;
+}
+
+bool PlanarOutline::holds(const V2d& p) const {
+    const double tolerance = tolerance_of(box);
+    return std::any_of(faces.begin(), faces.end(), [&](const std::vector<V2d>& face) {
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            const V2d a = face[i], side = face[(i + 1) % face.size()] - a;
+            if (side.cross(p - a) < -tolerance * side.length()) return false;
+        }
+        return true;
+    });
+}
+
+std::vector<PlanarSegment> PlanarOutline::border() const {
+    const double tolerance = tolerance_of(box);
+    std::vector<PlanarSegment> edges;
+    for (const std::vector<V2d>& face : faces)
+        for (std::size_t i = 0; i < face.size(); ++i) edges.push_back({face[i], face[(i + 1) % face.size()]});
+    std::vector<PlanarSegment> border;
+    for (const PlanarSegment& edge : edges) {
+        const double length = edge.length();
+        if (!(length > tolerance)) continue;
+        const V2d along = (edge.b - edge.a) / length;
+        std::vector<std::pair<double, double>> shared;  // with faces on the other side, from edge.a [m]
+        for (const PlanarSegment& other : edges) {
+            const V2d c = other.a - edge.a, d = other.b - edge.a;
+            if (std::abs(along.cross(c)) > tolerance || std::abs(along.cross(d)) > tolerance) continue;
+            if (along.dot(d) < along.dot(c)) shared.emplace_back(along.dot(d), along.dot(c));
+        }
+        std::sort(shared.begin(), shared.end());
+        shared.emplace_back(length, length);
+        double from = 0;
+        for (const auto& [begin, end] : shared) {
+            const double to = std::min(begin, length);
+            if (to > from + tolerance) border.push_back({edge.a + along * from, edge.a + along * to});
+            from = std::max(from, end);
+        }
+    }
+    return border;
+}
+
+double distance(const V2d& p, const PlanarSegment& s) {
+    const V2d side = s.b - s.a;
+    const double length2 = side.length2(), t = length2 > 0 ? std::clamp((p - s.a).dot(side) / length2, 0.0, 1.0) : 0;
+    return (p - (s.a + side * t)).length();
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,157 @@
+// Unified Glare Rating against published position indices and sources whose luminance and solid angle are known.
+
+#include "interflect/glare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <tuple>
+#include <vector>
+
+#include "interflect/error.h"
+#include "interflect/measure.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr double pi = std::numbers::pi;
+
+/// CIE 117:1995, table of position indices, T/R = 0: straight above the line of sight, H/R as high as it is far.
+class PositionIndex : public testing::TestWithParam<std::tuple<float, double>> {};
+TEST_P(PositionIndex, IsThatOfTheTable) {
+    const auto [height, p] = GetParam();
+    EXPECT_NEAR(position_index({1, 0, height}, {1, 0, 0}), p, 0.035 * p);
+    EXPECT_NEAR(position_index({0, -3, 3 * height}, {0, -2, 0}), p, 0.035 * p);
+    EXPECT_NEAR(position_index({1, 0, -height}, {1, 0, 0}), p, 0.035 * p);
+}
+INSTANTIATE_TEST_SUITE_P(Cie117, PositionIndex,
+                         testing::Values(std::tuple(0.0f, 1.0), std::tuple(0.1f, 1.26), std::tuple(0.2f, 1.53),
+                                         std::tuple(0.3f, 1.90), std::tuple(0.5f, 2.86), std::tuple(0.7f, 4.20),
+                                         std::tuple(1.0f, 7.00), std::tuple(1.3f, 10.35), std::tuple(1.7f, 16.20)));
+
+/// sigma = 45 degrees, tau = 90: ln p = (35.2 - 28.7001 - 1.22 e^-20) 0.045 + (21 + 24.0003 - 24.0003) 0.02025.
+TEST(PositionIndex, IsSmallerToTheSide) {
+    EXPECT_NEAR(position_index({1, 1, 0}, {1, 0, 0}), std::exp(0.2925 + 0.42525), 1e-3);
+    EXPECT_EQ(position_index({1, -1, 0}, {1, 0, 0}), position_index({1, 1, 0}, {1, 0, 0}));
+    EXPECT_TRUE(std::isinf(position_index({-1, 0, 1}, {1, 0, 0})));
+}
+
+/// 8 log10(0.25 / 40 (6000^2 0.01 / 2^2 + 3000^2 0.02 / 1.5^2)) = 8 log10(1062.5), worked out by hand.
+TEST(UnifiedGlareRating, IsThatOfTheFormula) {
+    const std::vector<GlareSource> sources{{"a", 6000, 0.01, 2, 90'000}, {"b", 3000, 0.02, 1.5, 80'000}};
+    EXPECT_NEAR(unified_glare_rating(40, sources), 24.211, 1e-3);
+    EXPECT_EQ(unified_glare_rating(40, {}), -std::numeric_limits<double>::infinity());
+}
+
+/// A room of 6 x 4 x 3 m, reflectance rho.
+Scene room(float rho = 0.5f) {
+    Scene scene = closed_box({6, 4, 3}, 1, {Material{"paint", Rgb(rho), Rgb(0)}});
+    scene.objects = {"", "lamp"};
+    return scene;
+}
+const Observer observer{{1, 2, 1.2}, {2, 0, 0}};
+
+/// A small disk of 0.1 m across that shines with 300 cd cos(theta): its luminance is 300 / A from everywhere.
+Luminaire disk(const V3f& position, const V3f& faces) {
+    auto web = std::make_shared<PhotometricWeb>();
+    for (int i = 0; i <= 90; ++i) web->polar.push_back(static_cast<float>(i));
+    web->azimuth = {0, 360};
+    for (int repeat = 0; repeat < 2; ++repeat)
+        for (int i = 0; i <= 90; ++i)
+            web->intensities.push_back(i < 90 ? 300 * std::cos(static_cast<float>(i * pi / 180)) : 0);
+    web->opening = {LuminousOpening::Shape::cylinder, {0.1f, 0.1f, 0}, 2};
+    return {"disk", 1, MeasuredLight{web, position, faces}};
+}
+
+void expect_source(const GlareSource& source, double luminance, double solid_angle, double p) {
+    EXPECT_NEAR(source.luminance, luminance, 2e-3 * luminance);
+    EXPECT_NEAR(source.solid_angle, solid_angle, 2e-3 * solid_angle);
+    EXPECT_NEAR(source.position_index, p, 2e-3 * p);
+    EXPECT_NEAR(source.glare, luminance * luminance * solid_angle / (p * p), 4e-3 * source.glare);
+}
+
+/// 3 m ahead and 1.5 m above the eye, facing down: A = 0.00785 m^2, cos = 1.5 / r, omega = A cos / r^2.
+TEST(GlareSources, OfOneSmallDiskAreAsComputed) {
+    Scene scene = room();
+    scene.luminaires.push_back(disk({4, 2, 2.7f}, {0, 0, -1}));
+    const double area = pi * 0.0025, r2 = 9 + 2.25, omega = area * 1.5 / std::pow(r2, 1.5);
+    const double sigma = std::atan(0.5) * 180 / pi, p = std::exp(33.98e-3 * sigma + 21e-5 * sigma * sigma);
+    const auto sources = glare_sources(scene, RayCaster(scene), observer);
+    ASSERT_EQ(sources.size(), 1u);
+    EXPECT_EQ(sources[0].name, "disk");
+    expect_source(sources[0], 300 / area, omega, p);
+    // From behind, and above its plane, it is not seen.
+    EXPECT_TRUE(glare_sources(scene, RayCaster(scene), {{1, 2, 1.2}, {-1, 0, 0}}).empty());
+    EXPECT_TRUE(glare_sources(scene, RayCaster(scene), {{1, 2, 2.9}, {1, 0, 0}}).empty());
+}
+
+/// The same as a patch of 0.1 x 0.1 m, of object 'lamp': L = M / pi. Divided into many it is one source all the same.
+TEST(GlareSources, OfPatchesAreGroupedByObject) {
+    for (const int divisions : {1, 4}) {
+        Scene scene = room();
+        const std::uint32_t material = add_material(scene, Rgb(0.2f), Rgb(3e4f));
+        const std::uint32_t first =
+            add_rectangle(scene, {3.95f, 1.95f, 2.7f}, {0, 0.1f, 0}, {0.1f, 0, 0}, material, divisions, divisions);
+        for (std::uint32_t i = first; i < scene.patches.size(); ++i) scene.patches[i].object = 1;
+        const double omega = 0.01 * 1.5 / std::pow(9 + 2.25, 1.5);
+        const auto sources = glare_sources(scene, RayCaster(scene), observer);
+        ASSERT_EQ(sources.size(), 1u);
+        EXPECT_EQ(sources[0].name, "lamp");
+        expect_source(sources[0], 3e4 / pi, omega, position_index({3, 0, 1.5f}, {1, 0, 0}));
+    }
+}
+
+/// A screen hides the upper half of a panel that stands straight ahead; glass lets a part of it through.
+TEST(GlareSources, AreSeenAsFarAsNothingHidesThem) {
+    for (const float transmittance : {0.0f, 0.6f}) {
+        Scene scene = room();
+        const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(3e4f));
+        add_rectangle(scene, {5, 1.9f, 1.1f}, {0, 0, 0.2f}, {0, 0.2f, 0}, lamp);
+        const double whole = glare_sources(scene, RayCaster(scene), observer).at(0).solid_angle;
+        const std::uint32_t screen = add_material(scene, Rgb(0), Rgb(0));
+        scene.materials[screen].transmittance = Rgb(transmittance);
+        add_rectangle(scene, {3, 1, 1.2f}, {0, 2, 0}, {0, 0, 1}, screen, 1, 1, true);
+        const GlareSource source = glare_sources(scene, RayCaster(scene), observer).at(0);
+        if (transmittance == 0) {
+            EXPECT_NEAR(source.solid_angle, whole / 2, 1e-3 * whole);
+            EXPECT_NEAR(source.luminance, 3e4 / pi, 1);
+        } else {
+            EXPECT_NEAR(source.solid_angle, whole, 1e-3 * whole);
+            EXPECT_NEAR(source.luminance, 0.8 * 3e4 / pi, 1);
+        }
+    }
+}
+
+/// Lb is the indirect illuminance at the eye over pi, and the rating that of the formula.
+TEST(RateGlare, PutsSourcesBeforeTheirBackground) {
+    Scene scene = room();
+    scene.luminaires.push_back(disk({4, 2, 2.7f}, {0, 0, -1}));
+    const RayCaster ray_caster(scene);
+    const PathOptions options{.samples = 8192};
+    const GlareRating rating = rate_glare(scene, nullptr, ray_caster, std::vector{observer}, options).at(0);
+    const MeasuredIrradiance at_eye =
+        measure_irradiance(scene, nullptr, ray_caster, std::vector<MeasuringPoint>{{{1, 2, 1.2}, {1, 0, 0}}}, options)
+            .at(0);
+    EXPECT_NEAR(rating.background_luminance, static_cast<double>(at_eye.indirect.x) / pi, 1e-4);
+    EXPECT_GT(at_eye.direct.x, 0);
+    ASSERT_EQ(rating.sources.size(), 1u);
+    EXPECT_NEAR(rating.ugr, 8 * std::log10(0.25 / rating.background_luminance * rating.sources[0].glare), 1e-9);
+    EXPECT_GT(rating.standard_error, 0);
+    EXPECT_LT(rating.standard_error, 0.1);
+    const GlareRating unlit = rate_glare(room(), nullptr, RayCaster(room()), std::vector{observer}, options).at(0);
+    EXPECT_TRUE(std::isinf(unlit.ugr));
+}
+
+TEST(RateGlare, RefusesWhatHasNoDirection) {
+    const Scene scene = room();
+    EXPECT_THROW(rate_glare(scene, nullptr, RayCaster(scene), std::vector<Observer>{{{1, 1, 1}, {0, 0, 0}}}),
+                 InputError);
+}
+
+}  // namespace
+}  // namespace interflect

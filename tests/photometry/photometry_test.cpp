@@ -1,0 +1,86 @@
+// What is told of measured points, and light from a point light over a floor in closed form.
+
+#include "interflect/photometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "interflect/measuring_grid.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+MeasuredIrradiance grey(float direct, float indirect, float error) {
+    return {Rgb(direct), Rgb(indirect), Rgb(error), error};
+}
+
+TEST(Summary, IsThatOfTheSums) {
+    const std::vector<MeasuredIrradiance> measured{grey(100, 50, 3), grey(200, 100, 4), grey(40, 20, 1),
+                                                   grey(300, 90, 2)};
+    const IlluminanceSummary s = summarise(measured);
+    EXPECT_EQ(s.points, 4u);
+    EXPECT_NEAR(s.mean, 225, 1e-3);
+    EXPECT_NEAR(s.min, 60, 1e-3);
+    EXPECT_NEAR(s.min_error, 1, 1e-6);
+    EXPECT_NEAR(s.max, 390, 1e-3);
+    EXPECT_NEAR(s.uniformity(), 60.0 / 225, 1e-6);
+    EXPECT_NEAR(s.diversity(), 60.0 / 390, 1e-6);
+    EXPECT_NEAR(s.mean_error, std::sqrt(9.0 + 16 + 1 + 4) / 4, 1e-6);
+    EXPECT_EQ(summarise({}).points, 0u);
+    EXPECT_EQ(summarise({}).uniformity(), 0);
+}
+
+/// A colour counts by its luminance.
+TEST(Summary, WeighsColours) {
+    const std::vector<MeasuredIrradiance> green{{Rgb(0, 10, 0), Rgb(0), Rgb(0, 1, 0), 0}};
+    EXPECT_NEAR(summarise(green).mean, 7.152, 1e-4);
+    EXPECT_NEAR(summarise(green).mean_error, 0.7152, 1e-5);
+}
+
+TEST(ExteriorIlluminance, IsThatOfTheUniformSkyWithoutTheSun) {
+    Scene scene = closed_box({1, 1, 1}, 1, {Material{}});
+    EXPECT_FALSE(exterior_illuminance(scene));
+    scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(1000)}});
+    EXPECT_NEAR(*exterior_illuminance(scene), 1000 * std::numbers::pi, 0.01);
+    EXPECT_FALSE(has_other_light_than_sky(scene));
+    scene.luminaires.push_back({"sun", 0, DirectionalLight{{0, 0, -1}, Rgb(80'000)}});
+    EXPECT_NEAR(*exterior_illuminance(scene), 1000 * std::numbers::pi, 0.01);
+    EXPECT_TRUE(has_other_light_than_sky(scene));
+}
+
+/// E = I cos / r^2 = I h / r^3 at every point of a grid on a black floor; nothing on the side that faces away.
+TEST(MeasuringGrid, MeasuresThePointLightOverIt) {
+    Scene scene = closed_box({6, 5, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});
+    scene.objects = {"", "floor"};
+    scene.patches[4].object = 1;
+    scene.luminaires.push_back({"lamp", 0, PointLight{{2, 2, 2.5f}, Rgb(1000)}});
+    const MeasuringGrid grid = area_grid(scene, find_top(scene, "floor"));
+    std::vector<MeasuringPoint> points;
+    for (const Imath::V3d& p : grid.points) points.push_back({p, grid.normal});
+    points.push_back({{2, 3, 1}, -grid.normal});
+    const auto measured = measure_irradiance(scene, nullptr, RayCaster(scene), points, {.samples = 64});
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+        const double r = (grid.points[i] - Imath::V3d(2, 2, 2.5)).length(), expected = 1000 * 2.5 / (r * r * r);
+        EXPECT_NEAR(static_cast<double>(measured[i].illuminance()), expected, 1e-3 * expected);
+        EXPECT_TRUE(measured[i].is_measured());
+    }
+    EXPECT_EQ(measured.back().illuminance(), 0);
+}
+
+TEST(MeasureIrradiance, TellsWhatAnInterruptionHasNotReached) {
+    const Scene scene = closed_box({6, 5, 3}, 1, {Material{"", Rgb(0.5f), Rgb(10)}});
+    const std::atomic<bool> stop = true;
+    const auto measured = measure_irradiance(scene, nullptr, RayCaster(scene), std::vector<MeasuringPoint>{{{1, 1, 1}}},
+                                             {.samples = 64}, {.on_progress = {}, .stop = &stop});
+    ASSERT_EQ(measured.size(), 1u);
+    EXPECT_FALSE(measured.front().is_measured());
+}
+
+}  // namespace
+}  // namespace interflect
