@@ -60,7 +60,9 @@ std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCast
         grids.push_back(area_grid(solved.scene, room, options.places.grid.options(), options.working_plane));
         grids.back().name += fmt::format(", z = {:.3g} m", options.working_plane);
     }
-    for (MeasuringGrid& grid : options.places.grids(solved.scene)) grids.push_back(std::move(grid));
+    MeasuringPlaces places = options.places;
+    places.grid.boundary.clear();  // rooms have walls, desks have none
+    for (MeasuringGrid& grid : places.grids(solved.scene)) grids.push_back(std::move(grid));
     std::vector<MeasuringPoint> points;
     for (const MeasuringGrid& grid : grids)
         for (const Imath::V3d& p : grid.points) points.push_back({p, grid.normal});
