@@ -53,13 +53,14 @@ void MeasuringPlaces::add_to(CLI::App& app) {
     grid.add_to(app);
 }
 
-void MeasuringPlaces::check() const {
-    if (tops.empty() && planes.empty() && surfaces.empty() && points.empty() && lines.empty())
+void MeasuringPlaces::check(Least least) const {
+    const bool has_areas = !tops.empty() || !planes.empty() || !surfaces.empty();
+    if (least == Least::one && !has_areas && points.empty() && lines.empty())
         throw InputError("nothing to measure: expected --grid, --plane, --surface, --point or --line");
     if (!over.empty() && planes.empty()) throw InputError("--over has no effect without --plane");
     if (facing && surfaces.empty()) throw InputError("--facing has no effect without --surface");
     if (facing && !(facing->length() > 0)) throw InputError("--facing 0,0,0 is no direction");
-    if (tops.empty() && planes.empty() && surfaces.empty() && grid.any())
+    if (least == Least::one && !has_areas && grid.any())
         throw InputError("--spacing and --boundary have no effect without --grid, --plane or --surface");
 }
 

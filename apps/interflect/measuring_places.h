@@ -32,8 +32,10 @@ struct MeasuringPlaces {
     GridArguments grid;
 
     void add_to(CLI::App& app);
-    /// @throws InputError where nothing is to be measured, and for options without effect.
-    void check() const;
+    /// How much there must be to measure.
+    enum class Least { none, one };
+    /// @throws InputError where there is less to be measured, and for options without effect.
+    void check(Least least = Least::one) const;
     /// A grid each; all points are one. @throws InputError as find_surface() and area_grid() do.
     std::vector<MeasuringGrid> grids(const Scene& scene) const;
 };

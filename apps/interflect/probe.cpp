@@ -9,9 +9,9 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/csv_file.h"
 #include "apps/interflect/light_group_options.h"
+#include "apps/interflect/measured_grid.h"
 #include "apps/interflect/measuring_places.h"
 #include "apps/interflect/messages.h"
-#include "apps/interflect/path_progress.h"
 #include "apps/interflect/probe_glare.h"
 #include "apps/interflect/read_light.h"
 #include "apps/interflect/refused_options.h"
@@ -118,40 +118,12 @@ MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& 
     return {};
 }
 
-/// What was measured on one grid: only the points that were reached.
-struct MeasuredGrid {
-    MeasuringGrid grid;
-    std::vector<MeasuredIrradiance> measured;
-};
-
 std::vector<MeasuredGrid> measure(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   std::vector<MeasuringGrid> grids, const ProbeArguments& options) {
     std::vector<MeasuringPoint> points;
     for (const MeasuringGrid& grid : grids)
         for (const Imath::V3d& position : grid.points) points.push_back(measuring_point(position, grid, options));
-    std::vector<MeasuredIrradiance> measured;
-    with_path_progress([&](const PathMonitor& monitor) {
-        measured = measure_irradiance(scene, solution, ray_caster, points, options.path, monitor);
-    });
-    std::vector<MeasuredGrid> result;
-    std::size_t next = 0, lost = 0;
-    for (MeasuringGrid& grid : grids) {
-        MeasuredGrid& of_grid = result.emplace_back();
-        std::vector<Imath::V3d> reached;
-        for (const Imath::V3d& position : grid.points) {
-            const MeasuredIrradiance& e = measured[next++];
-            if (!e.is_measured()) {
-                ++lost;
-                continue;
-            }
-            reached.push_back(position);
-            of_grid.measured.push_back(e);
-        }
-        grid.points = std::move(reached);
-        of_grid.grid = std::move(grid);
-    }
-    if (lost > 0) spdlog::warn("{} of {} points were not measured before the end", lost, points.size());
-    return result;
+    return measure_grids(scene, solution, ray_caster, std::move(grids), points, options.path);
 }
 
 void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
@@ -165,17 +137,6 @@ void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
                                       luminance(e.indirect), csv_field(g.grid.name)));
         }
     file.commit();
-}
-
-/// Outside, which daylight factors are relative to [lx]; none: there are none.
-std::optional<double> exterior_of(const Scene& scene, const ProbeArguments& options) {
-    if (options.exterior) return options.exterior;
-    const std::optional<double> exterior = exterior_illuminance(scene);
-    if (exterior && has_other_light_than_sky(scene)) {
-        spdlog::warn("not only the sky shines: no daylight factors (--exterior LUX gives them all the same)");
-        return std::nullopt;
-    }
-    return exterior;
 }
 
 void print_text(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArguments& options,
@@ -211,7 +172,7 @@ Json to_json(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArgu
 }
 
 void print_summaries(const Scene& scene, const std::vector<MeasuredGrid>& grids, const ProbeArguments& options) {
-    const std::optional<double> exterior = exterior_of(scene, options);
+    const std::optional<double> exterior = exterior_of(scene, options.exterior);
     Json areas = Json::array();
     for (const MeasuredGrid& g : grids) {
         const IlluminanceSummary summary = summarise(g.measured);

@@ -50,7 +50,8 @@ PlanarArea find_top(const Scene& scene, const std::string& object);
 /// most of them. @param height  z in the world [m]. @throws InputError where there is none.
 PlanarArea find_floor(const Scene& scene, double height);
 
-/// An area divided by the objects that its faces belong to, in the order of their sizes: the floors of rooms.
+/// An area divided by the objects that its faces belong to, in the order of their sizes: the floors of rooms. Copies of
+/// an array (MGF names them "floor.a0", "floor.a1") are one object.
 std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area);
 
 /// Points to measure at.

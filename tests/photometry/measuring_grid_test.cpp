@@ -201,15 +201,16 @@ TEST(MeasuringGrid, OfALineHasItsEnds) {
 TEST(PlanarArea, IsDividedByObjects) {
     Scene scene;
     scene.materials = {Material{}};
-    scene.objects = {"", "small", "large"};
+    scene.objects = {"", "small.a", "large.a0.a1", "large.a0.a12"};
     add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    add_rectangle(scene, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, 0);
-    scene.patches[0].object = 1;
-    scene.patches[1].object = 2;
+    add_rectangle(scene, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    add_rectangle(scene, {2, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
+    for (std::uint32_t i = 0; i < 3; ++i) scene.patches[i].object = i + 1;
     const std::vector<PlanarArea> rooms = divide_by_object(scene, find_floor(scene, 1));
     ASSERT_EQ(rooms.size(), 2u);
     EXPECT_EQ(rooms[0].name, "large");
     EXPECT_NEAR(rooms[0].area, 2, 1e-6);
+    EXPECT_EQ(rooms[1].name, "small.a");
     EXPECT_EQ(rooms[1].patches, std::vector<std::uint32_t>{0});
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <string_view>
 
 #include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
@@ -33,6 +34,17 @@ bool is_part_of(const std::string& name, const std::string& object) {
 std::string object_name(const Scene& scene, std::uint32_t patch) {
     const std::uint32_t object = scene.patches[patch].object;
     return object < scene.objects.size() ? scene.objects[object] : std::string();
+}
+
+/// "floor.a0.a12" -> "floor": without what names the copies of an array.
+std::string_view without_copies(std::string_view name) {
+    for (;;) {
+        const std::size_t dot = name.rfind('.');
+        if (dot == name.npos) return name;
+        const std::string_view last = name.substr(dot + 1);
+        if (last.size() < 2 || last[0] != 'a' || last.find_first_not_of("0123456789", 1) != last.npos) return name;
+        name = name.substr(0, dot);
+    }
 }
 
 std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& object) {
@@ -154,17 +166,17 @@ PlanarArea find_floor(const Scene& scene, double height) {
 }
 
 std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area) {
-    std::map<std::uint32_t, PlanarArea> parts;
+    std::map<std::string, PlanarArea> parts;
     for (const std::uint32_t i : area.patches) {
-        const Patch& patch = scene.patches[i];
-        PlanarArea& part = parts[patch.object];
-        part.name = object_name(scene, i).empty() ? area.name : object_name(scene, i);
+        const std::string name(without_copies(object_name(scene, i)));
+        PlanarArea& part = parts[name];
+        part.name = name.empty() ? area.name : name;
         part.normal = area.normal;
         part.patches.push_back(i);
-        part.area += static_cast<double>(patch_area(scene, patch));
+        part.area += static_cast<double>(patch_area(scene, scene.patches[i]));
     }
     std::vector<PlanarArea> sorted;
-    for (auto& [object, part] : parts) sorted.push_back(std::move(part));
+    for (auto& [name, part] : parts) sorted.push_back(std::move(part));
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const PlanarArea& a, const PlanarArea& b) { return a.area > b.area; });
     return sorted;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "interflect/measure.h"
+#include "interflect/measuring_grid.h"
+
+namespace interflect::command {
+
+/// What was measured on one grid: only the points that were reached.
+struct MeasuredGrid {
+    MeasuringGrid grid;
+    std::vector<MeasuredIrradiance> measured;  ///< Of grid.points.
+};
+
+/// Measures all grids with a progress bar. Ctrl-C ends it early with what there is.
+/// @param points  Of all grids, one after the other. @param solution  As in measure_irradiance().
+std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                                        std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
+                                        const PathOptions& options);
+
+/// Illuminance outside that daylight factors are relative to: as told, else that of the scene's sky if nothing else
+/// shines [lx]; none: there are no daylight factors, which is said where there is a sky.
+std::optional<double> exterior_of(const Scene& scene, const std::optional<double>& told);
+
+}  // namespace interflect::command

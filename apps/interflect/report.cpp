@@ -1,0 +1,207 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <memory>
+
+#include "apps/interflect/commands.h"
+#include "apps/interflect/distinct_files.h"
+#include "apps/interflect/false_colour_options.h"
+#include "apps/interflect/measuring_places.h"
+#include "apps/interflect/path_progress.h"
+#include "apps/interflect/report_page.h"
+#include "apps/interflect/shared_options.h"
+#include "apps/interflect/signals.h"
+#include "apps/interflect/threads.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/denoise.h"
+#include "interflect/error.h"
+#include "interflect/gather.h"
+#include "interflect/scene/view.h"
+#include "interflect/tone_map.h"
+
+namespace interflect::command {
+
+namespace {
+
+struct ReportArguments {
+    std::filesystem::path solution, output;
+    std::string title, date;
+    double working_plane = 0.75;  // z [m]
+    MeasuringPlaces places;
+    std::optional<double> exterior;
+    bool ugr = false;
+    double eye_height = 1.2;  // of seated observers, z [m]
+    ViewOptions view;
+    Size size{640, 360};
+    int samples = 2048;
+    std::uint64_t seed = 1;
+    int threads = 0;
+};
+
+constexpr int picture_samples = 16;  // which a filter makes look even
+
+/// Rooms: the floors of objects; those smaller than a hundredth of all are doorsteps and the like.
+std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
+    constexpr double least_share = 0.01;
+    std::vector<PlanarArea> rooms = divide_by_object(scene, floor);
+    std::erase_if(rooms, [&](const PlanarArea& room) { return room.area < least_share * floor.area; });
+    return rooms;
+}
+
+/// The working planes of the rooms, then what else is to be measured.
+std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCaster& ray_caster,
+                                        const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
+    std::vector<MeasuringGrid> grids;
+    for (const PlanarArea& room : rooms) {
+        grids.push_back(area_grid(solved.scene, room, options.places.grid.options(), options.working_plane));
+        grids.back().name += fmt::format(", z = {:.3g} m", options.working_plane);
+    }
+    MeasuringPlaces places = options.places;
+    places.grid.boundary.clear();  // rooms have walls, desks have none
+    for (MeasuringGrid& grid : places.grids(solved.scene)) grids.push_back(std::move(grid));
+    std::vector<MeasuringPoint> points;
+    for (const MeasuringGrid& grid : grids)
+        for (const Imath::V3d& p : grid.points) points.push_back({p, grid.normal});
+    return measure_grids(solved.scene, &solved.solution, ray_caster, std::move(grids), points,
+                         {.samples = options.samples, .seed = options.seed});
+}
+
+std::vector<RatedGrid> rate_rooms(const SolvedScene& solved, const RayCaster& ray_caster,
+                                  const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
+    std::vector<MeasuringGrid> grids;
+    for (const PlanarArea& room : rooms) {
+        grids.push_back(area_grid(solved.scene, room, options.places.grid.options(), options.eye_height));
+        grids.back().name += fmt::format(", z = {:.3g} m", options.eye_height);
+    }
+    const std::array<V3f, 4> directions = {V3f(1, 0, 0), V3f(-1, 0, 0), V3f(0, 1, 0), V3f(0, -1, 0)};
+    return rate_grids(solved.scene, &solved.solution, ray_caster, grids, directions,
+                      {.samples = options.samples, .seed = options.seed});
+}
+
+ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                        const ReportArguments& options) {
+    PathOptions path{.width = options.size.width, .height = options.size.height, .samples = picture_samples};
+    path.seed = options.seed;
+    const auto draw = [&] {
+        Image image;
+        with_path_progress([&](const PathMonitor& monitor) {
+            image = denoise(gather(solved.scene, solved.solution, ray_caster, view, path, monitor).layers);
+        });
+        return image;
+    };
+    const Image light = draw();
+    path.quantity = PathQuantity::irradiance;
+    FalseColourOptions colours;
+    colours.measured = Measured::illuminance;
+    return {view.name, tone_map(light, automatic_exposure(light)), colours.draw(luminances(draw()), true)};
+}
+
+/// Those asked for, else the scene's, else an overview.
+std::vector<View> views_to_draw(const Scene& scene, const ReportArguments& options) {
+    constexpr std::size_t most = 4;
+    std::vector<View> views = options.view.views(scene);
+    if (!views.empty()) return views;
+    views = scene.views;
+    if (views.empty()) return {overview(scene)};
+    if (views.size() > most) {
+        spdlog::info("{} of {} views are drawn (--view chooses others)", most, views.size());
+        views.resize(most);
+    }
+    return views;
+}
+
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::chrono::system_clock::now())); }
+
+ReportContent make_content(const SolvedScene& solved, const RayCaster& ray_caster, const std::vector<View>& views,
+                           const ReportArguments& options) {
+    const PlanarArea floor = find_floor(solved.scene, options.working_plane);
+    ReportContent content;
+    content.title = options.title.empty() ? std::filesystem::path(solved.scene.name).stem().string() : options.title;
+    content.date = options.date.empty() ? today() : options.date;
+    content.working_plane = options.working_plane;
+    content.samples = options.samples;
+    content.picture_samples = picture_samples;
+    content.rooms = rooms_of(solved.scene, floor);
+    content.exterior = exterior_of(solved.scene, options.exterior);
+    content.areas = measure_areas(solved, ray_caster, content.rooms, options);
+    if (options.ugr) content.glare = rate_rooms(solved, ray_caster, content.rooms, options);
+    content.facts = facts_of(solved, ray_caster);
+    const int plan_samples = std::max(2, options.samples / 4);  // isolines are smoothed
+    content.plan = draw_plan(solved.scene, solved.solution, ray_caster, floor, options.working_plane,
+                             {.samples = plan_samples, .seed = options.seed});
+    for (const View& view : views) {
+        if (is_stop_requested()) break;
+        content.pictures.push_back(draw_view(solved, ray_caster, view, options));
+    }
+    return content;
+}
+
+void write(PendingFile& output, const std::string& page) {
+    std::ofstream file(output.temporary_path(), std::ios::binary);
+    file << page;
+    file.close();
+    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", output.final_path().string()));
+    output.commit();
+}
+
+/// Half a report is none: when it is interrupted, nothing is written.
+void run(const ReportArguments& options, int& exit_code) {
+    const ThreadLimit threads(options.threads);
+    options.places.check(MeasuringPlaces::Least::none);
+    require_distinct_files(std::array<NamedFile, 1>{{{"SOLUTION", options.solution}}},
+                           std::array<NamedFile, 1>{{{"--output", options.output}}});
+    PendingFile output(options.output);
+    const SolvedScene solved = read_solution(options.solution);
+    const std::vector<View> views = views_to_draw(solved.scene, options);
+    const RayCaster ray_caster(solved.scene);
+    const ReportContent content = make_content(solved, ray_caster, views, options);
+    if (is_stop_requested()) {
+        exit_code = interrupted;
+        return;
+    }
+    write(output, report_page(content, solved));
+    spdlog::info("{}: {} measuring areas, {} views", options.output.string(), content.areas.size(),
+                 content.pictures.size());
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int& exit_code) {
+    const auto options = std::make_shared<ReportArguments>();
+    CLI::App& command = *app.add_subcommand("report", "Write what a lighting designer hands over, as one HTML page");
+    command.add_option("SOLUTION", options->solution, "Solution file (.h5)")->required()->type_name("FILE");
+    command.add_option("-o,--output", options->output, "Page to write (.html)")->required()->type_name("FILE");
+    command.add_option("--title", options->title, "Heading (default: the scene's name)")->type_name("TEXT");
+    command.add_option("--date", options->date, "Date on the page (default: today)")->type_name("TEXT");
+    command.add_option("--working-plane", options->working_plane, "Height z of the plan and the rooms' grids [m]")
+        ->capture_default_str()
+        ->type_name("HEIGHT")
+        ->check(number_between(-1e15, 1e15));
+    command.add_option("--exterior", options->exterior, "Horizontal illuminance outside [lx], for daylight factors")
+        ->type_name("LUX")
+        ->check(number_between(1e-12, 1e12));
+    command.add_flag("--ugr", options->ugr, "Rate glare for observers on a grid over each room, looking along x and y");
+    command.add_option("--eye-height", options->eye_height, "Height z of these observers' eyes [m]")
+        ->capture_default_str()
+        ->type_name("HEIGHT")
+        ->check(number_between(-1e15, 1e15));
+    options->places.add_to(command);
+    options->view.add_to(command);
+    add_parsed(command, "--size", options->size, parse_size, "Size of the pictures in pixels")
+        ->type_name("WxH")
+        ->default_str("640x360");
+    command.add_option("--samples", options->samples, "Paths a measuring point")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 1 << 24));
+    add_parsed(command, "--seed", options->seed, parse_seed, "Same seed, same bits")
+        ->type_name("NUMBER")
+        ->default_str("1");
+    add_threads(command, options->threads);
+    command.callback([options, &exit_code] { run(*options, exit_code); });
+}
+
+}  // namespace interflect::command
