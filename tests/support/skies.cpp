@@ -89,12 +89,12 @@ std::vector<KnownSky> known_skies() {
     const V3d z(0, 0, 1), y(0, 1, 0);
     const auto few =
         image_of(4, 2, {{5, 1, 0}, {9, 1, 0}, {2, 5, 0}, {0, 3, 0}, {1, 0, 0}, {0, 0, 1}, {3, 0, 2}, {7, 0, 0}});
-    constexpr double ground = 0.3;
+    constexpr float ground = 0.25f;
     return {{"uniform", {"", 0, dome(5)}, [](const V3d& d) { return d.z > 0 ? double{illuminance} / pi : 0; }},
             {"overcast", {"", 0, dome(1)}, scaled([](const V3d& d) { return 1 + 4 * std::exp(-0.7 / d.z); }, z)},
             {"traditional_overcast_over_ground",
              {"", 0, dome(16, {0, 0, 2}, {0, 0, 1}, ground)},
-             scaled(overcast(z), z, ground * double{illuminance} / pi)},
+             scaled(overcast(z), z, double{ground} * double{illuminance} / pi)},
             {"overcast_towards_y", {"", 0, dome(16, {0, 1, 0}, {0, 1, 0})}, scaled(overcast(y), y)},
             {"clear", {"", 0, dome(12)}, scaled(clear, z)},
             map_of("map_of_eight", few, 0),
