@@ -178,6 +178,68 @@ PlacedLuminaire parse_luminaire(const std::string& text) {
     return placed;
 }
 
+Sky parse_sky(const std::string& text) {
+    constexpr const char* expected =
+        "overcast, intermediate, clear, uniform or cie-1 to cie-16, each with :LUX or without, or "
+        "perez:DIRECT,DIFFUSE, "
+        "such as clear:12000";
+    const std::size_t colon = text.find(':');
+    const std::string name = text.substr(0, colon);
+    std::string_view rest = std::string_view(text).substr(std::min(colon, text.size()));
+    double first = 0, second = 0;
+    if (name == "perez") {
+        if (!take(rest, ':') || !take_number(rest, first) || !take(rest, ',') || !take_number(rest, second) ||
+            !rest.empty())
+            refuse(text, expected);
+        return {.perez = Daylight::PerezSky{first, second}};
+    }
+    Daylight::CieSky sky{.type = cie_sky_type(name)};
+    if (sky.type == 0) refuse(text, expected);
+    if (take(rest, ':')) {
+        if (!take_number(rest, first) || first < 0) refuse(text, expected);
+        sky.illuminance = first;
+    }
+    if (!rest.empty()) refuse(text, expected);
+    return {.cie = sky};
+}
+
+Daylight::Sun parse_sun(const std::string& text) {
+    constexpr const char* expected = "AZIMUTH,ALTITUDE[,LUX], such as 200,35: degrees, the altitude above 0 to 90";
+    std::string_view rest = text;
+    Daylight::Sun sun;
+    double lux = 0;
+    const bool parsed = take_number(rest, sun.azimuth) && take(rest, ',') && take_number(rest, sun.altitude);
+    if (!parsed || !(sun.altitude > 0 && sun.altitude <= 90)) refuse(text, expected);
+    if (take(rest, ',')) {
+        if (!take_number(rest, lux) || lux < 0) refuse(text, expected);
+        sun.illuminance = lux;
+    }
+    if (!rest.empty()) refuse(text, expected);
+    return sun;
+}
+
+Daylight::Environment parse_environment(const std::string& text) {
+    constexpr const char* expected = "FILE[,ROTATION[,SCALE]], such as sky.exr,90: degrees, and a factor of at least 0";
+    constexpr std::size_t most_numbers = 2;
+    std::vector<double> numbers;
+    std::size_t end = text.size();
+    for (std::size_t comma = text.rfind(','); comma != text.npos && numbers.size() < most_numbers;
+         comma = text.rfind(',', comma - 1)) {
+        std::string_view part = std::string_view(text).substr(comma + 1, end - comma - 1);
+        double number = 0;
+        if (!take_number(part, number) || !part.empty()) break;
+        numbers.insert(numbers.begin(), number);
+        end = comma;
+        if (comma == 0) break;
+    }
+    if (end == 0) refuse(text, expected);
+    Daylight::Environment environment{.file = text.substr(0, end)};
+    if (!numbers.empty()) environment.rotation = numbers[0];
+    if (numbers.size() == most_numbers) environment.scale = numbers[1];
+    if (environment.scale < 0) refuse(text, expected);
+    return environment;
+}
+
 Size parse_size(const std::string& text) {
     std::string_view rest = text;
     double width = 0, height = 0;

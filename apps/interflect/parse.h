@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "interflect/colour.h"
+#include "interflect/daylight.h"
 #include "interflect/load_luminaire.h"
 
 namespace interflect::command {
@@ -46,6 +48,17 @@ Line parse_line(const std::string& text);
 /// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
 /// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
 PlacedLuminaire parse_luminaire(const std::string& text);
+/// "overcast", "clear:9000" -> that CIE sky, with that horizontal illuminance [lx]; "perez:600,120" -> the sky of these
+/// irradiances [W/m^2].
+struct Sky {
+    std::optional<Daylight::CieSky> cie{};
+    std::optional<Daylight::PerezSky> perez{};
+};
+Sky parse_sky(const std::string& text);
+/// "200,35", "200,35,80000" -> azimuth and altitude [degrees], illuminance [lx].
+Daylight::Sun parse_sun(const std::string& text);
+/// "sky.exr", "sky.exr,90", "sky.exr,90,2.5" -> file, rotation [degrees], scale.
+Daylight::Environment parse_environment(const std::string& text);
 /// "640x360" -> {640, 360}, each from 1 to 32768.
 struct Size {
     int width = 1280, height = 720;

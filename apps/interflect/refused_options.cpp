@@ -51,7 +51,9 @@ void refuse_scene_options(const CLI::App& command, const std::filesystem::path& 
     constexpr std::array<std::string_view, 3> of_reading = {"--curve-divisions", "--max-patches", "--luminaire"};
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
-        if (!is_given(option) || !(is_of_solving(*option) || has(of_reading, name))) continue;
+        if (!is_given(option) ||
+            !(is_of_solving(*option) || has(of_reading, name) || option->get_group() == daylight_group))
+            continue;
         if (traces_paths && has(shared_with_path_tracing, name)) continue;
         throw InputError(solution, 0, fmt::format("it is solved already: {} has no effect, expected a scene", name));
     }

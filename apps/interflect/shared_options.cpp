@@ -36,11 +36,47 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
                                                       "turned about its axis; lumens: of its lamps (may be repeated)")
         ->type_name("FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR]")
         ->allow_extra_args(false);
+    add_daylight_to(app);
+}
+
+void SceneOptions::add_daylight_to(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { return option->group(daylight_group); };
+    const auto set_sky = [this](const std::string& text) {
+        try {
+            const Sky sky = parse_sky(text);
+            daylight.cie_sky = sky.cie, daylight.perez_sky = sky.perez;
+        } catch (const std::invalid_argument& e) {
+            throw CLI::ValidationError("--sky", e.what());
+        }
+    };
+    group(app.add_option_function<std::string>(
+                 "--sky", set_sky,
+                 "Add a sky: overcast, uniform, intermediate or clear, another type of the CIE (cie-1 to cie-16), or "
+                 "Perez's, from direct normal and diffuse horizontal irradiance [W/m2]; LUX: horizontal illuminance of "
+                 "the sky alone (default: usual for that sky and sun)")
+              ->type_name("MODEL[:LUX]|perez:DIRECT,DIFFUSE"));
+    group(add_parsed(app, "--sun", daylight.sun, parse_sun,
+                     "Add the sun: azimuth from north (y) over east (x) and altitude [degrees]; LUX: illuminance of a "
+                     "surface that faces it (default: usual for the sky)")
+              ->type_name("AZIMUTH,ALTITUDE[,LUX]"));
+    group(app.add_option("--ground", daylight.ground_reflectance,
+                         "Reflectance of the ground below the horizon, which sky and sun light")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(add_parsed(app, "--environment", daylight.environment, parse_environment,
+                     "Surround the scene with an image (.exr, .hdr) of longitudes and latitudes; ROTATION: azimuth in "
+                     "its middle [degrees], SCALE: factor of its radiance")
+              ->type_name("FILE[,ROTATION[,SCALE]]"));
+    group(add_parsed(app, "--zenith", zenith_, parse_vector, "What is up for these")->type_name("X,Y,Z"))
+        ->default_str("0,0,1");
 }
 
 Scene SceneOptions::load() const {
     try {
-        Scene scene = load_scene(path, read, luminaires);
+        Daylight placed = daylight;
+        placed.zenith = V3f(zenith_);
+        Scene scene = load_scene(path, read, luminaires, placed);
         log_warnings(scene.warnings);
         return scene;
     } catch (const TooManyPatches& e) {
@@ -124,6 +160,7 @@ std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions&
     std::vector<NamedFile> files = {{"the scene", scene.path}, {"the scene's views", view_list_path(scene.path)}};
     for (const std::filesystem::path& file : view.files) files.push_back({"--view-file", file});
     for (const PlacedLuminaire& placed : scene.luminaires) files.push_back({"--luminaire", placed.file});
+    if (scene.daylight.environment) files.push_back({"--environment", scene.daylight.environment->file});
     return files;
 }
 

@@ -14,15 +14,24 @@
 
 namespace interflect::command {
 
+/// Where the help lists skies and the sun.
+inline constexpr const char* daylight_group = "Daylight";
+
 /// Which scene, and how to read it.
 struct SceneOptions {
     std::filesystem::path path;
     ReadOptions read;
     std::vector<PlacedLuminaire> luminaires;
+    Daylight daylight;
 
     void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf), or maze:ROOMS[:furniture]");
     /// Loads it and logs its warnings.
     Scene load() const;
+
+  private:
+    void add_daylight_to(CLI::App& app);
+
+    Imath::V3d zenith_{0, 0, 1};
 };
 
 /// How a scene is divided before it is solved.

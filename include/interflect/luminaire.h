@@ -7,6 +7,8 @@
 
 #include "interflect/colour.h"
 #include "interflect/photometric_web.h"
+#include "interflect/sky.h"
+#include "interflect/texture.h"
 
 namespace interflect {
 
@@ -28,16 +30,42 @@ struct SpotLight {
     float outer_cosine() const;
 };
 
-/// Parallel light that comes from far away, like the Sun's.
+/// Light that comes from far away: parallel, or from a disc of uniform radiance, which pictures show.
 struct DirectionalLight {
-    V3f direction{0, 0, -1};  ///< In which the light goes; need not be normalised.
-    Rgb irradiance{0, 0, 0};  ///< Of a surface that faces it [lm/m^2 or W/m^2], >= 0.
+    V3f direction{0, 0, -1};    ///< In which the light goes; need not be normalised.
+    Rgb irradiance{0, 0, 0};    ///< Of a surface that faces it [lm/m^2 or W/m^2], >= 0.
+    float diameter = 0;         ///< Of the disc [degrees]; 0: parallel light. In [0, 90].
+    float disc_sine() const;    ///< Of the angle from the disc's centre to its edge.
+    Rgb disc_radiance() const;  ///< E / (pi sin^2); only with a disc.
 };
+/// The Sun's, at its mean distance from the Earth [degrees].
+inline constexpr float sun_diameter = 0.533f;
 
 /// Surrounds the scene on all sides, below its horizon too, with the same radiance.
 struct UniformSky {
     Rgb radiance{0, 0, 0};  ///< [lm/(m^2 sr) = cd/m^2, or W/(m^2 sr)], >= 0.
 };
+
+/// A hemisphere of sky over a uniform ground that reaches to the horizon, all of one colour.
+struct SkyDome {
+    SkyModel model;
+    Rgb irradiance{0, 0, 0};  ///< That the sky alone causes on an unobstructed horizontal surface [lm/m^2 or W/m^2].
+    V3f zenith{0, 0, 1};      ///< Need not be normalised, nor need the next one.
+    V3f sun{0, 0, 1};         ///< Towards the sun, not below the horizon. The sun itself is a DirectionalLight.
+    /// Radiance below the horizon, times pi, over `irradiance`: where the sky alone lights the ground, its reflectance.
+    float ground = 0;
+};
+
+/// An image of all that surrounds the scene, far away: columns are azimuths, rows angles from the zenith, evenly
+/// spaced, and each texel is of one radiance. The middle of the image is north; east is to the right of it.
+struct EnvironmentMap {
+    std::shared_ptr<const Texture> image;
+    V3f zenith{0, 0, 1};  ///< Direction of the upper edge; need not be normalised.
+    V3f north{0, 1, 0};   ///< Need not be normalised, nor at a right angle to the zenith.
+    Rgb factor{1, 1, 1};  ///< Of the texels, to radiance [cd/m^2 or W/(m^2 sr)], >= 0.
+};
+/// Texels of an environment map: 24 bytes each while pictures are drawn.
+inline constexpr std::uint64_t most_environment_texels = std::uint64_t{1} << 25;
 
 /// A luminaire whose light was measured. Every point of its opening that a direction leaves from shines alike, so that
 /// far away it is what was measured, and close by it has the opening's size.
@@ -50,17 +78,18 @@ struct MeasuredLight {
     Rgb factor{1, 1, 1};    ///< Of the intensities, >= 0.
 };
 
-/// A source of light that is not a surface of the scene: nothing hits it, and only a sky is seen.
+/// A source of light that is not a surface of the scene: nothing hits it, and only skies and discs are seen.
 struct Luminaire {
     std::string name;
     std::uint32_t object = 0;  ///< Index into Scene::objects.
-    std::variant<PointLight, SpotLight, DirectionalLight, UniformSky, MeasuredLight> kind;
+    std::variant<PointLight, SpotLight, DirectionalLight, UniformSky, MeasuredLight, SkyDome, EnvironmentMap> kind;
 };
 
-/// What it is rated by: intensity (of measured light the largest), irradiance or radiance, each in its unit.
+/// What it is rated by: intensity (of measured light the largest), irradiance or radiance (of a map the largest), each
+/// in its unit.
 Rgb rating(const Luminaire& luminaire);
 
-/// "point", "spot", "directional", "sky" or "measured".
+/// "point", "spot", "directional", "sky", "measured", "sky-dome" or "environment".
 const char* kind_name(const Luminaire& luminaire);
 
 /// What is wrong with it, in words without a subject; empty where nothing is.

@@ -1,10 +1,13 @@
 #include "interflect/exports/description.h"
 
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "interflect/exports/luminaire_records.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/exports/texture_records.h"
+#include "interflect/scene/environment_maps.h"
 
 namespace interflect::inline detail {
 
@@ -39,8 +42,11 @@ void read_scene(const Json& json, Scene& scene) {
     }
     if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
     const auto webs = webs_of(json.value("photometric_webs", Json::array()));
+    MapImages maps;  // without their texels
+    for (Texture& image : textures_of(json.value("environment_maps", Json::array())))
+        maps.push_back(std::make_shared<Texture>(std::move(image)));
     if (json.contains("luminaires"))
-        for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l, webs));
+        for (const Json& l : json.at("luminaires")) scene.luminaires.push_back(luminaire_of(l, webs, maps));
     if (json.contains("light_groups"))
         for (const Json& g : json.at("light_groups"))
             scene.light_groups.push_back({g.at("name").get<std::string>(), g.at("pattern").get<std::string>()});
@@ -66,7 +72,8 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
     for (const View& v : scene.views) views.push_back(json_of(v));
     Json luminaires = Json::array();
     WebTable webs;
-    for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l, webs));
+    const MapImages maps = environment_maps(scene);
+    for (const Luminaire& l : scene.luminaires) luminaires.push_back(json_of(l, webs, maps));
     const IterationReport last = solution.iterations.empty() ? IterationReport() : solution.iterations.back();
     Json groups = Json::array(), dimming = Json::array();
     for (const LightGroup& g : scene.light_groups) groups.push_back({{"name", g.name}, {"pattern", g.pattern}});
@@ -93,6 +100,10 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
                      {"dimming", dimming},
                      {"objects", scene.objects}};
     if (!scene.textures.empty()) description["textures"] = json_of(scene.textures);
+    if (!maps.empty()) {
+        Json& images = description["environment_maps"] = Json::array();
+        for (const auto& image : maps) images.push_back(json_of(*image));
+    }
     if (const Json all = webs.json(); !all.empty()) description["photometric_webs"] = all;
     return json_text(description, 1);
 }

@@ -26,7 +26,9 @@ Json record_of(const SpotLight& light) {
 }
 
 Json record_of(const DirectionalLight& light) {
-    return {{"direction", json_of(light.direction)}, {"irradiance", json_of(light.irradiance)}};
+    Json json{{"direction", json_of(light.direction)}, {"irradiance", json_of(light.irradiance)}};
+    if (light.diameter > 0) json["diameter"] = shortest_number(light.diameter);
+    return json;
 }
 
 Json record_of(const UniformSky& sky) { return {{"radiance", json_of(sky.radiance)}}; }
@@ -46,6 +48,25 @@ Json list_of(const std::vector<float>& numbers) {
     return json;
 }
 
+/// The numbers of a sky's model, in order.
+constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &SkyModel::b, &SkyModel::c,
+                                                               &SkyModel::d, &SkyModel::e, &SkyModel::g};
+
+Json record_of(const SkyDome& sky) {
+    Json model = Json::array();
+    for (const auto parameter : model_parameters) model.push_back(shortest_number(sky.model.*parameter));
+    return {{"model", model},
+            {"irradiance", json_of(sky.irradiance)},
+            {"zenith", json_of(sky.zenith)},
+            {"sun", json_of(sky.sun)},
+            {"ground", shortest_number(sky.ground)}};
+}
+
+/// But for the image.
+Json record_of(const EnvironmentMap& map) {
+    return {{"zenith", json_of(map.zenith)}, {"north", json_of(map.north)}, {"factor", json_of(map.factor)}};
+}
+
 Json record_of(const PhotometricWeb& web) {
     const LuminousOpening& opening = web.opening;
     return {{"name", web.name},
@@ -63,6 +84,17 @@ Json record_of(const PhotometricWeb& web) {
 template <class Vector>
 Vector vector_at(const Json& json, const char* name) {
     return vector_of<Vector>(json.at(name));
+}
+
+SkyDome sky_of(const Json& json) {
+    SkyDome sky;
+    for (std::size_t i = 0; i < model_parameters.size(); ++i)
+        sky.model.*model_parameters[i] = json.at("model").at(i).get<float>();
+    sky.irradiance = vector_at<Rgb>(json, "irradiance");
+    sky.zenith = vector_at<V3f>(json, "zenith");
+    sky.sun = vector_at<V3f>(json, "sun");
+    sky.ground = json.at("ground").get<float>();
+    return sky;
 }
 
 PhotometricWeb web_of(const Json& json) {
@@ -104,14 +136,17 @@ std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json) {
     return webs;
 }
 
-Json json_of(const Luminaire& luminaire, WebTable& webs) {
+Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps) {
     Json json{{"name", luminaire.name}, {"object", luminaire.object}, {"kind", kind_name(luminaire)}};
     json.update(std::visit([](const auto& light) { return record_of(light); }, luminaire.kind));
     if (const auto* light = std::get_if<MeasuredLight>(&luminaire.kind)) json["web"] = webs.index_of(light->web);
+    if (const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind))
+        json["map"] = std::find(maps.begin(), maps.end(), map->image) - maps.begin();
     return json;
 }
 
-Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs) {
+Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,
+                       const MapImages& maps) {
     Luminaire luminaire{json.at("name").get<std::string>(), json.at("object").get<std::uint32_t>(), {}};
     const auto kind = json.at("kind").get<std::string>();
     if (kind == "point")
@@ -121,9 +156,15 @@ Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const
                                    vector_at<Rgb>(json, "intensity"), json.at("inner_angle").get<float>(),
                                    json.at("outer_angle").get<float>()};
     else if (kind == "directional")
-        luminaire.kind = DirectionalLight{vector_at<V3f>(json, "direction"), vector_at<Rgb>(json, "irradiance")};
+        luminaire.kind = DirectionalLight{vector_at<V3f>(json, "direction"), vector_at<Rgb>(json, "irradiance"),
+                                          json.value("diameter", 0.0f)};
     else if (kind == "sky")
         luminaire.kind = UniformSky{vector_at<Rgb>(json, "radiance")};
+    else if (kind == "sky-dome")
+        luminaire.kind = sky_of(json);
+    else if (kind == "environment")
+        luminaire.kind = EnvironmentMap{maps.at(json.at("map").get<std::size_t>()), vector_at<V3f>(json, "zenith"),
+                                        vector_at<V3f>(json, "north"), vector_at<Rgb>(json, "factor")};
     else if (kind == "measured")
         luminaire.kind = MeasuredLight{webs.at(json.at("web").get<std::size_t>()),
                                        vector_at<V3f>(json, "position"),

@@ -20,9 +20,14 @@ class WebTable {
 /// What WebTable::json() told. @throws Json::exception, std::runtime_error where it is none.
 std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
 
+/// Images of environment maps, in the order of environment_maps().
+using MapImages = std::vector<std::shared_ptr<const Texture>>;
+
 /// A luminaire in the description of a solution file. @param webs  Gets the web that it has.
-Json json_of(const Luminaire& luminaire, WebTable& webs);
+/// @param maps  Among which is its image.
+Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps = {});
 /// @throws Json::exception, std::runtime_error where it is none.
-Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs);
+Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,
+                       const MapImages& maps = {});
 
 }  // namespace interflect::inline detail

@@ -1,6 +1,9 @@
 #include "interflect/exports/texture_records.h"
 
+#include <memory>
 #include <string>
+
+#include "interflect/scene/environment_maps.h"
 
 namespace interflect::inline detail {
 
@@ -10,6 +13,8 @@ constexpr const char *reflectance_texture = "reflectance_texture", *exitance_tex
 constexpr const char* coordinates_dataset = "/scene/texture_coordinates";
 
 std::string texels_dataset(std::size_t texture) { return "/scene/textures/" + std::to_string(texture); }
+
+std::string map_dataset(std::size_t map) { return "/scene/environment_maps/" + std::to_string(map); }
 
 template <class Vector>
 std::span<const float> numbers_of(const std::vector<Vector>& vectors) {
@@ -27,9 +32,13 @@ std::vector<Vector> read_vectors(const Hdf5Reader& file, const std::string& name
 
 }  // namespace
 
+Json json_of(const Texture& texture) {
+    return {{"name", texture.name}, {"width", texture.width}, {"height", texture.height}};
+}
+
 Json json_of(const std::vector<Texture>& textures) {
     Json json = Json::array();
-    for (const Texture& t : textures) json.push_back({{"name", t.name}, {"width", t.width}, {"height", t.height}});
+    for (const Texture& t : textures) json.push_back(json_of(t));
     return json;
 }
 
@@ -58,6 +67,9 @@ std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {
     for (std::size_t i = 0; i < scene.textures.size(); ++i)
         ranges.push_back(
             file.write(texels_dataset(i), numbers_of(scene.textures[i].texels), sizeof(Rgb) / sizeof(float)));
+    const auto maps = environment_maps(scene);
+    for (std::size_t i = 0; i < maps.size(); ++i)
+        ranges.push_back(file.write(map_dataset(i), numbers_of(maps[i]->texels), sizeof(Rgb) / sizeof(float)));
     if (!scene.texture_coordinates.empty())
         ranges.push_back(
             file.write(coordinates_dataset, numbers_of(scene.texture_coordinates), sizeof(V2f) / sizeof(float)));
@@ -67,6 +79,14 @@ std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {
 void read_textures(const Hdf5Reader& file, Scene& scene) {
     for (std::size_t i = 0; i < scene.textures.size(); ++i)
         scene.textures[i].texels = read_vectors<Rgb>(file, texels_dataset(i));
+    const auto maps = environment_maps(scene);
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        auto image = std::make_shared<Texture>(*maps[i]);
+        image->texels = read_vectors<Rgb>(file, map_dataset(i));
+        for (Luminaire& luminaire : scene.luminaires)
+            if (auto* map = std::get_if<EnvironmentMap>(&luminaire.kind); map && map->image == maps[i])
+                map->image = image;
+    }
     if (file.has(coordinates_dataset)) scene.texture_coordinates = read_vectors<V2f>(file, coordinates_dataset);
 }
 

@@ -92,15 +92,18 @@ void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, c
 
 }  // namespace
 
-Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires) {
+Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires,
+                 const Daylight& added) {
     if (path.string().starts_with(maze_prefix)) {
         Scene maze = load_maze(path.string(), options);
         add_luminaires(maze, luminaires, options);
+        add_daylight(maze, added);
         return maze;
     }
     require_regular_file(path);
     Scene scene = format_of(path).read(path, options);
     add_luminaires(scene, luminaires, options);
+    add_daylight(scene, added);
     const fs::path views = view_list_path(path);
     std::error_code ignored;
     if (fs::exists(views, ignored)) {

@@ -16,29 +16,36 @@ namespace interflect::inline detail {
 using Imath::V3d;
 
 /// The normal of a vertex, in the world, as the direction in which a light shines.
-V3f MgfReader::direction_of(std::string_view vertex) {
-    V3d direction;
-    total_transform().multDirMatrix(normal_of(vertex), direction);
-    return V3f(direction.normalized());
+V3f MgfReader::direction_of(std::string_view vertex) { return turned(normal_of(vertex)); }
+
+/// A direction, in the world, of unit length.
+V3f MgfReader::turned(const V3d& direction) const {
+    V3d result;
+    total_transform().multDirMatrix(direction, result);
+    return V3f(result.normalized());
 }
 
 void MgfReader::light(MgfWords words) {
     struct Kind {
-        std::size_t arguments;
+        std::size_t fewest, most;  // arguments
         const char* usage;
     };
     static const std::unordered_map<std::string_view, Kind> kinds = {
-        {"point", {3, "light point vertex intensity"}},
-        {"spot", {5, "light spot vertex intensity inner-angle outer-angle"}},
-        {"directional", {3, "light directional vertex irradiance"}},
-        {"sky", {2, "light sky radiance"}}};
+        {"point", {3, 3, "light point vertex intensity"}},
+        {"spot", {5, 5, "light spot vertex intensity inner-angle outer-angle"}},
+        {"directional", {3, 4, "light directional vertex irradiance [diameter]"}},
+        {"sky", {2, 11, "light sky radiance, or light sky model ..."}},
+        {"environment", {2, 4, "light environment file [rotation [scale]]"}}};
     const auto kind = kinds.find(words[0]);
     if (kind == kinds.end())
-        throw MgfFault(fmt::format("there is no light '{}'; expected point, spot, directional or sky", words[0]));
-    if (words.size() != kind->second.arguments)
+        throw MgfFault(
+            fmt::format("there is no light '{}'; expected point, spot, directional, sky or environment", words[0]));
+    if (words.size() < kind->second.fewest || words.size() > kind->second.most)
         throw MgfFault(fmt::format("expected '{}', found {} argument{}", kind->second.usage, words.size(),
                                    words.size() == 1 ? "" : "s"));
     faults_.refuse(colours_.current().fault);
+    if (words[0] == "sky" && words.size() > 2) return sky(words.subspan(1));
+    if (words[0] == "environment") return environment(words.subspan(1));
     const double luminance = non_negative_argument(words[0] == "sky" ? words[1] : words[2]);
     const Rgb colour = scene_.emitted(colours_.current(), luminance, here());
     const auto position = [&] { return scene_.position(vertices_.find(words[1]).point * total_transform()); };
@@ -46,7 +53,8 @@ void MgfReader::light(MgfWords words) {
     Luminaire luminaire{"", objects_.current(), UniformSky{colour}};
     if (words[0] == "point") luminaire.kind = PointLight{position(), colour};
     if (words[0] == "spot") luminaire.kind = SpotLight{position(), direction_of(words[1]), colour, angle(3), angle(4)};
-    if (words[0] == "directional") luminaire.kind = DirectionalLight{direction_of(words[1]), colour};
+    if (words[0] == "directional")
+        luminaire.kind = DirectionalLight{direction_of(words[1]), colour, words.size() > 3 ? angle(3) : 0};
     const std::string name = kind_name(luminaire);
     scene_.add_light(std::move(luminaire), name);
 }

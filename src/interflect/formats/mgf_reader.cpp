@@ -41,7 +41,7 @@ const std::unordered_map<std::string_view, MgfReader::Entity>& MgfReader::entiti
         {"cone", {&MgfReader::cone, 4, 4, "cone end1 radius1 end2 radius2"}},
         {"ring", {&MgfReader::ring, 3, 3, "ring centre inner-radius outer-radius"}},
         {"prism", {&MgfReader::prism, 4, any, "prism vertex1 vertex2 vertex3 ... length"}},
-        {"light", {&MgfReader::light, 2, 5, "light point|spot|directional|sky ..."}},
+        {"light", {&MgfReader::light, 2, 11, "light point|spot|directional|sky|environment ..."}},
         {"xf", {&MgfReader::transform, 0, any, "xf [transform]"}},
         {"o", {&MgfReader::object, 0, 1, "o [name]"}},
     };

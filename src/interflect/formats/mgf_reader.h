@@ -112,12 +112,16 @@ class MgfReader {
     void object(MgfWords words);
     void light(MgfWords words);
     void luminaire(MgfWords words);
+    void sky(MgfWords words);
+    void environment(MgfWords words);
 
     // What they share.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
     V3f direction_of(std::string_view vertex);
+    V3f turned(const Imath::V3d& direction) const;
+    void add_sky(SkyDome sky, MgfWords ground);
     std::shared_ptr<const PhotometricWeb> photometric_web(std::string_view name);
     void add_luminaire(MeasuredLight light, const Imath::M44d& transform, const std::string& name);
     void add_loop(MgfWords names);

@@ -9,8 +9,8 @@
 
 namespace interflect::inline detail {
 
-Texture read_texture(const std::filesystem::path& path) {
-    Image image = read_image(path, static_cast<std::int64_t>(most_texels));
+Texture read_texture(const std::filesystem::path& path, std::uint64_t most) {
+    Image image = read_image(path, static_cast<std::int64_t>(most));
     Texture texture{path.string(), static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height),
                     std::move(image.pixels)};
     if (const std::string fault = texture_fault(texture); !fault.empty()) throw InputError(path, 0, fault);

@@ -8,8 +8,9 @@
 namespace interflect::inline detail {
 
 /// Reads an image as a texture: .png (sRGB), .exr or .hdr (linear).
+/// @param most  Texels that it may have.
 /// @throws InputError with the path and the reason, as read_image() does, and for a texture with a fault.
-Texture read_texture(const std::filesystem::path& path);
+Texture read_texture(const std::filesystem::path& path, std::uint64_t most = most_texels);
 
 /// The extension of the file that keeps every texel as it is: ".png" where all are what 8 bit sRGB has, else ".exr".
 std::string texture_extension(const Texture& texture);

@@ -15,6 +15,8 @@
 
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/scene/environment_maps.h"
+#include "interflect/scene/sky_frame.h"
 #include "interflect/scene/web_angles.h"
 
 namespace interflect::inline detail {
@@ -50,14 +52,28 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
     }
 }
 
-/// Turns about x, y and z, in this order, that place a luminaire [degrees].
-struct LuminaireAngles {
+/// Turns about x, y and z, in this order [degrees].
+struct Turns {
     double x, y, z;
 };
 
-LuminaireAngles luminaire_angles(const MeasuredLight& light) {
-    const Imath::V3d z(-light.direction.normalized()), c0(light.c0), x = (c0 - z * z.dot(c0)).normalized(),
-                                                                     y = z.cross(x);
+/// A right-handed frame of unit vectors.
+struct Frame {
+    Imath::V3d x, y, z;
+};
+
+/// Of a luminaire: its C0 plane holds x, its nadir is -z.
+Frame frame_of(const MeasuredLight& light) {
+    const Imath::V3d z(-light.direction.normalized()), c0(light.c0), x = (c0 - z * z.dot(c0)).normalized();
+    return {x, z.cross(x), z};
+}
+
+/// Of a sky: x is east, y north.
+Frame frame_of(const SkyFrame& sky) { return {Imath::V3d(sky.east), Imath::V3d(sky.north), Imath::V3d(sky.zenith)}; }
+
+/// What turns the axes into this frame.
+Turns turns_of(const Frame& frame) {
+    const auto& [x, y, z] = frame;
     constexpr double no_turn = 1e-9;  // cosine of a turn about y where x and z turn alike
     const double cosine = std::hypot(x.x, x.y);
     if (cosine < no_turn) return {degrees(std::atan2(-z.y, y.y)), degrees(std::atan2(-x.z, cosine)), 0};
@@ -69,10 +85,12 @@ LuminaireAngles luminaire_angles(const MeasuredLight& light) {
 class MgfWriter {
   public:
     MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
-              std::span<const std::string> webs)
+              std::span<const std::string> webs, std::span<const std::string> maps)
         : scene_(scene), out_(out), textures_(textures), vertex_written_(scene.vertices.size(), false) {
         const auto all = photometric_webs(scene);
         for (std::size_t i = 0; i < all.size(); ++i) web_files_.emplace(all[i].get(), webs[i]);
+        const auto images = environment_maps(scene);
+        for (std::size_t i = 0; i < images.size(); ++i) map_files_.emplace(images[i].get(), maps[i]);
         for (const Material& material : scene.materials) names_.push_back(material_name(material));
     }
 
@@ -192,7 +210,9 @@ class MgfWriter {
     void add_light(const Luminaire& luminaire) {
         enter_object(luminaire.object);
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
-        const auto [chromaticity, luminance] = from_rec709(RgbD(measured ? measured->factor : rating(luminaire)));
+        const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind);
+        const Rgb factor = measured ? measured->factor : map ? map->factor : rating(luminaire);
+        const auto [chromaticity, luminance] = from_rec709(RgbD(factor));
         if (measured) return add_measured(*measured, chromaticity, luminance);
         put("c\n\tcxy {} {}\n", chromaticity.x, chromaticity.y);
         if (const auto* point = std::get_if<PointLight>(&luminaire.kind)) {
@@ -203,20 +223,47 @@ class MgfWriter {
             put("light spot {} {} {} {}\n", light_vertex, luminance, spot->inner_angle, spot->outer_angle);
         } else if (const auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) {
             add_light_vertex(V3f(0), directional->direction);
-            put("light directional {} {}\n", light_vertex, luminance);
+            put("light directional {} {} {}\n", light_vertex, luminance, directional->diameter);
+        } else if (const auto* dome = std::get_if<SkyDome>(&luminaire.kind)) {
+            add_dome(*dome, luminance);
+        } else if (map) {
+            add_turned(frame_of(SkyFrame(map->zenith, map->north)),
+                       [&] { put("light environment {} 0 {}\n", map_files_.at(map->image.get()), luminance); });
         } else {
             put("light sky {}\n", luminance);
         }
     }
 
+    void add_dome(const SkyDome& dome, double illuminance) {
+        const Frame frame = frame_of(SkyFrame(dome.zenith));
+        const Imath::V3d sunlight(-dome.sun);
+        add_turned(frame, [&] {
+            const SkyModel& m = dome.model;
+            put("v {} =\n\tn {} {} {}\n", light_vertex, sunlight.dot(frame.x), sunlight.dot(frame.y),
+                sunlight.dot(frame.z));
+            put("light sky model {} {} {} {} {} {} {} {} {}\n", light_vertex, illuminance, dome.ground, m.a, m.b, m.c,
+                m.d, m.e, m.g);
+        });
+    }
+
+    /// Puts what is written with the axes of a frame.
+    template <class Put>
+    void add_turned(const Frame& frame, const Put& put_light) {
+        const Turns turns = turns_of(frame);
+        const bool is_turned = turns.x != 0 || turns.y != 0 || turns.z != 0;
+        if (is_turned) put("xf -rx {} -ry {} -rz {}\n", turns.x, turns.y, turns.z);
+        put_light();
+        if (is_turned) put("xf\n");
+    }
+
     /// `ies` takes the current colour by its name.
     void add_measured(const MeasuredLight& light, const Chromaticity& chromaticity, double multiplier) {
-        const LuminaireAngles angles = luminaire_angles(light);
+        const Turns turns = turns_of(frame_of(light));
         const Imath::V3d world = scene_.origin + Imath::V3d(light.position);
         put("c {} =\n\tcxy {} {}\nies {} -m {} -c {}", light_vertex, chromaticity.x, chromaticity.y,
             web_files_.at(light.web.get()), multiplier, light_vertex);
         if (light.mirrored) put(" -my");
-        put(" -rx {} -ry {} -rz {} -t {} {} {}\n", angles.x, angles.y, angles.z, world.x, world.y, world.z);
+        put(" -rx {} -ry {} -rz {} -t {} {} {}\n", turns.x, turns.y, turns.z, world.x, world.y, world.z);
     }
 
     void add_light_vertex(const V3f& position, const V3f& normal) {
@@ -233,6 +280,7 @@ class MgfWriter {
     std::vector<std::string> names_;                           // of materials
     std::unordered_map<std::string, Definition> definitions_;  // by name
     std::unordered_map<const PhotometricWeb*, std::string> web_files_;
+    std::unordered_map<const Texture*, std::string> map_files_;
     std::vector<bool> vertex_written_;
     std::vector<std::string> open_objects_;
     std::uint32_t object_ = 0, material_ = none;
@@ -242,7 +290,7 @@ class MgfWriter {
 }  // namespace
 
 void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
-               std::span<const std::string> webs) {
+               std::span<const std::string> webs, std::span<const std::string> maps) {
     const auto require_names = [](std::size_t names, std::size_t count, const char* what) {
         if (names != count)
             throw std::runtime_error(
@@ -250,14 +298,15 @@ void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::strin
     };
     require_names(textures.size(), scene.textures.size(), "textures");
     require_names(webs.size(), photometric_webs(scene).size(), "photometric webs");
-    MgfWriter(scene, out, textures, webs).write();
+    require_names(maps.size(), environment_maps(scene).size(), "environment maps");
+    MgfWriter(scene, out, textures, webs, maps).write();
 }
 
 void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures,
-               std::span<const std::string> webs) {
+               std::span<const std::string> webs, std::span<const std::string> maps) {
     std::ofstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error(path.string() + ": cannot be opened for writing");
-    write_mgf(scene, file, textures, webs);
+    write_mgf(scene, file, textures, webs, maps);
     if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
@@ -274,6 +323,13 @@ std::vector<std::string> web_files(const Scene& scene, const std::filesystem::pa
     std::vector<std::string> files;
     for (std::size_t i = 0; i < photometric_webs(scene).size(); ++i)
         files.push_back(printable(fmt::format("{}.web-{}.ies", path.stem().string(), i)));
+    return files;
+}
+
+std::vector<std::string> map_files(const Scene& scene, const std::filesystem::path& path) {
+    std::vector<std::string> files;
+    for (std::size_t i = 0; i < environment_maps(scene).size(); ++i)
+        files.push_back(printable(fmt::format("{}.map-{}.exr", path.stem().string(), i)));
     return files;
 }
 

@@ -25,11 +25,12 @@ namespace interflect::inline detail {
 /// @param scene     Without scene_faults(). Time is linear in the patches, memory in the vertices (4 bytes each).
 /// @param textures  Names of the files of the scene's textures, relative to that of the scene: texture_files().
 /// @param webs      Names of the files of photometric_webs(): web_files().
+/// @param maps      Names of the files of environment_maps(): map_files().
 /// @throws std::runtime_error where the stream fails, or the file cannot be written.
 void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::string> textures = {},
-               std::span<const std::string> webs = {});
+               std::span<const std::string> webs = {}, std::span<const std::string> maps = {});
 void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures = {},
-               std::span<const std::string> webs = {});
+               std::span<const std::string> webs = {}, std::span<const std::string> maps = {});
 
 /// Names for the files of a scene's textures, beside that of the scene: "room.texture-0.png" beside "room.mgf", or .exr
 /// (texture_extension). write_texture() writes them.
@@ -40,5 +41,8 @@ std::vector<std::shared_ptr<const PhotometricWeb>> photometric_webs(const Scene&
 
 /// Names for their files beside that of the scene: "room.web-0.ies" beside "room.mgf". write_ies() writes them.
 std::vector<std::string> web_files(const Scene& scene, const std::filesystem::path& path);
+
+/// Names for the files of a scene's environment maps: "room.map-0.exr" beside "room.mgf". write_texture() writes them.
+std::vector<std::string> map_files(const Scene& scene, const std::filesystem::path& path);
 
 }  // namespace interflect::inline detail

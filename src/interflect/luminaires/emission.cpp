@@ -37,9 +37,48 @@ float sample_cosine(float v, float inner, float outer, float inner_share) {
 }
 
 /// A direction at an angle to an axis, turned about it by `turn` of a full turn.
-V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float turn) {
-    const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), angle = 2 * pi * turn;
+V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
+    const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
+}
+
+/// A side of the scene's box.
+struct BoxSide {
+    V3f corner, edge_u, edge_v, normal;  // the normal points inwards
+};
+
+std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
+    std::array<BoxSide, 6> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+        V3f edge_u(0), edge_v(0), normal(0), across(0);
+        edge_u[(axis + 1) % 3] = size[(axis + 1) % 3];
+        edge_v[(axis + 2) % 3] = size[(axis + 2) % 3];
+        normal[axis] = 1, across[axis] = size[axis];
+        sides[2 * axis] = {low, edge_u, edge_v, normal};
+        sides[2 * axis + 1] = {low + across, edge_u, edge_v, -normal};
+    }
+    return sides;
+}
+
+/// What all channels have, and what each has beyond that.
+float least_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
+constexpr std::array<SkyComponent, 4> map_components = {
+    {{Rgb(1, 1, 1), least_channel},
+     {Rgb(1, 0, 0), [](const Rgb& c) { return c.x - least_channel(c); }},
+     {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - least_channel(c); }},
+     {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - least_channel(c); }}}};
+
+/// What is sampled of a sky on a side of the box: the amount of a component, times the cosine in the middle of cells.
+DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
+                         const SkyComponent& component, const V3f& normal) {
+    std::vector<float> weights(grid.size());
+    for (std::size_t row = 0; row < grid.rows; ++row)
+        for (std::size_t column = 0; column < grid.columns; ++column) {
+            const std::size_t cell = row * grid.columns + column;
+            const float cosine = -normal.dot(frame.direction(grid.middle(column, row)));
+            weights[cell] = component.amount(integrals[cell]) * std::max(0.0f, cosine);
+        }
+    return {grid, weights};
 }
 
 }  // namespace
@@ -80,7 +119,8 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Starts on the rectangle that the scene's box fills as seen along the light.
+/// Starts on the rectangle that the scene's box fills as seen along the light, widened so that slanted rays from a disc
+/// reach all of the box too.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -89,24 +129,50 @@ void Emission::add(const DirectionalLight& light) {
         const V3f p(corner.dot(frame.s), corner.dot(frame.t), corner.dot(direction));
         for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
     }
+    const float sine = light.disc_sine(), margin = (high.z - low.z) * sine / std::sqrt(1 - sine * sine);
+    for (int k = 0; k < 2; ++k) low[k] -= margin, high[k] += margin;
     const V3f corner = frame.s * low.x + frame.t * low.y + direction * low.z;
-    add_window({corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, 0, false},
+    add_window({corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, sine, 0},
                light.irradiance);
 }
 
 /// Within a convex surface that emits diffusely everywhere, radiance is the same in all directions: here the six sides
 /// of the scene's box, which nothing is ever hit by.
 void Emission::add(const UniformSky& sky) {
-    const V3f low = corners_.front(), size = corners_.back() - low;
-    for (int axis = 0; axis < 3; ++axis) {
-        V3f edge_u(0), edge_v(0), normal(0), across(0);
-        edge_u[(axis + 1) % 3] = size[(axis + 1) % 3];
-        edge_v[(axis + 2) % 3] = size[(axis + 2) % 3];
-        normal[axis] = 1, across[axis] = size[axis];
-        const TangentFrame inward(normal), opposite(-normal);
-        add_window({low, edge_u, edge_v, normal, inward.s, inward.t, 0, true}, sky.radiance * pi);
-        add_window({low + across, edge_u, edge_v, -normal, opposite.s, opposite.t, 0, true}, sky.radiance * pi);
+    for (const BoxSide& side : sides_of(corners_.front(), corners_.back() - corners_.front())) {
+        const TangentFrame frame(side.normal);
+        add_window({side.corner, side.edge_u, side.edge_v, side.normal, frame.s, frame.t, 1, 0}, sky.radiance * pi);
     }
+}
+
+void Emission::add(const SkyDome& dome) {
+    const auto sky = std::make_shared<SkyRadiance>(dome);
+    const float largest = largest_channel(dome.irradiance);
+    if (!(largest > 0)) return;
+    const SkyComponent all{dome.irradiance / largest, largest_channel};
+    add_sky(sky, sky->grid(), {&all, 1});
+}
+
+void Emission::add(const EnvironmentMap& map) {
+    constexpr SkyGrid finest{1024, 512};  // cells of 0.35 degrees
+    add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
+}
+
+/// As for a uniform sky, but with directions in proportion to radiance times cosine.
+void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
+                       std::span<const SkyComponent> components) {
+    const std::vector<Rgb> integrals = sky->cell_integrals(grid);
+    for (const BoxSide& side : sides_of(corners_.front(), corners_.back() - corners_.front()))
+        for (const SkyComponent& component : components) {
+            auto places =
+                std::make_shared<DirectionTable>(table_for(grid, sky->frame(), integrals, component, side.normal));
+            if (!(places->sum() > 0)) continue;
+            const float part_area = side.edge_u.length() * side.edge_v.length() / float{parts_per_emitter};
+            const RgbD power = RgbD(component.colour) * (places->sum() * double{part_area});
+            emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, std::move(places),
+                                         component, part_area},
+                                 component.colour, power});
+        }
 }
 
 void Emission::add_window(Window window, const Rgb& exitance) {
@@ -127,11 +193,21 @@ void Emission::add(const MeasuredLight& light) {
 }
 
 Ray Emission::Beam::ray(float u, float v, float, float) const {
-    return {position, turned(axis, s, t, sample_cosine(v, inner, outer, inner_share), u)};
+    const float cosine = sample_cosine(v, inner, outer, inner_share);
+    return {position, turned(axis, s, t, cosine, std::sqrt(std::max(0.0f, 1 - cosine * cosine)), u)};
 }
 
 Ray Emission::Window::ray(float u, float v, float c, float d) const {
-    return {corner + edge_u * u + edge_v * v, is_diffuse ? turned(direction, s, t, std::sqrt(1 - c), d) : direction};
+    const float squared = c * sine * sine;
+    return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
+}
+
+/// Cells that a side's plane divides reach behind it: what is sampled there is mirrored.
+Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
+    V3f direction = -sky->frame().direction(places->sample(c, d));
+    const float cosine = direction.dot(normal);
+    if (cosine < 0) direction -= normal * (2 * cosine);
+    return {corner + edge_u * u + edge_v * v, direction};
 }
 
 Ray Emission::Web::ray(float u, float v, float c, float d) const {
@@ -165,14 +241,18 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     if (std::holds_alternative<Beam>(emitter.shape)) return {ray.origin, V3f(0), emitter.rating};
     if (const Web* web = std::get_if<Web>(&emitter.shape))
         return {ray.origin, V3f(0), emitter.rating * web->light->intensity(web->frame.to_luminaire(ray.direction))};
+    const auto of_side = [&](const V3f& normal, float part_area, const Rgb& exitance) {
+        const float form_factor = part_area / (part_area + pi * squared);  // of a disk of that area
+        return Proxy{ray.origin, normal, exitance * (form_factor * squared)};
+    };
+    if (const SkySide* side = std::get_if<SkySide>(&emitter.shape))
+        return of_side(side->normal, side->part_area,
+                       emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Window& window = std::get<Window>(emitter.shape);
-    if (window.is_diffuse) {
-        const float form_factor = window.part_area / (window.part_area + pi * squared);  // of a disk of that area
-        return {ray.origin, window.direction, emitter.rating * (form_factor * squared)};
-    }
+    if (window.sine == 1) return of_side(window.direction, window.part_area, emitter.rating);
     // So far away that direction and distance are the same for the whole scene.
     const float far = 100 * (corners_.back() - corners_.front()).length();
-    return {ray.origin - far * window.direction, window.direction, emitter.rating * (far * far)};
+    return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
 }
 
 }  // namespace interflect::inline detail

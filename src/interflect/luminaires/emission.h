@@ -11,11 +11,18 @@
 #include "interflect/base/points.h"
 #include "interflect/colour.h"
 #include "interflect/luminaires/opening.h"
+#include "interflect/luminaires/sky_radiance.h"
 #include "interflect/luminaires/web_sampler.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
 namespace interflect::inline detail {
+
+/// A share of a sky's radiance that is of one colour: all rays of a part carry the same power.
+struct SkyComponent {
+    Rgb colour;
+    float (*amount)(const Rgb& radiance);  ///< Of that colour.
+};
 
 /// Rays from the luminaires of a scene. What a luminaire emits is divided into parts of equal power, by direction
 /// (point, spot and measured lights) or by place (a directional light, a sky): each part gets rays of its own, so that
@@ -61,12 +68,21 @@ class Emission {
         float inner_share;   // of the power, within the inner angle
         Ray ray(float u, float v, float, float) const;
     };
-    /// Starts on a parallelogram; all in one direction, or with a density cos(theta) / pi about it.
+    /// Starts on a parallelogram, with a density in proportion to cos(theta) about a direction, up to an angle.
     struct Window {
         V3f corner, edge_u, edge_v;
         V3f direction, s, t;
+        float sine;  // of that angle; 0: parallel; 1: diffuse
         float part_area;
-        bool is_diffuse;
+        Ray ray(float u, float v, float c, float d) const;
+    };
+    /// Starts on a side of the scene's box, from the directions of a sky.
+    struct SkySide {
+        V3f corner, edge_u, edge_v, normal;
+        std::shared_ptr<const SkyRadiance> sky;
+        std::shared_ptr<const DirectionTable> places;
+        SkyComponent component;
+        float part_area;
         Ray ray(float u, float v, float c, float d) const;
     };
     /// In the directions of a photometric web, from its opening; from `offset` above it, where a surface is that it is
@@ -80,7 +96,7 @@ class Emission {
         Ray ray(float u, float v, float c, float d) const;
     };
     struct Emitter {
-        std::variant<Beam, Window, Web> shape;
+        std::variant<Beam, Window, SkySide, Web> shape;
         Rgb rating;
         RgbD part_power;
         std::size_t luminaire = 0;
@@ -91,6 +107,10 @@ class Emission {
     void add(const DirectionalLight& light);
     void add(const UniformSky& sky);
     void add(const MeasuredLight& light);
+    void add(const SkyDome& dome);
+    void add(const EnvironmentMap& map);
+    void add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
+                 std::span<const SkyComponent> components);
     void add_beam(const Beam& beam, const Rgb& intensity);
     void add_window(Window window, const Rgb& exitance);
 

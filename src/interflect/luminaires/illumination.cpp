@@ -1,7 +1,10 @@
 #include "interflect/luminaires/illumination.h"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "interflect/geometry/tangent_frame.h"
 #include "interflect/luminaires/opening.h"
 
 namespace interflect::inline detail {
@@ -29,11 +32,22 @@ Illumination light_at(const SpotLight& light, const V3f& x, float, float) {
     return i;
 }
 
-Illumination light_at(const DirectionalLight& light, const V3f&, float, float) {
-    return {-light.direction.normalized(), std::numeric_limits<float>::infinity(), light.irradiance};
+/// Uniform over the solid angle of its disc, 2 pi (1 - cos r): of that times its radiance, E / (pi sin^2 r).
+Illumination light_at(const DirectionalLight& light, const V3f&, float u, float v) {
+    const V3f axis = -light.direction.normalized();
+    constexpr float everywhere = std::numeric_limits<float>::infinity();
+    if (light.diameter == 0) return {axis, everywhere, light.irradiance};
+    const TangentFrame frame(axis);
+    const float edge = light.disc_sine(), edge_cosine = std::sqrt(1 - edge * edge);
+    const float height = v * (edge * edge / (1 + edge_cosine));  // 1 - cosine
+    const float sine = std::sqrt(height * (2 - height)), turn = 2 * std::numbers::pi_v<float> * u;
+    const V3f towards = axis * (1 - height) + frame.s * (sine * std::cos(turn)) + frame.t * (sine * std::sin(turn));
+    return {towards, everywhere, light.irradiance * (2 / (1 + edge_cosine))};
 }
 
 Illumination light_at(const UniformSky&, const V3f&, float, float) { return {}; }
+Illumination light_at(const SkyDome&, const V3f&, float, float) { return {}; }
+Illumination light_at(const EnvironmentMap&, const V3f&, float, float) { return {}; }
 
 /// A point y of the opening, chosen as if all of it were seen from its middle: with a density |n d0| / A(d0) over the
 /// surface, where A is its projected area. Its radiance is I(d) / A(d), so that what it causes is I(d) / r^2 times
@@ -61,13 +75,6 @@ Illumination light_at(const MeasuredLight& light, const V3f& x, float u, float v
 
 Illumination illumination(const Luminaire& luminaire, const V3f& x, float u, float v) {
     return std::visit([&](const auto& light) { return light_at(light, x, u, v); }, luminaire.kind);
-}
-
-Rgb sky_radiance(const Scene& scene) {
-    Rgb sum(0, 0, 0);
-    for (const Luminaire& luminaire : scene.luminaires)
-        if (const UniformSky* sky = std::get_if<UniformSky>(&luminaire.kind)) sum += sky->radiance;
-    return sum;
 }
 
 }  // namespace interflect::inline detail

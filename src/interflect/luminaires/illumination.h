@@ -9,14 +9,12 @@ namespace interflect::inline detail {
 struct Illumination {
     V3f towards{0, 0, 1};     ///< Unit direction to the luminaire.
     float distance = 0;       ///< Within which nothing may be in the way [m]; infinite for directional light.
-    Rgb irradiance{0, 0, 0};  ///< Of a surface that faces it [lm/m^2 or W/m^2]; 0 from a sky, which has no direction.
+    Rgb irradiance{0, 0, 0};  ///< Of a surface that faces it [lm/m^2 or W/m^2]; 0 from skies, which are in Skies.
 };
-/// Of measured light with an opening: from one point of that, so that the mean over u and v is what all of it causes.
+/// Of measured light with an opening, and of a disc: from one point of that, so that the mean over u and v is what all
+/// of it causes.
 /// @param x     Relative to the scene's origin [m].
-/// @param u, v  Uniform in (0, 1); they choose the point of an opening.
+/// @param u, v  Uniform in (0, 1); they choose the point of an opening or disc.
 Illumination illumination(const Luminaire& luminaire, const V3f& x, float u = 0.5f, float v = 0.5f);
-
-/// What is seen where nothing is in the way: the radiance of all skies [cd/m^2 or W/(m^2 sr)].
-Rgb sky_radiance(const Scene& scene);
 
 }  // namespace interflect::inline detail

@@ -61,6 +61,8 @@ std::optional<LightTree::Light> bounds(const MeasuredLight& light) {
 
 std::optional<LightTree::Light> bounds(const DirectionalLight&) { return {}; }
 std::optional<LightTree::Light> bounds(const UniformSky&) { return {}; }
+std::optional<LightTree::Light> bounds(const SkyDome&) { return {}; }
+std::optional<LightTree::Light> bounds(const EnvironmentMap&) { return {}; }
 
 std::vector<LightTree::Light> lights_with_a_place(const Scene& scene) {
     std::vector<LightTree::Light> lights;

@@ -13,7 +13,6 @@
 #include "interflect/base/parallel.h"
 #include "interflect/error.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/luminaires/illumination.h"
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/luminaire_choice.h"
@@ -214,6 +213,7 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
     const LightTree lights(patch_lights(scene, geometry, emitted_powers(scene, geometry)), scene.patches.size());
     const LuminaireChoice luminaires(scene);
+    const Skies skies(scene);
     const Panes panes(scene, ray_caster);
     const auto is_mirror = [](const Material& m) { return largest_channel(m.specular_reflectance) > 0; };
     std::optional<KnownLight> known_light;
@@ -224,7 +224,7 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
                                geometry,
                                lights,
                                luminaires,
-                               sky_radiance(scene),
+                               skies,
                                options,
                                batch_size_for(options.samples),
                                panes,

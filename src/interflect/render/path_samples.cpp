@@ -50,6 +50,14 @@ PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uin
     return {point[0] + ((words[0] + 0.5) * 0x1p-32 - 0.5) * 0x1p-23, point[1], point[2]};
 }
 
+SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
+    const std::uint64_t key = mix(mix(batch_key, vertex), 4);
+    const auto words = random_words(key, index);
+    if (vertex > stratified_vertices) return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2])};
+    const auto point = shuffled_point(key, index);
+    return {double{point[2]}, point[0], point[1]};
+}
+
 float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2) {
     const float cosine = -lamp.normal().dot(direction);
     return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;

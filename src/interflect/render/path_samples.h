@@ -25,12 +25,19 @@ struct PlaceSample {
     float u, v;    // and the point on it
 };
 
+/// Those with which skies are sampled at a vertex.
+struct SkySample {
+    double sky;  // chooses one
+    float u, v;  // and the direction
+};
+
 /// Sobol' points at the first vertices of a path, pseudo-random numbers at later ones.
 /// @param batch_key  Names the batch that the path is part of.
 /// @param vertex     1 is the first that the camera sees.
 /// @param index      Of the path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
+SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 
 /// Density per solid angle, seen from a point that `direction` leaves, of sampling a point of an emitting patch there.
 /// @param probability  With which the patch is chosen.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "interflect/base/points.h"
@@ -145,7 +146,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     const bool is_lit_alone = vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance;
     if (hit.patch == none) {
         ++counts_.escaped_rays;
-        if (!is_lit_alone) add(path.index, vertex_ - 1, path.throughput * s_.sky);
+        if (!is_lit_alone) add_sky(ray, path);
         return false;
     }
     const V3f x = ray.origin + hit.distance * ray.direction;
@@ -179,12 +180,27 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
     if (s_.options.emitter_sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
     if (s_.known) connect_to_known_light(ray.origin, path);
     if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
+    if (s_.skies.can_sample() && s_.options.emitter_sampling != EmitterSampling::directions)
+        connect_to_sky(ray.origin, path);
 
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
     path.throughput /= survival;
     ray.direction = cosine_direction(path.normal, sample.direction_u, sample.direction_v);
     return true;
+}
+
+void PathWavefront::add_sky(const Ray& ray, const Path& path) {
+    if (vertex_ == 1) return add(path.index, 0, path.throughput * s_.skies.seen(ray.direction));
+    Rgb radiance = s_.skies.uniform_radiance();
+    if (s_.skies.can_sample()) {
+        float weight = 1;
+        if (s_.options.emitter_sampling == EmitterSampling::lights) weight = 0;
+        if (s_.options.emitter_sampling == EmitterSampling::combined)
+            weight = balance(path.normal.dot(ray.direction) / pi, s_.skies.density(ray.direction));
+        radiance += s_.skies.sampled_radiance(ray.direction) * weight;
+    }
+    add(path.index, vertex_ - 1, path.throughput * radiance);
 }
 
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
@@ -267,6 +283,20 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const V
     if (!(channel_sum(light.irradiance) > 0)) return;
     shadow_rays_.push_back({x, light.towards});
     connections_.push_back({none, path.index, path.throughput * light.irradiance / pi, light.distance, vertex_});
+}
+
+void PathWavefront::connect_to_sky(const V3f& x, const Path& path) {
+    const auto size = static_cast<std::uint32_t>(s_.batch_size);
+    const SkySample numbers = sky_sample(keys_[path.index / size], vertex_, path.index % size);
+    const Skies::Sample sample = s_.skies.sample(numbers.sky, numbers.u, numbers.v);
+    const float of_direction = path.normal.dot(sample.direction) / pi;
+    if (!(of_direction > 0 && sample.density > 0)) return;
+    const float weight =
+        s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(sample.density, of_direction);
+    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (of_direction / sample.density * weight);
+    shadow_rays_.push_back({x, sample.direction});
+    constexpr float everywhere = std::numeric_limits<float>::infinity();
+    connections_.push_back({none, path.index, path.throughput * radiance, everywhere, vertex_});
 }
 
 void PathWavefront::pass_panes() {

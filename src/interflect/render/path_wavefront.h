@@ -8,6 +8,7 @@
 
 #include "interflect/colour.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/skies.h"
 #include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
@@ -37,7 +38,7 @@ struct PathScene {
     std::span<const PatchGeometry> geometry;  // of each patch
     const LightTree& lights;                  // patches
     const LuminaireChoice& luminaires;
-    Rgb sky;  // its radiance
+    const Skies& skies;
     const PathOptions& options;
     std::size_t batch_size;
     Panes panes;
@@ -126,12 +127,16 @@ class PathWavefront {
     /// Joins `ray.origin`, on a surface with `path.normal`, to the light, and chooses the direction in which the path
     /// leaves it. @return Whether it goes on.
     bool leave(Ray& ray, Path& path);
+    /// Light of the skies that a ray escapes to.
+    void add_sky(const Ray& ray, const Path& path);
     /// Light from the emitting patch that a ray has hit.
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
     /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample);
     /// The same for luminaires.
     void connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample);
+    /// The same for skies.
+    void connect_to_sky(const V3f& x, const Path& path);
     void trace_shadow_rays();
     /// Lets shadow rays that have hit a pane of glass on their way go on behind it.
     void pass_panes();

@@ -7,7 +7,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/texture_mapping.h"
-#include "interflect/luminaires/illumination.h"
+#include "interflect/luminaires/skies.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/element_vertices.h"
@@ -67,7 +67,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
     const Camera camera(view, options.width, options.height, scene.origin);
-    const RgbD sky(options.irradiance ? Rgb(0) : sky_radiance(scene));
+    const Skies skies(scene);
     const Shader shader(scene, forest, irradiance, options);
 
     Rendering result;
@@ -80,7 +80,8 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
         std::int64_t escaped = 0;
         const auto value = [&](const Ray& ray, const Hit& hit) {
             escaped += hit.patch == none ? 1 : 0;
-            return hit.patch == none ? sky : RgbD(shader.value_at(ray, hit));
+            if (hit.patch != none) return RgbD(shader.value_at(ray, hit));
+            return options.irradiance ? RgbD(0) : RgbD(skies.seen(ray.direction));
         };
         for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
         thread_local std::vector<Panes::HitBehind> behind;

@@ -72,6 +72,8 @@ void scale(Luminaire& luminaire, float factor) {
     if (auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) directional->irradiance *= factor;
     if (auto* sky = std::get_if<UniformSky>(&luminaire.kind)) sky->radiance *= factor;
     if (auto* measured = std::get_if<MeasuredLight>(&luminaire.kind)) measured->factor *= factor;
+    if (auto* dome = std::get_if<SkyDome>(&luminaire.kind)) dome->irradiance *= factor;
+    if (auto* map = std::get_if<EnvironmentMap>(&luminaire.kind)) map->factor *= factor;
 }
 
 }  // namespace

@@ -29,8 +29,30 @@ std::string direction_fault(const V3f& d) {
 }
 
 std::string placement_fault(const PointLight& light) { return position_fault(light.position); }
-std::string placement_fault(const DirectionalLight& light) { return direction_fault(light.direction); }
+std::string placement_fault(const DirectionalLight& light) {
+    constexpr float widest_disc = 90;
+    if (!(light.diameter >= 0 && light.diameter <= widest_disc))
+        return fmt::format("has a disc of {} degrees; expected 0 to {}", light.diameter, widest_disc);
+    return direction_fault(light.direction);
+}
 std::string placement_fault(const UniformSky&) { return {}; }
+std::string placement_fault(const SkyDome& sky) {
+    constexpr float rounding = -1e-4f;  // cosine
+    for (const std::string& fault : {direction_fault(sky.zenith), direction_fault(sky.sun), sky_fault(sky.model)})
+        if (!fault.empty()) return fault;
+    if (sky.sun.normalized().dot(sky.zenith.normalized()) < rounding) return "has its sun below the horizon";
+    constexpr float brightest_ground = 1e6f;
+    if (!(sky.ground >= 0 && sky.ground <= brightest_ground))
+        return fmt::format("has a ground of {} times its light; expected 0 to {:g}", sky.ground, brightest_ground);
+    return {};
+}
+std::string placement_fault(const EnvironmentMap& map) {
+    for (const std::string& fault : {direction_fault(map.zenith), direction_fault(map.north)})
+        if (!fault.empty()) return fault;
+    constexpr float least_sine = 1e-4f;
+    const bool is_frame = map.zenith.normalized().cross(map.north.normalized()).length() > least_sine;
+    return is_frame ? std::string() : std::string("has its north at the zenith");
+}
 std::string placement_fault(const SpotLight& light) {
     const bool is_cone = light.inner_angle >= 0 && light.inner_angle <= light.outer_angle && light.outer_angle > 0 &&
                          light.outer_angle <= straight_angle;
@@ -60,18 +82,25 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 
 float SpotLight::inner_cosine() const { return std::cos(inner_angle * degree); }
 float SpotLight::outer_cosine() const { return std::cos(outer_angle * degree); }
+float DirectionalLight::disc_sine() const { return std::sin(diameter / 2 * degree); }
+Rgb DirectionalLight::disc_radiance() const {
+    return irradiance / (std::numbers::pi_v<float> * disc_sine() * disc_sine());
+}
 
 Rgb rating(const Luminaire& luminaire) {
     return std::visit(Overloaded{[](const PointLight& light) { return light.intensity; },
                                  [](const SpotLight& light) { return light.intensity; },
                                  [](const DirectionalLight& light) { return light.irradiance; },
                                  [](const UniformSky& sky) { return sky.radiance; },
-                                 [](const MeasuredLight& light) { return light.factor * light.web->peak(); }},
+                                 [](const MeasuredLight& light) { return light.factor * light.web->peak(); },
+                                 [](const SkyDome& sky) { return sky.irradiance; },
+                                 [](const EnvironmentMap& map) { return map.factor * largest_texel(*map.image); }},
                       luminaire.kind);
 }
 
 const char* kind_name(const Luminaire& luminaire) {
-    constexpr std::array<const char*, 5> names{"point", "spot", "directional", "sky", "measured"};
+    constexpr std::array<const char*, 7> names{"point",    "spot",     "directional", "sky",
+                                               "measured", "sky-dome", "environment"};
     return names[luminaire.kind.index()];
 }
 
@@ -79,6 +108,13 @@ std::string luminaire_fault(const Luminaire& luminaire) {
     if (const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind)) {
         if (!measured->web) return "has no photometric web";
         if (std::string fault = web_fault(*measured->web); !fault.empty()) return fault;
+    }
+    if (const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind)) {
+        if (!map->image) return "has no image";
+        if (std::string fault = texture_fault(*map->image); !fault.empty()) return "has an image that " + fault;
+        if (map->image->texels.size() > most_environment_texels)
+            return fmt::format("has an image of {} texels; expected at most {}", map->image->texels.size(),
+                               most_environment_texels);
     }
     const Rgb value = rating(luminaire);
     if (!is_finite(value) || std::min({value.x, value.y, value.z}) < 0)

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "interflect/scene.h"
+#include "tests/support/form_factors.h"
+
+namespace interflect::testing_support {
+
+/// A sky and its radiance by a formula that is written here again, of the red channel, in a direction towards the sky.
+struct KnownSky {
+    std::string name;
+    Luminaire luminaire;
+    std::function<double(const V3d&)> radiance;
+};
+
+/// CIE skies of several types, with and without a ground, one of them with its zenith along y; Perez's; maps of few and
+/// of many texels, one of them turned.
+std::vector<KnownSky> known_skies();
+
+/// A texture of these texels.
+std::shared_ptr<const Texture> image_of(std::uint32_t width, std::uint32_t height, std::vector<Rgb> texels);
+
+/// The integral of radiance times cosine over the hemisphere of a normal, by the midpoint rule: to about 1e-4 for what
+/// is smooth, to 1e-3 for maps.
+double irradiance_of(const std::function<double(const V3d&)>& radiance, const V3d& normal);
+
+}  // namespace interflect::testing_support
