@@ -111,8 +111,8 @@ struct LampBehindGlass {
     }
 };
 
-/// Seen to fail where shadow rays go on unfiltered. Light on the floor is what it would be without the pane times its transmittance, of lamps, luminaires and the sun,
-/// each channel by itself.
+/// Seen to fail where shadow rays go on unfiltered. Light on the floor is what it would be without the pane times its
+/// transmittance, of lamps, luminaires and the sun, each channel by itself.
 TEST(Glass, FiltersLightByItsColour) {
     const Luminaire point{"lamp", 0, PointLight{{2, 2, 2.5f}, Rgb(100)}};
     const Luminaire parallel{"sun", 0, DirectionalLight{{0.2f, 0.1f, -1}, Rgb(100)}};

@@ -75,9 +75,10 @@ class SourcePlaces {
                                                   static_cast<float>(fewest), static_cast<float>(most)));
         const std::size_t source = source_of(patch);
         for (int i = 0; i < n * n; ++i) {
-            const auto column = static_cast<float>(i % n), row = static_cast<float>(i / n);
-            const Parameters p = geometry.uniform_parameters((column + 0.5f) / static_cast<float>(n),
-                                                             (row + 0.5f) / static_cast<float>(n));
+            const int row = i / n, column = i % n;
+            const Parameters p =
+                geometry.uniform_parameters((static_cast<float>(column) + 0.5f) / static_cast<float>(n),
+                                            (static_cast<float>(row) + 0.5f) / static_cast<float>(n));
             const V3f d = geometry.point(p) - eye_;
             const float r = d.length();
             const double cosine = static_cast<double>(-geometry.normal().dot(d) / r);
