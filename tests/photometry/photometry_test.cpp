@@ -54,6 +54,17 @@ TEST(ExteriorIlluminance, IsThatOfTheUniformSkyWithoutTheSun) {
     EXPECT_TRUE(has_other_light_than_sky(scene));
 }
 
+/// Of a map: pi L sin^2 of the angle that its only bright row reaches down to; below the horizon nothing counts.
+TEST(ExteriorIlluminance, AddsDomesAndMaps) {
+    Scene scene = closed_box({1, 1, 1}, 1, {Material{}});
+    scene.luminaires.push_back({"overcast", 0, SkyDome{cie_standard_sky(1), Rgb(5000), {0, 0, 1}, {0, 0, 1}, 0.5f}});
+    EXPECT_NEAR(*exterior_illuminance(scene), 5000, 0.01);
+    const Texture up_to_45_degrees{"", 1, 4, {Rgb(0, 100, 0), Rgb(0), Rgb(7), Rgb(7)}};
+    scene.luminaires.push_back({"map", 0, EnvironmentMap{.image = std::make_shared<Texture>(up_to_45_degrees)}});
+    EXPECT_NEAR(*exterior_illuminance(scene), 5000 + 71.52 * std::numbers::pi / 2, 0.01);
+    EXPECT_FALSE(has_other_light_than_sky(scene));
+}
+
 /// E = I cos / r^2 = I h / r^3 at every point of a grid on a black floor; nothing on the side that faces away.
 TEST(MeasuringGrid, MeasuresThePointLightOverIt) {
     Scene scene = closed_box({6, 5, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});

@@ -4,9 +4,28 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/luminaires/illumination.h"
-
 namespace interflect {
+
+namespace {
+
+/// On the side of its zenith: the integral of luminance times the cosine over the upper half, exactly.
+double horizontal_illuminance(const EnvironmentMap& map) {
+    const Texture& image = *map.image;
+    const auto height_squared = [&](std::uint32_t edge) {
+        const double cosine = std::cos(std::numbers::pi * edge / image.height);
+        return cosine > 0 ? cosine * cosine : 0;
+    };
+    double sum = 0;
+    for (std::uint32_t y = 0; y < image.height; ++y) {
+        double row = 0;
+        for (std::uint32_t x = 0; x < image.width; ++x)
+            row += luminance(RgbD(map.factor * image.texels[std::size_t{y} * image.width + x]));
+        sum += row * std::numbers::pi / image.width * (height_squared(y) - height_squared(y + 1));
+    }
+    return sum;
+}
+
+}  // namespace
 
 IlluminanceSummary summarise(std::span<const MeasuredIrradiance> measured) {
     IlluminanceSummary summary{.points = measured.size()};
@@ -29,13 +48,22 @@ IlluminanceSummary summarise(std::span<const MeasuredIrradiance> measured) {
 }
 
 std::optional<double> exterior_illuminance(const Scene& scene) {
-    const double radiance = luminance(RgbD(sky_radiance(scene)));
-    if (!(radiance > 0)) return std::nullopt;
-    return std::numbers::pi * radiance;  // of a uniform hemisphere
+    double sum = 0;
+    for (const Luminaire& luminaire : scene.luminaires) {
+        if (const auto* sky = std::get_if<UniformSky>(&luminaire.kind))
+            sum += std::numbers::pi * luminance(RgbD(sky->radiance));
+        if (const auto* dome = std::get_if<SkyDome>(&luminaire.kind)) sum += luminance(RgbD(dome->irradiance));
+        if (const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind)) sum += horizontal_illuminance(*map);
+    }
+    if (!(sum > 0)) return std::nullopt;
+    return sum;
 }
 
 bool has_other_light_than_sky(const Scene& scene) {
-    const auto is_no_sky = [](const Luminaire& l) { return !std::holds_alternative<UniformSky>(l.kind); };
+    const auto is_no_sky = [](const Luminaire& l) {
+        return !std::holds_alternative<UniformSky>(l.kind) && !std::holds_alternative<SkyDome>(l.kind) &&
+               !std::holds_alternative<EnvironmentMap>(l.kind);
+    };
     return std::any_of(scene.luminaires.begin(), scene.luminaires.end(), is_no_sky) ||
            std::any_of(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
                return largest_channel(scene.materials[patch.material].exitance) > 0;
