@@ -108,7 +108,8 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
         const auto show = [&](const IterationReport& report) {
             bar.show({fraction_done(options, report), report.seconds, report.rays, report.error_estimate});
         };
-        const Monitor monitor{show, &stop_on_signal()};
+        stop_on_signal();
+        const Monitor monitor{show, &stop_flag()};
         Limits limits;
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
         for (bool is_over = false; !is_over;) {
