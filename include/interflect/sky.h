@@ -16,7 +16,7 @@ struct SkyModel {
     bool depends_on_sun() const { return c != 0 || e != 0; }
     /// phi(Z) f(chi) where cos Z >= 0; a factor that is negative counts as 0. @param sun_cosine  cos chi.
     double relative_luminance(double zenith_cosine, double sun_cosine) const;
-    /// The integral of relative_luminance() cos Z over the upper hemisphere: relative horizontal illuminance. To seven
+    /// The integral of relative_luminance() cos Z over the upper hemisphere: relative horizontal illuminance. To five
     /// digits; takes a few milliseconds. @param sun_cosine  Of the angle between zenith and sun.
     double horizontal_integral(double sun_cosine) const;
 };
