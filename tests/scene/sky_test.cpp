@@ -106,7 +106,7 @@ struct PerezCase {
 class Perez : public testing::TestWithParam<PerezCase> {};
 TEST_P(Perez, AgreesWithRadiance) {
     const PerezCase& c = GetParam();
-    const PerezDaylight found = perez_daylight(c.direct, c.diffuse, c.altitude);
+    const ModelledDaylight found = perez_daylight(c.direct, c.diffuse, c.altitude);
     constexpr double other_air_mass = 2e-4;  // gendaylit has that of Kasten 1965
     EXPECT_NEAR(found.sky_illuminance, c.sky_illuminance, other_air_mass * c.sky_illuminance);
     EXPECT_NEAR(found.sun_illuminance, c.sun_illuminance, other_air_mass * c.sun_illuminance);
