@@ -75,6 +75,7 @@ void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
         LightFacts& light = by_name[name];
         light.name = name;
         light.kind = kind_name(luminaire);
+        light.is_sky = is_sky(luminaire);
         ++light.count;
         light.flux += flux[i];
         if (std::holds_alternative<UniformSky>(luminaire.kind)) light.luminance = photometric(rating(luminaire));

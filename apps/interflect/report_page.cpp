@@ -89,7 +89,7 @@ std::string key_figures(const ReportContent& content) {
     }
     double flux = 0;
     for (const LightFacts& light : content.facts.lights)
-        if (light.kind != "sky") flux += light.flux;
+        if (!light.is_sky) flux += light.flux;
     text += key_figure(number(flux) + " lm", "luminous flux of all sources");
     if (content.glare.size() > 0) {
         double worst = -std::numeric_limits<double>::infinity();
@@ -179,9 +179,8 @@ std::string rooms(const ReportContent& content) {
 std::string lights(const ReportContent& content) {
     std::string rows;
     for (const LightFacts& light : content.facts.lights) {
-        const bool is_sky = light.kind == "sky";
         rows += row({html_text(light.name), html_text(light.kind), fmt::format("{}", light.count),
-                     is_sky ? "–" : number(light.flux), light.luminance ? number(*light.luminance) : "–"},
+                     light.is_sky ? "–" : number(light.flux), light.luminance ? number(*light.luminance) : "–"},
                     2);
     }
     const PowerBalance& balance = content.facts.balance;

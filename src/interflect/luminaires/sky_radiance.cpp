@@ -53,7 +53,7 @@ Rgb SkyRadiance::towards(const V3f& direction) const {
 
 SkyGrid SkyRadiance::grid() const {
     if (image_) return {image_->width, image_->height};
-    return {512, 256};
+    return {256, 128};
 }
 
 std::vector<Rgb> SkyRadiance::cell_integrals(const SkyGrid& grid) const {
