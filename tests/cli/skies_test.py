@@ -73,7 +73,7 @@ class Skies(CommandTest):
     def test_wrong_usage(self):
         for option, value in (("--sky", "blue"), ("--sky", "clear:-1"), ("--sky", "clear:x"), ("--sky", "perez:100"),
                               ("--sky", "cie-17"), ("--sky", ""), ("--sun", "200"), ("--sun", "200,0"), ("--sun", "200,91"),
-                              ("--sun", "200,35,-1"), ("--sun", "south,35"), ("--ground", "1.5"), ("--ground", "-0.1"),
+                              ("--sun", "200,35,-1"), ("--sun", "south,35"), ("--ground", "1.5"), ("--ground", "-0.1"), ("--ground", "0.2"),
                               ("--environment", ""), ("--environment", "map.hdr,0,-1"), ("--zenith", "0,1")):
             with self.subTest(option=option, value=value):
                 error = self.interflect("info", "open.mgf", f"{option}={value}", exit_code=WRONG_USAGE).stderr
