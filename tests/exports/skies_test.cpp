@@ -1,7 +1,5 @@
 // Skies, environment maps and the sun's disc in solution files: they come back to the bit, and a run under them goes on
 // with the same bits.
-//
-// Seen to fail when the numbers of a sky's model change places, and when the texels of a map are left out.
 #include <gtest/gtest.h>
 
 #include "interflect/scene/environment_maps.h"
