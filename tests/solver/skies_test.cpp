@@ -12,6 +12,7 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/measure.h"
 #include "interflect/solve.h"
+#include "interflect/solver/materials.h"
 #include "tests/solver/room_with_window.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
