@@ -60,6 +60,11 @@ void add_emitting_surfaces(const Scene& scene, const Materials& materials, std::
     }
 }
 
+bool is_far_away(const Luminaire& luminaire) {
+    return !std::holds_alternative<PointLight>(luminaire.kind) && !std::holds_alternative<SpotLight>(luminaire.kind) &&
+           !std::holds_alternative<MeasuredLight>(luminaire.kind);
+}
+
 /// Luminaires of one photometric file are one entry, as are unmeasured lights of one kind.
 void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
     const Emission emission(scene);
@@ -77,6 +82,7 @@ void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
         light.kind = kind_name(luminaire);
         ++light.count;
         light.flux += flux[i];
+        light.far_away = is_far_away(luminaire);
         if (std::holds_alternative<UniformSky>(luminaire.kind)) light.luminance = photometric(rating(luminaire));
     }
     for (const auto& [name, light] : by_name) lights.push_back(light);

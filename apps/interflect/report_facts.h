@@ -24,6 +24,7 @@ struct LightFacts {
     std::string name;                 ///< Of the material, the photometric file or the light.
     std::string kind;                 ///< "surface", or kind_name().
     std::size_t count = 0;            ///< Luminaires; of surfaces the objects that emit.
+    bool far_away = false;            ///< A sky or sun, whose flux is what comes towards the scene.
     double flux = 0;                  ///< Of all [lm].
     std::optional<double> luminance;  ///< [cd/m^2], where it is the same in all directions.
 };

@@ -89,8 +89,8 @@ std::string key_figures(const ReportContent& content) {
     }
     double flux = 0;
     for (const LightFacts& light : content.facts.lights)
-        if (light.kind != "sky") flux += light.flux;
-    text += key_figure(number(flux) + " lm", "luminous flux of all sources");
+        if (!light.far_away) flux += light.flux;
+    text += key_figure(number(flux) + " lm", "luminous flux of all luminaires");
     if (content.glare.size() > 0) {
         double worst = -std::numeric_limits<double>::infinity();
         for (const RatedGrid& g : content.glare)
@@ -179,9 +179,8 @@ std::string rooms(const ReportContent& content) {
 std::string lights(const ReportContent& content) {
     std::string rows;
     for (const LightFacts& light : content.facts.lights) {
-        const bool is_sky = light.kind == "sky";
         rows += row({html_text(light.name), html_text(light.kind), fmt::format("{}", light.count),
-                     is_sky ? "–" : number(light.flux), light.luminance ? number(*light.luminance) : "–"},
+                     light.far_away ? "–" : number(light.flux), light.luminance ? number(*light.luminance) : "–"},
                     2);
     }
     const PowerBalance& balance = content.facts.balance;

@@ -46,12 +46,12 @@ PlanarArea find_surface(const Scene& scene, const std::string& object, const std
 /// ones the highest. @throws InputError as find_surface() does.
 PlanarArea find_top(const Scene& scene, const std::string& object);
 
-/// The floor below a height: of all faces of the scene that face up below it, those in the horizontal plane that holds
-/// most of them. @param height  z in the world [m]. @throws InputError where there is none.
+/// The floor at or below a height: of all faces of the scene that face up there, those in the horizontal plane that
+/// holds most of them. @param height  z in the world [m]. @throws InputError where there is none.
 PlanarArea find_floor(const Scene& scene, double height);
 
 /// An area divided by the objects that its faces belong to, in the order of their sizes: the floors of rooms. Copies of
-/// an array (MGF names them "floor.a0", "floor.a1") are one object.
+/// an array (MGF names them "floor.a0", "floor.a1.2") are one object.
 std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area);
 
 /// Points to measure at.

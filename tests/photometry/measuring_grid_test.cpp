@@ -136,14 +136,17 @@ TEST(MeasuringGrid, TurnsWithTheArea) {
 }
 
 TEST(MeasuringGrid, AtAHeightLiesOverTheFloor) {
-    const Scene scene = furnished();
+    Scene scene = furnished();
     const PlanarArea floor = find_floor(scene, 0.7);
     EXPECT_EQ(floor.patches, std::vector<std::uint32_t>{4});
     const MeasuringGrid grid = area_grid(scene, floor, {.spacing = 1}, 0.7);
     EXPECT_EQ(grid.points.size(), 30u);
     EXPECT_NEAR((grid.points.front() - Imath::V3d(0.5, 0.5, 0.7)).length(), 0, 1e-6);
     EXPECT_EQ(find_floor(scene, 2).patches, floor.patches);  // not the desk, which is smaller
-    EXPECT_THROW(find_floor(scene, -1), InputError);
+    EXPECT_EQ(find_floor(scene, 0).patches, floor.patches);
+    scene.origin.z = 20.3;
+    EXPECT_EQ(find_floor(scene, 20.3).patches, floor.patches);
+    EXPECT_THROW(find_floor(scene, 20.2), InputError);
 }
 
 /// Walls of one size: which one, and which side of a two-sided face, is told by the way that it faces.
@@ -201,7 +204,7 @@ TEST(MeasuringGrid, OfALineHasItsEnds) {
 TEST(PlanarArea, IsDividedByObjects) {
     Scene scene;
     scene.materials = {Material{}};
-    scene.objects = {"", "small.a", "large.a0.a1", "large.a0.a12"};
+    scene.objects = {"", "small.a", "large.a0.1", "large.a12"};
     add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     add_rectangle(scene, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     add_rectangle(scene, {2, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);

@@ -37,13 +37,19 @@ std::string object_name(const Scene& scene, std::uint32_t patch) {
 }
 
 /// "floor.a0.a12" -> "floor": without what names the copies of an array.
+bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; }
+
+/// Without the suffixes of arrays: ".a2", or ".a2.0.7" where one is inside others.
 std::string_view without_copies(std::string_view name) {
-    for (;;) {
-        const std::size_t dot = name.rfind('.');
-        if (dot == name.npos) return name;
-        const std::string_view last = name.substr(dot + 1);
-        if (last.size() < 2 || last[0] != 'a' || last.find_first_not_of("0123456789", 1) != last.npos) return name;
-        name = name.substr(0, dot);
+    for (std::string_view rest = name;;) {
+        const std::size_t dot = rest.rfind('.');
+        if (dot == rest.npos) return name;
+        const std::string_view last = rest.substr(dot + 1);
+        rest = rest.substr(0, dot);
+        if (last.starts_with('a') && is_number(last.substr(1)))
+            name = rest;
+        else if (!is_number(last))
+            return name;
     }
 }
 
@@ -153,15 +159,18 @@ PlanarArea find_top(const Scene& scene, const std::string& object) {
 }
 
 PlanarArea find_floor(const Scene& scene, double height) {
+    constexpr double rounding = 1e-6;
+    const double highest = height + rounding * std::max(std::abs(height), std::abs(scene.origin.z));
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const PatchGeometry geometry(scene, scene.patches[i]);
         if (geometry.normal().z > same_plane_cosine &&
-            scene.origin.z + static_cast<double>(geometry.centre().z) < height)
+            scene.origin.z + static_cast<double>(geometry.centre().z) <= highest)
             patches.push_back(i);
     }
     if (patches.empty())
-        throw InputError(scene.name, 0, fmt::format("there is no floor: no face below z = {:.4g} m faces up", height));
+        throw InputError(scene.name, 0,
+                         fmt::format("there is no floor: no face at or below z = {:.4g} m faces up", height));
     return std::move(planes_of(scene, std::move(patches), "floor").front());
 }
 
