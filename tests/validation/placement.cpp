@@ -49,6 +49,19 @@ std::vector<Estimate> measured(const Scene& scene, const std::vector<MeasuringPo
     });
 }
 
+/// The runs are points of one measurement, each with random numbers of its own: the tables of skies are made once.
+std::vector<Estimate> traced(const Scene& scene, const std::vector<MeasuringPoint>& points, int samples) {
+    std::vector<MeasuringPoint> repeated;
+    for (int run = 0; run < runs; ++run) repeated.insert(repeated.end(), points.begin(), points.end());
+    const auto found = measure_irradiance(scene, nullptr, RayCaster(scene), repeated, {.samples = samples});
+    return means_of_runs(points.size(), [&](std::uint64_t seed) {
+        std::vector<double> illuminances;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            illuminances.push_back(static_cast<double>(found[(seed - 1) * points.size() + i].illuminance()));
+        return illuminances;
+    });
+}
+
 Estimate solved(const Scene& scene, std::uint32_t first_patch, std::uint32_t patches, std::int64_t rays) {
     const RayCaster ray_caster(scene);
     return mean_of_runs([&](std::uint64_t seed) {

@@ -31,6 +31,9 @@ extern const std::vector<Placement> placements;
 std::vector<Estimate> measured(const Scene& scene, const std::vector<MeasuringPoint>& points,
                                std::int64_t rays = 10'000, int samples = 1024);
 
+/// The same by path tracing alone.
+std::vector<Estimate> traced(const Scene& scene, const std::vector<MeasuringPoint>& points, int samples);
+
 /// Mean illuminance of patches, area-weighted, as solved (hsrr) [lx].
 Estimate solved(const Scene& scene, std::uint32_t first_patch, std::uint32_t patches, std::int64_t rays = 100'000);
 
