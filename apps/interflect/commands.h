@@ -13,7 +13,7 @@ void add_solve(CLI::App& app, int& exit_code);
 void add_resume(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
-void add_report(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_make_scene(CLI::App& app);

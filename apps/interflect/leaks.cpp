@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/emission.h"
 #include "interflect/scene/core.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/ray_source.h"
@@ -62,7 +65,82 @@ bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distanc
            static_cast<std::ptrdiff_t>(rays_beside);
 }
 
+/// Counts the rays that do not find the way back.
+class WaysBack {
+  public:
+    WaysBack(const Scene& scene, const RayCaster& ray_caster) : scene_(scene), ray_caster_(ray_caster) {}
+
+    /// @param source  The patch that the ray leaves; none for a luminaire.
+    void add(const Ray& ray, std::uint32_t source) {
+        Hit hit, back;
+        ray_caster_.trace({&ray, 1}, {&hit, 1});
+        if (hit.patch == none) return;
+        ++hits_;
+        const float offset = ray_caster_.ray_offset(hit.patch);
+        const PatchGeometry geometry(scene_, scene_.patches[hit.patch]);
+        const Ray reversed{ray.origin + hit.distance * ray.direction + offset * geometry.normal(), -ray.direction};
+        ray_caster_.trace({&reversed, 1}, {&back, 1});
+        constexpr float rounding = 1e-4f, offsets = 8;
+        const float nearest = hit.distance * (1 - rounding) - offsets * offset;
+        if (back.patch == none || back.patch == source || back.distance >= nearest) return;
+        ++lost_;
+        const Patch& face = scene_.patches[back.patch];
+        ++in_the_way_[{face.object, face.material}];
+    }
+    OneWayLight result() const {
+        if (lost_ == 0) return {};
+        const auto most = std::max_element(in_the_way_.begin(), in_the_way_.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        return {static_cast<double>(lost_) / static_cast<double>(hits_), most->first.first, most->first.second};
+    }
+
+  private:
+    const Scene& scene_;
+    const RayCaster& ray_caster_;
+    std::int64_t hits_ = 0, lost_ = 0;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> in_the_way_;  // by object and material
+};
+
+OneWayLight of_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    WaysBack ways(scene, ray_caster);
+    PointBlock points;
+    std::uint64_t sample = 0;
+    for (const std::uint32_t patch : sources(scene, ray_caster, solution)) {
+        Ray ray;
+        Parameters origin;
+        shoot_rays(solution.forest->geometry(patch), Cell(), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
+                   sample++, points, {&ray, 1}, {&origin, 1});
+        ways.add(ray, patch);
+    }
+    return ways.result();
+}
+
+/// As many rays of each part as its power asks for, rounded up.
+OneWayLight of_luminaires(const Scene& scene, const RayCaster& ray_caster) {
+    const Emission emission(scene);
+    const double power = channel_sum(emission.total_power());
+    WaysBack ways(scene, ray_caster);
+    PointBlock points;
+    std::vector<Ray> rays;
+    for (std::size_t part = 0; part < emission.part_count(); ++part) {
+        rays.resize(static_cast<std::size_t>(
+            std::ceil(rays_traced * (power > 0 ? channel_sum(emission.power(part)) / power : 0))));
+        emission.shoot(part, PointSet::random, leak_seed, 0, points, rays);
+        for (const Ray& ray : rays) ways.add(ray, none);
+    }
+    return ways.result();
+}
+
 }  // namespace
+
+OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    const bool has_one_sided_faces = std::any_of(scene.patches.begin(), scene.patches.end(),
+                                                 [](const Patch& patch) { return patch.other_side == none; });
+    if (!has_one_sided_faces) return {};
+    const OneWayLight surfaces = of_surfaces(scene, ray_caster, solution),
+                      luminaires = of_luminaires(scene, ray_caster);
+    return surfaces.share > luminaires.share ? surfaces : luminaires;
+}
 
 Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
     const float distance = distance_beside * core_bounds(scene).size().length();

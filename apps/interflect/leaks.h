@@ -23,4 +23,14 @@ Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solu
 /// window open loses more), and most of those that do pass through gaps.
 bool leaks(const Escapes& escapes);
 
+/// Light that goes through the backs of one-sided faces to where nothing that looks the other way sees it come from:
+/// paths from the camera are stopped by their fronts.
+struct OneWayLight {
+    double share = 0;  ///< Of the light that hits anything, of surfaces or of luminaires, where that is more.
+    std::uint32_t object = 0, material = 0;  ///< Of the faces that are in the way most often.
+};
+
+/// Traces 2^16 rays of each, forth and back.
+OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
+
 }  // namespace interflect::command

@@ -44,7 +44,7 @@ int run(int argc, char** argv) {
     add_resume(app, exit_code);
     add_render(app, exit_code);
     add_probe(app, exit_code);
-    add_report(app, exit_code);
+    add_report(app);
     add_compare(app);
     add_bench(app);
     add_make_scene(app);

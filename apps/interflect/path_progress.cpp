@@ -14,7 +14,7 @@ double with_path_progress(const std::function<void(const PathMonitor&)>& work) {
     };
     ProgressBar bar;
     const auto show = [&](const PathProgress& p) { bar.show({p.fraction, seconds(), p.rays, p.relative_error}); };
-    work({show, &stop_on_signal()});
+    work({show, &stop_flag()});
     return seconds();
 }
 

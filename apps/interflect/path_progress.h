@@ -6,7 +6,7 @@
 
 namespace interflect::command {
 
-/// Calls `work`, whose rays a progress bar shows and Ctrl-C ends early, keeping what there is.
+/// Calls `work`, whose rays a progress bar shows and the stop_flag() ends early.
 /// @return How long it took [s].
 double with_path_progress(const std::function<void(const PathMonitor&)>& work);
 

@@ -208,6 +208,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
 
     options.path.until = options.solver.until();
     options.path.seed = options.solver.seed();
+    stop_on_signal();
     const Solution* solution = traces_paths ? nullptr : &solved.solution;
     if (options.quantity == ProbedQuantity::ugr) {
         const std::vector<RatedGrid> rated =

@@ -14,7 +14,6 @@
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/report_page.h"
 #include "apps/interflect/shared_options.h"
-#include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/denoise.h"
@@ -133,10 +132,7 @@ ReportContent make_content(const SolvedScene& solved, const RayCaster& ray_caste
     const int plan_samples = std::max(2, options.samples / 4);  // isolines are smoothed
     content.plan = draw_plan(solved.scene, solved.solution, ray_caster, floor, options.working_plane,
                              {.samples = plan_samples, .seed = options.seed});
-    for (const View& view : views) {
-        if (is_stop_requested()) break;
-        content.pictures.push_back(draw_view(solved, ray_caster, view, options));
-    }
+    for (const View& view : views) content.pictures.push_back(draw_view(solved, ray_caster, view, options));
     return content;
 }
 
@@ -148,8 +144,8 @@ void write(PendingFile& output, const std::string& page) {
     output.commit();
 }
 
-/// Half a report is none: when it is interrupted, nothing is written.
-void run(const ReportArguments& options, int& exit_code) {
+/// Half a report is none: a signal ends it, and nothing is written.
+void run(const ReportArguments& options) {
     const ThreadLimit threads(options.threads);
     options.places.check(MeasuringPlaces::Least::none);
     require_distinct_files(std::array<NamedFile, 1>{{{"SOLUTION", options.solution}}},
@@ -159,10 +155,6 @@ void run(const ReportArguments& options, int& exit_code) {
     const std::vector<View> views = views_to_draw(solved.scene, options);
     const RayCaster ray_caster(solved.scene);
     const ReportContent content = make_content(solved, ray_caster, views, options);
-    if (is_stop_requested()) {
-        exit_code = interrupted;
-        return;
-    }
     write(output, report_page(content, solved));
     spdlog::info("{}: {} measuring areas, {} views", options.output.string(), content.areas.size(),
                  content.pictures.size());
@@ -170,7 +162,7 @@ void run(const ReportArguments& options, int& exit_code) {
 
 }  // namespace
 
-void add_report(CLI::App& app, int& exit_code) {
+void add_report(CLI::App& app) {
     const auto options = std::make_shared<ReportArguments>();
     CLI::App& command = *app.add_subcommand("report", "Write what a lighting designer hands over, as one HTML page");
     command.add_option("SOLUTION", options->solution, "Solution file (.h5)")->required()->type_name("FILE");
@@ -201,7 +193,7 @@ void add_report(CLI::App& app, int& exit_code) {
         ->type_name("NUMBER")
         ->default_str("1");
     add_threads(command, options->threads);
-    command.callback([options, &exit_code] { run(*options, exit_code); });
+    command.callback([options] { run(*options); });
 }
 
 }  // namespace interflect::command

@@ -84,6 +84,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         error_image.emplace(arguments.error_image);
     }
     PathTracing traced;
+    stop_on_signal();
     const double seconds = with_path_progress([&](const PathMonitor& monitor) {
         traced = solution ? gather(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);

@@ -31,6 +31,20 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
             percent(escapes.share()));
 }
 
+/// Where a face lets light through one way only, what the solver finds depends on who looks.
+void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    constexpr double least_share = 5e-3;
+    const OneWayLight found = find_one_way_light(scene, ray_caster, solution);
+    if (found.share < least_share) return;
+    const bool has_name = found.object < scene.objects.size() && !scene.objects[found.object].empty();
+    spdlog::warn(
+        "{} of the light goes through the backs of one-sided faces, most of it in '{}' (material '{}'): path tracing "
+        "and "
+        "gathering are stopped by their fronts and see less; faces that keep light in or out need two sides",
+        percent(found.share), has_name ? scene.objects[found.object] : scene.name,
+        scene.materials[found.material].name);
+}
+
 /// What is emitted is absorbed or escapes; what is left over tells how far to trust the solution.
 std::string text_of_balance(const Scene& scene, const Solution& solution) {
     const PowerBalance balance = power_balance(scene, solution);
@@ -108,7 +122,8 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
         const auto show = [&](const IterationReport& report) {
             bar.show({fraction_done(options, report), report.seconds, report.rays, report.error_estimate});
         };
-        const Monitor monitor{show, &stop_on_signal()};
+        stop_on_signal();
+        const Monitor monitor{show, &stop_flag()};
         Limits limits;
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
         for (bool is_over = false; !is_over;) {
@@ -122,6 +137,7 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
     Solution solution = std::move(solver).take_solution();
     log_outcome(*scene, solution);
     warn_of_leaks(*scene, *ray_caster, solution);
+    warn_of_one_way_light(*scene, *ray_caster, solution);
     return solution;
 }
 

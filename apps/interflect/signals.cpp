@@ -52,12 +52,11 @@ void handle_signals() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-const std::atomic<bool>& stop_on_signal() {
-    first_only_stops = true;
-    return stop_requested;
-}
+void stop_on_signal() { first_only_stops = true; }
 
 void end_on_signal() { first_only_stops = false; }
+
+const std::atomic<bool>& stop_flag() { return stop_requested; }
 
 bool is_stop_requested() { return stop_requested; }
 

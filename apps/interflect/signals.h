@@ -11,8 +11,8 @@ void handle_signals();
 
 /// From now on the first of SIGINT, SIGTERM and SIGHUP sets a flag, and says so; only the second ends the process. To
 /// be called before work that can be ended early, and then holds for the writing of its results too.
-/// @return The flag.
-const std::atomic<bool>& stop_on_signal();
+void stop_on_signal();
+const std::atomic<bool>& stop_flag();
 
 /// From now on the first signal ends the process again.
 void end_on_signal();

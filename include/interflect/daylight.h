@@ -23,7 +23,7 @@ struct Daylight {
         double direct_normal = 0, diffuse_horizontal = 0;  ///< Irradiances [W/m^2].
     };
     struct Environment {
-        std::filesystem::path file;  ///< .exr, .hdr or .png.
+        std::filesystem::path file;  ///< .exr or .hdr.
         double rotation = 0;         ///< Azimuth in the middle of the image [degrees].
         double scale = 1;            ///< Factor of its radiance.
     };
@@ -46,8 +46,8 @@ double usual_sun_illuminance(int cie_type, double sun_altitude);
 
 /// Adds it to a scene, as lights called "sun-3", "sky-4", "environment-5" after their place among all. A sun of 0 lx is
 /// left out; without a sky its usual illuminance is that of a clear one.
-/// @throws InputError for what is out of range, for a sky that needs a sun where there is none, and for a file that
-///         cannot be read.
+/// @throws InputError for what is out of range, for a sky that needs a sun where there is none, for a file that
+///         cannot be read, and where the scene then has more than most_skies.
 void add_daylight(Scene& scene, const Daylight& added);
 
 }  // namespace interflect

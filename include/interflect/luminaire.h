@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -64,8 +65,10 @@ struct EnvironmentMap {
     V3f north{0, 1, 0};   ///< Need not be normalised, nor at a right angle to the zenith.
     Rgb factor{1, 1, 1};  ///< Of the texels, to radiance [cd/m^2 or W/(m^2 sr)], >= 0.
 };
-/// Texels of an environment map: 24 bytes each while pictures are drawn.
+/// Texels of all environment maps of a scene: up to 24 bytes each while pictures are drawn.
 inline constexpr std::uint64_t most_environment_texels = std::uint64_t{1} << 25;
+/// Domes and maps of a scene, each of which takes up to 50 MB while light is shot.
+inline constexpr std::size_t most_skies = 8;
 
 /// A luminaire whose light was measured. Every point of its opening that a direction leaves from shines alike, so that
 /// far away it is what was measured, and close by it has the opening's size.
@@ -88,6 +91,9 @@ struct Luminaire {
 /// What it is rated by: intensity (of measured light the largest), irradiance or radiance (of a map the largest), each
 /// in its unit.
 Rgb rating(const Luminaire& luminaire);
+
+/// Whether it surrounds the scene: a uniform sky, a dome or a map.
+bool is_sky(const Luminaire& luminaire);
 
 /// "point", "spot", "directional", "sky", "measured", "sky-dome" or "environment".
 const char* kind_name(const Luminaire& luminaire);

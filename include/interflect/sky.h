@@ -16,7 +16,7 @@ struct SkyModel {
     bool depends_on_sun() const { return c != 0 || e != 0; }
     /// phi(Z) f(chi) where cos Z >= 0; a factor that is negative counts as 0. @param sun_cosine  cos chi.
     double relative_luminance(double zenith_cosine, double sun_cosine) const;
-    /// The integral of relative_luminance() cos Z over the upper hemisphere: relative horizontal illuminance. To seven
+    /// The integral of relative_luminance() cos Z over the upper hemisphere: relative horizontal illuminance. To five
     /// digits; takes a few milliseconds. @param sun_cosine  Of the angle between zenith and sun.
     double horizontal_integral(double sun_cosine) const;
 };
@@ -33,8 +33,8 @@ int cie_sky_type(std::string_view name);
 /// not 0 everywhere.
 std::string sky_fault(const SkyModel& model);
 
-/// Daylight that is known from irradiances.
-struct PerezDaylight {
+/// A sky and its sun, as a model of daylight has them.
+struct ModelledDaylight {
     SkyModel model;
     double sky_illuminance = 0;  ///< Horizontal, of the sky alone [lx].
     double sun_illuminance = 0;  ///< Of a surface that faces the sun [lx].
@@ -46,6 +46,6 @@ struct PerezDaylight {
 /// @param direct_normal, diffuse_horizontal  Irradiances [W/m^2], >= 0 and > 0, at most the solar constant.
 /// @param sun_altitude  [degrees], in (0, 90].
 /// @throws InputError for what is out of range.
-PerezDaylight perez_daylight(double direct_normal, double diffuse_horizontal, double sun_altitude);
+ModelledDaylight perez_daylight(double direct_normal, double diffuse_horizontal, double sun_altitude);
 
 }  // namespace interflect

@@ -82,6 +82,16 @@ class LostLight(CommandTest):
         for text in (room(), room_with_hole(0), room_with_hole(1.5), room().replace("f v4 v6 v7 v5\n", "")):
             self.assertNotIn("leaks", self.warnings(text))
 
+    def test_light_through_the_backs_of_faces_is_reported(self):
+        """The sky outside a closed room whose faces look inwards, and a shade that only stops what comes from outside."""
+        one_sided = room().replace("rd .6", "rd .6\n\tsides 1")
+        shade = vertices((0.4, 0.9, 2.3), (0.4, 2.1, 2.3), (1.6, 2.1, 2.3), (1.6, 0.9, 2.3)) + "m paint\no shade\nf v0 v1 v2 v3\no\n"
+        for lit in ("light sky 1000\n", shade):
+            self.assertIn("through the backs of one-sided faces", self.warnings(one_sided + lit))
+            self.assertNotIn("backs", self.warnings(room(LAMP.replace("sides 1", "sides 2")) + lit))
+        self.assertIn("most of it in 'shade' (material 'paint')", self.warnings(one_sided + shade))
+        self.assertNotIn("backs", self.warnings(one_sided))
+
     def test_covered_lamps_are_counted(self):
         lamp = "f v0 v1 v2 v3\n"
         twice = self.warnings(room() + LAMP.replace("lamp", "other") + lamp)

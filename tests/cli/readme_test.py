@@ -38,14 +38,14 @@ class Readme(CommandTest):
             arguments = shlex.split(example)
             if arguments[0] == "bench":
                 arguments += ["--rays", "100k", "--rounds", "1"]
-            if arguments[0] == "render" and "--size" not in arguments:
+            if arguments[0] in ("render", "report") and "--size" not in arguments:
                 arguments += shlex.split(SMALL)
             subcommands.add(arguments[0])
             printed = self.interflect(*arguments, timeout=120).stdout.splitlines()
             for line in output:
                 if line.strip() != "...":
                     self.assertIn(line, printed, example)
-        self.assertEqual(subcommands, {"info", "solve", "resume", "render", "compare", "bench", "make-scene"})
+        self.assertEqual(subcommands, {"info", "solve", "resume", "render", "probe", "report", "compare", "bench", "make-scene"})
 
 
 if __name__ == "__main__":

@@ -166,6 +166,21 @@ def render_solution(rng, seeds):
     return draw(rng, seeds, SOLUTION)
 
 
+def probe(rng, seeds):
+    chosen = some_choices(rng, seeds, ("probe",), most=3, without=LIMITS)
+    inputs = rng.choice((SCENE, SOLUTION))
+    least = ["--rays", "2k", "--time", str(TIME)] if inputs is SCENE else []
+    places = [] if {"--grid", "--plane", "--point", "--line", "--surface"} & names(chosen) else ["--plane", "1"]
+    small = limits_besides(chosen, samples="4", spacing="0.5")
+    return Case("", ["probe", inputs[0], "--json", *places, *small, *least, *chosen], seeds.some(*inputs))
+
+
+def report(rng, seeds):
+    chosen = some_choices(rng, seeds, ("report",), most=3, without=LIMITS)
+    small = limits_besides(chosen, size="8x6", samples="4")
+    return Case("", ["report", "room.h5", "-o", "out.html", *small, *chosen], seeds.some(*SOLUTION), outputs=("out.html",))
+
+
 def compare(rng, seeds):
     chosen = some_choices(rng, seeds, ("compare",), most=2)
     return Case("", ["compare", "a.exr", "a.hdr", "--json", *chosen], seeds.some(*PICTURES))
@@ -201,7 +216,7 @@ def ended_when_too_long(case):
 
 def options(rng, seeds, _):
     """Of every subcommand."""
-    make = rng.choice((solve, solve, solve, render_scene, render_solution, compare, info, bench, make_scene))
+    make = rng.choice((solve, solve, solve, render_scene, render_solution, probe, report, compare, info, bench, make_scene))
     case = make(rng, seeds)
     case.description = " ".join(case.arguments)
     case.memory = True

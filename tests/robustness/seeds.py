@@ -48,6 +48,8 @@ WRITERS = {
     "render .hdr": render_to("out.hdr"),
     "render --show rays": render_to("out.png", "--show", "rays"),
     "render --shading path": Command(PATH, SCENE, ("out.exr", "error.exr")),
+    "probe": Command(("probe", "room.h5", "--plane", "1", "-o", "out.csv", "--samples", "16"), SOLUTION, ("out.csv",)),
+    "report": Command(("report", "room.h5", "-o", "out.html", "--date", "today", *TINY), SOLUTION, ("out.html",)),
     "compare --difference": Command(("compare", "a.exr", "b.exr", "--difference", "out.png"), PICTURES, ("out.png",)),
     "make-scene": Command(("make-scene", "maze", "--rooms", "1", "-o", "out.mgf"), (), ("out.mgf", "out.views.json")),
 }
@@ -91,8 +93,8 @@ class Seeds:
         return {name: self.files[name] for name in names}
 
 
-SUBCOMMANDS = [("info",), ("solve",), ("resume",), ("render",), ("compare",), ("bench",)]
-SUBCOMMANDS += [("make-scene", kind) for kind in ("maze", "office", "boxes", "two-rooms")]
+SUBCOMMANDS = [("info",), ("solve",), ("resume",), ("render",), ("probe",), ("report",), ("compare",)]
+SUBCOMMANDS += [("bench",)] + [("make-scene", kind) for kind in ("maze", "office", "boxes", "two-rooms")]
 
 
 def run_or_raise(program, folder, arguments):

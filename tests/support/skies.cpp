@@ -51,9 +51,31 @@ std::function<double(const V3d&)> texel_seen(const std::shared_ptr<const Texture
     };
 }
 
+/// Of an open plane under such a map: by the midpoint rule within each texel.
+std::function<double(const V3d&)> under_map(const std::shared_ptr<const Texture>& image, double turn, double factor) {
+    return [=](const V3d& normal) {
+        const std::uint32_t parts = 1 + 400 / image->width;  // of a texel, each way
+        double sum = 0;
+        for (std::uint32_t row = 0; row < image->height * parts; ++row) {
+            const double step = pi / (image->height * parts), upper = std::cos(row * step),
+                         lower = std::cos((row + 1) * step), z = (upper + lower) / 2, sine = std::sqrt(1 - z * z);
+            for (std::uint32_t column = 0; column < image->width * parts; ++column) {
+                const double azimuth = turn - pi + 2 * pi * (column + 0.5) / (image->width * parts);
+                const V3d d(sine * std::sin(azimuth), sine * std::cos(azimuth), z);
+                sum += static_cast<double>(image->texels[row / parts * image->width + column / parts].x) *
+                       std::max(0.0, d.dot(normal)) * (upper - lower);
+            }
+        }
+        return factor * sum * 2 * pi / (image->width * parts);
+    };
+}
+
 KnownSky map_of(const std::string& name, const std::shared_ptr<const Texture>& image, double turn) {
     const V3f north(static_cast<float>(std::sin(turn)), static_cast<float>(std::cos(turn)), 0);
-    return {name, {name, 0, EnvironmentMap{image, {0, 0, 1}, north, {2, 1, 3}}}, texel_seen(image, turn, 2)};
+    return {name,
+            {name, 0, EnvironmentMap{image, {0, 0, 1}, north, {2, 1, 3}}},
+            texel_seen(image, turn, 2),
+            under_map(image, turn, 2)};
 }
 
 std::shared_ptr<const Texture> uneven_image(std::uint32_t width, std::uint32_t height) {
@@ -90,13 +112,16 @@ std::vector<KnownSky> known_skies() {
     const auto few =
         image_of(4, 2, {{5, 1, 0}, {9, 1, 0}, {2, 5, 0}, {0, 3, 0}, {1, 0, 0}, {0, 0, 1}, {3, 0, 2}, {7, 0, 0}});
     constexpr float ground = 0.25f;
-    return {{"uniform", {"", 0, dome(5)}, [](const V3d& d) { return d.z > 0 ? double{illuminance} / pi : 0; }},
-            {"overcast", {"", 0, dome(1)}, scaled([](const V3d& d) { return 1 + 4 * std::exp(-0.7 / d.z); }, z)},
-            {"traditional_overcast_over_ground",
-             {"", 0, dome(16, {0, 0, 2}, {0, 0, 1}, ground)},
-             scaled(overcast(z), z, double{ground} * double{illuminance} / pi)},
-            {"overcast_towards_y", {"", 0, dome(16, {0, 1, 0}, {0, 1, 0})}, scaled(overcast(y), y)},
-            {"clear", {"", 0, dome(12)}, scaled(clear, z)},
+    const auto known = [](const std::string& name, const SkyDome& sky,
+                          const std::function<double(const V3d&)>& radiance) {
+        return KnownSky{name, {"", 0, sky}, radiance, [=](const V3d& n) { return irradiance_of(radiance, n); }};
+    };
+    return {known("uniform", dome(5), [](const V3d& d) { return d.z > 0 ? double{illuminance} / pi : 0; }),
+            known("overcast", dome(1), scaled([](const V3d& d) { return 1 + 4 * std::exp(-0.7 / d.z); }, z)),
+            known("traditional_overcast_over_ground", dome(16, {0, 0, 2}, {0, 0, 1}, ground),
+                  scaled(overcast(z), z, double{ground} * double{illuminance} / pi)),
+            known("overcast_towards_y", dome(16, {0, 1, 0}, {0, 1, 0}), scaled(overcast(y), y)),
+            known("clear", dome(12), scaled(clear, z)),
             map_of("map_of_eight", few, 0),
             map_of("turned_map_of_eight", few, 0.6),
             map_of("map_with_a_sun", uneven_image(60, 31), 2)};

@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 
 #include "interflect/daylight.h"
 #include "interflect/error.h"
-#include "interflect/formats/sky_lights.h"
-#include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/scene/environment_maps.h"
 #include "interflect/scene/sky_frame.h"
 #include "interflect/scene/web_angles.h"
 
@@ -32,34 +30,15 @@ class DaylightAdder {
     void add() {
         const Daylight::Sun* sun = placed_.sun ? &*placed_.sun : nullptr;
         if (sun) require_sun(*sun);
-        double sun_illuminance = sun ? usual_sun_illuminance(clear_type, sun->altitude) : 0;
-        SkyDome dome;
-        double sky_illuminance = 0;
-        if (placed_.perez_sky) {
-            const PerezDaylight perez = perez_daylight(placed_.perez_sky->direct_normal,
-                                                       placed_.perez_sky->diffuse_horizontal, altitude("perez"));
-            dome.model = perez.model;
-            sky_illuminance = perez.sky_illuminance, sun_illuminance = perez.sun_illuminance;
-        } else if (placed_.cie_sky) {
-            const int type = placed_.cie_sky->type;
-            dome.model = cie_standard_sky(type);
-            if (dome.model.depends_on_sun()) altitude(fmt::format("of CIE type {}", type));
-            sky_illuminance = placed_.cie_sky->illuminance.value_or(
-                usual_sky_illuminance(type, sun ? std::optional(sun->altitude) : std::nullopt));
-            if (sun) sun_illuminance = usual_sun_illuminance(type, sun->altitude);
-        }
-        if (sun) sun_illuminance = sun->illuminance.value_or(sun_illuminance);
-        if (sun && sun_illuminance > 0)
-            push("sun", DirectionalLight{-towards_sun(*sun), Rgb(static_cast<float>(sun_illuminance)), sun_diameter});
-        if (placed_.perez_sky || placed_.cie_sky) {
-            dome.zenith = frame_.zenith;
-            dome.sun = sun ? towards_sun(*sun) : frame_.zenith;
-            dome.irradiance = Rgb(static_cast<float>(sky_illuminance));
-            const double on_ground = sky_illuminance + (sun ? sun_illuminance * sine_of(sun->altitude) : 0);
-            if (sky_illuminance > 0)
-                dome.ground = static_cast<float>(placed_.ground_reflectance * on_ground / sky_illuminance);
-            push("sky", dome);
-        }
+        const bool has_dome = placed_.perez_sky || placed_.cie_sky;
+        ModelledDaylight light = placed_.perez_sky ? of_perez(*placed_.perez_sky)
+                                 : placed_.cie_sky ? of_cie(*placed_.cie_sky)
+                                                   : ModelledDaylight{};
+        if (sun && !has_dome) light.sun_illuminance = usual_sun_illuminance(clear_type, sun->altitude);
+        if (sun) light.sun_illuminance = sun->illuminance.value_or(light.sun_illuminance);
+        if (light.sun_illuminance != 0)
+            push("sun", DirectionalLight{-towards_sun(*sun), white(light.sun_illuminance), sun_diameter});
+        if (has_dome) push("sky", dome(light));
         if (placed_.environment) add_environment(*placed_.environment);
     }
 
@@ -77,6 +56,30 @@ class DaylightAdder {
         return placed_.sun->altitude;
     }
 
+    ModelledDaylight of_perez(const Daylight::PerezSky& sky) const {
+        return perez_daylight(sky.direct_normal, sky.diffuse_horizontal, altitude("by Perez"));
+    }
+
+    ModelledDaylight of_cie(const Daylight::CieSky& sky) const {
+        ModelledDaylight light{cie_standard_sky(sky.type)};
+        if (light.model.depends_on_sun()) altitude(fmt::format("of CIE type {}", sky.type));
+        const auto sun_altitude = placed_.sun ? std::optional(placed_.sun->altitude) : std::nullopt;
+        light.sky_illuminance = sky.illuminance.value_or(usual_sky_illuminance(sky.type, sun_altitude));
+        if (sun_altitude) light.sun_illuminance = usual_sun_illuminance(sky.type, *sun_altitude);
+        return light;
+    }
+
+    SkyDome dome(const ModelledDaylight& light) const {
+        SkyDome dome{light.model, white(light.sky_illuminance), frame_.zenith, frame_.zenith};
+        if (placed_.sun) dome.sun = towards_sun(*placed_.sun);
+        const double of_sun = placed_.sun ? light.sun_illuminance * sine_of(placed_.sun->altitude) : 0;
+        if (light.sky_illuminance > 0)
+            dome.ground = static_cast<float>(placed_.ground_reflectance * (1 + of_sun / light.sky_illuminance));
+        return dome;
+    }
+
+    static Rgb white(double value) { return Rgb(static_cast<float>(value)); }
+
     V3f towards(double azimuth) const {
         const double a = radians(azimuth);
         return frame_.east * static_cast<float>(std::sin(a)) + frame_.north * static_cast<float>(std::cos(a));
@@ -90,8 +93,8 @@ class DaylightAdder {
     void add_environment(const Daylight::Environment& environment) {
         auto image = read_environment(environment.file);
         scene_.files.push_back(environment.file.string());
-        push("environment", EnvironmentMap{std::move(image), frame_.zenith, towards(environment.rotation),
-                                           Rgb(static_cast<float>(environment.scale))});
+        push("environment",
+             EnvironmentMap{std::move(image), frame_.zenith, towards(environment.rotation), white(environment.scale)});
     }
 
     template <class Kind>
@@ -100,6 +103,7 @@ class DaylightAdder {
         if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
             throw InputError(fmt::format("the {} {}", name, fault));
         scene_.luminaires.push_back(std::move(luminaire));
+        if (const std::string fault = sky_count_fault(scene_); !fault.empty()) throw InputError("the scene " + fault);
     }
 
     Scene& scene_;
@@ -125,10 +129,5 @@ double usual_sun_illuminance(int cie_type, double sun_altitude) {
 }
 
 void add_daylight(Scene& scene, const Daylight& placed) { DaylightAdder(scene, placed).add(); }
-
-std::shared_ptr<const Texture> detail::read_environment(const std::filesystem::path& path) {
-    require_regular_file(path);
-    return std::make_shared<Texture>(read_texture(path, most_environment_texels));
-}
 
 }  // namespace interflect

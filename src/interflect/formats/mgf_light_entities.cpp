@@ -1,6 +1,7 @@
 // `ies`, and `light`, an extension of MGF: see docs/mgf-extensions.md.
 #include <fmt/format.h>
 
+#include <cctype>
 #include <functional>
 #include <string>
 #include <unordered_map>
@@ -14,6 +15,12 @@
 namespace interflect::inline detail {
 
 using Imath::V3d;
+
+namespace {
+
+bool is_name(std::string_view word) { return std::isalpha(static_cast<unsigned char>(word[0])) != 0; }
+
+}  // namespace
 
 /// The normal of a vertex, in the world, as the direction in which a light shines.
 V3f MgfReader::direction_of(std::string_view vertex) { return turned(normal_of(vertex)); }
@@ -34,7 +41,7 @@ void MgfReader::light(MgfWords words) {
         {"point", {3, 3, "light point vertex intensity"}},
         {"spot", {5, 5, "light spot vertex intensity inner-angle outer-angle"}},
         {"directional", {3, 4, "light directional vertex irradiance [diameter]"}},
-        {"sky", {2, 11, "light sky radiance, or light sky model ..."}},
+        {"sky", {2, 11, "light sky radiance, or light sky name ..."}},
         {"environment", {2, 4, "light environment file [rotation [scale]]"}}};
     const auto kind = kinds.find(words[0]);
     if (kind == kinds.end())
@@ -44,7 +51,7 @@ void MgfReader::light(MgfWords words) {
         throw MgfFault(fmt::format("expected '{}', found {} argument{}", kind->second.usage, words.size(),
                                    words.size() == 1 ? "" : "s"));
     faults_.refuse(colours_.current().fault);
-    if (words[0] == "sky" && words.size() > 2) return sky(words.subspan(1));
+    if (words[0] == "sky" && (words.size() > 2 || is_name(words[1]))) return sky(words.subspan(1));
     if (words[0] == "environment") return environment(words.subspan(1));
     const double luminance = non_negative_argument(words[0] == "sky" ? words[1] : words[2]);
     const Rgb colour = scene_.emitted(colours_.current(), luminance, here());

@@ -122,7 +122,9 @@ class MgfReader {
     V3f direction_of(std::string_view vertex);
     V3f turned(const Imath::V3d& direction) const;
     void add_sky(SkyDome sky, MgfWords ground);
+    void perez_sky(MgfWords words);
     std::shared_ptr<const PhotometricWeb> photometric_web(std::string_view name);
+    std::shared_ptr<const Texture> environment_image(std::string_view name);
     void add_luminaire(MeasuredLight light, const Imath::M44d& transform, const std::string& name);
     void add_loop(MgfWords names);
     std::uint32_t usable_material();
@@ -148,7 +150,8 @@ class MgfReader {
     std::vector<Imath::V3d> outline_;                // its first loop, in the world
     // Messages for all of a kind, with the first one's particulars.
     std::string unknown_entity_, unused_fault_;
-    std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;  // by path
+    std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;   // by path
+    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // likewise
     MgfSceneBuilder scene_;
     MgfObjects objects_;
 };

@@ -11,6 +11,7 @@
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/geometry/polygon.h"
+#include "interflect/scene/environment_maps.h"
 #include "interflect/scene/limits.h"
 
 namespace interflect::inline detail {
@@ -134,7 +135,10 @@ void MgfSceneBuilder::add_light(Luminaire luminaire, const std::string& name) {
     luminaire.name = fmt::format("{}-{}", name, scene_.luminaires.size() + 1);
     if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
         throw std::invalid_argument("this light " + fault);
+    const bool is_one_of_skies = is_sky(luminaire);
     scene_.luminaires.push_back(std::move(luminaire));
+    if (const std::string fault = is_one_of_skies ? sky_count_fault(scene_) : ""; !fault.empty())
+        throw std::invalid_argument("with this light the scene " + fault);
 }
 
 std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view name) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "interflect/error.h"
+#include "interflect/formats/text_file.h"
 #include "interflect/image/srgb.h"
 #include "interflect/image_files.h"
 
@@ -15,6 +16,13 @@ Texture read_texture(const std::filesystem::path& path, std::uint64_t most) {
                     std::move(image.pixels)};
     if (const std::string fault = texture_fault(texture); !fault.empty()) throw InputError(path, 0, fault);
     return texture;
+}
+
+std::shared_ptr<const Texture> read_environment(const std::filesystem::path& path) {
+    require_regular_file(path);
+    if (needs_tone_mapping(require_image_format(path)))
+        throw InputError(path, 0, "an image of 8 bits has no radiances, expected .exr or .hdr");
+    return std::make_shared<Texture>(read_texture(path, most_environment_texels));
 }
 
 std::string texture_extension(const Texture& texture) {

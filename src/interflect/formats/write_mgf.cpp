@@ -227,8 +227,9 @@ class MgfWriter {
         } else if (const auto* dome = std::get_if<SkyDome>(&luminaire.kind)) {
             add_dome(*dome, luminance);
         } else if (map) {
-            add_turned(frame_of(SkyFrame(map->zenith, map->north)),
-                       [&] { put("light environment {} 0 {}\n", map_files_.at(map->image.get()), luminance); });
+            add_turned(frame_of(SkyFrame(map->zenith, map->north)), [&, radiance = luminance] {
+                put("light environment {} 0 {}\n", map_files_.at(map->image.get()), radiance);
+            });
         } else {
             put("light sky {}\n", luminance);
         }

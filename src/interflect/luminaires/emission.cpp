@@ -71,13 +71,19 @@ constexpr std::array<SkyComponent, 4> map_components = {
 /// What is sampled of a sky on a side of the box: the amount of a component, times the cosine in the middle of cells.
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {
+    std::vector<float> of_horizon(grid.columns);  // cosines there
+    for (std::size_t column = 0; column < grid.columns; ++column)
+        of_horizon[column] = -normal.dot(frame.direction({grid.middle(column, 0).s, 0}));
+    const float of_zenith = -normal.dot(frame.zenith);
     std::vector<float> weights(grid.size());
-    for (std::size_t row = 0; row < grid.rows; ++row)
+    for (std::size_t row = 0; row < grid.rows; ++row) {
+        const float up = grid.middle(0, row).cosine, aside = std::sqrt(1 - up * up);
         for (std::size_t column = 0; column < grid.columns; ++column) {
             const std::size_t cell = row * grid.columns + column;
-            const float cosine = -normal.dot(frame.direction(grid.middle(column, row)));
+            const float cosine = up * of_zenith + aside * of_horizon[column];
             weights[cell] = component.amount(integrals[cell]) * std::max(0.0f, cosine);
         }
+    }
     return {grid, weights};
 }
 

@@ -41,7 +41,7 @@ SkyRadiance::SkyRadiance(const EnvironmentMap& map)
 Rgb SkyRadiance::of_dome(const V3f& direction) const {
     const float zenith_cosine = direction.dot(frame_.zenith);
     if (zenith_cosine < 0) return ground_;
-    return factor_ * static_cast<float>(std::max(0.0, model_.relative_luminance(zenith_cosine, direction.dot(sun_))));
+    return factor_ * static_cast<float>(model_.relative_luminance(zenith_cosine, direction.dot(sun_)));
 }
 
 Rgb SkyRadiance::towards(const V3f& direction) const {

@@ -60,11 +60,7 @@ std::optional<double> exterior_illuminance(const Scene& scene) {
 }
 
 bool has_other_light_than_sky(const Scene& scene) {
-    const auto is_no_sky = [](const Luminaire& l) {
-        return !std::holds_alternative<UniformSky>(l.kind) && !std::holds_alternative<SkyDome>(l.kind) &&
-               !std::holds_alternative<EnvironmentMap>(l.kind);
-    };
-    return std::any_of(scene.luminaires.begin(), scene.luminaires.end(), is_no_sky) ||
+    return !std::all_of(scene.luminaires.begin(), scene.luminaires.end(), is_sky) ||
            std::any_of(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
                return largest_channel(scene.materials[patch.material].exitance) > 0;
            });

@@ -1,5 +1,7 @@
 #include "interflect/scene/environment_maps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace interflect::inline detail {
@@ -10,6 +12,20 @@ std::vector<std::shared_ptr<const Texture>> environment_maps(const Scene& scene)
         if (const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind))
             if (std::find(images.begin(), images.end(), map->image) == images.end()) images.push_back(map->image);
     return images;
+}
+
+std::string sky_count_fault(const Scene& scene) {
+    const auto count = std::count_if(scene.luminaires.begin(), scene.luminaires.end(), [](const Luminaire& l) {
+        return is_sky(l) && !std::holds_alternative<UniformSky>(l.kind);
+    });
+    if (count > std::ptrdiff_t{most_skies})
+        return fmt::format("has {} skies that are not uniform; expected at most {}", count, most_skies);
+    std::uint64_t texels = 0;
+    for (const auto& image : environment_maps(scene)) texels += image ? image->texels.size() : 0;
+    if (texels > most_environment_texels)
+        return fmt::format("has environment maps of {} texels together; expected at most {}", texels,
+                           most_environment_texels);
+    return {};
 }
 
 }  // namespace interflect::inline detail

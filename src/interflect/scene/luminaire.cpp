@@ -98,6 +98,11 @@ Rgb rating(const Luminaire& luminaire) {
                       luminaire.kind);
 }
 
+bool is_sky(const Luminaire& luminaire) {
+    return std::holds_alternative<UniformSky>(luminaire.kind) || std::holds_alternative<SkyDome>(luminaire.kind) ||
+           std::holds_alternative<EnvironmentMap>(luminaire.kind);
+}
+
 const char* kind_name(const Luminaire& luminaire) {
     constexpr std::array<const char*, 7> names{"point",    "spot",     "directional", "sky",
                                                "measured", "sky-dome", "environment"};
@@ -112,9 +117,6 @@ std::string luminaire_fault(const Luminaire& luminaire) {
     if (const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind)) {
         if (!map->image) return "has no image";
         if (std::string fault = texture_fault(*map->image); !fault.empty()) return "has an image that " + fault;
-        if (map->image->texels.size() > most_environment_texels)
-            return fmt::format("has an image of {} texels; expected at most {}", map->image->texels.size(),
-                               most_environment_texels);
     }
     const Rgb value = rating(luminaire);
     if (!is_finite(value) || std::min({value.x, value.y, value.z}) < 0)

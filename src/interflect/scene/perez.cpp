@@ -113,7 +113,7 @@ SkyModel luminance_model(std::size_t bin, double zenith_angle, double brightness
 
 }  // namespace
 
-PerezDaylight perez_daylight(double direct_normal, double diffuse_horizontal, double sun_altitude) {
+ModelledDaylight perez_daylight(double direct_normal, double diffuse_horizontal, double sun_altitude) {
     if (!(sun_altitude > 0 && sun_altitude <= right_angle))
         throw InputError(fmt::format("a sun at {} degrees; expected one above the horizon", sun_altitude));
     const bool is_possible = direct_normal >= 0 && direct_normal <= solar_constant && diffuse_horizontal > 0 &&
@@ -131,7 +131,7 @@ PerezDaylight perez_daylight(double direct_normal, double diffuse_horizontal, do
         static_cast<std::size_t>(std::upper_bound(bin_ends.begin(), bin_ends.end(), clearness) - bin_ends.begin());
     constexpr double clearer = 1.065, clear = 2.8, least_brightness = 0.2;
     const bool is_between = clearness > clearer && clearness < clear;
-    PerezDaylight result{
+    ModelledDaylight result{
         luminance_model(bin, zenith_angle, is_between ? std::max(brightness, least_brightness) : brightness)};
     const FourNumbers &sky = diffuse_efficacies[bin], &sun = direct_efficacies[bin];
     result.sky_illuminance =

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "interflect/error.h"
+#include "interflect/scene/environment_maps.h"
 #include "interflect/scene/limits.h"
 #include "interflect/scene/view.h"
 
@@ -144,13 +145,14 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
 
 std::vector<std::string> scene_faults(const Scene& scene) {
     Faults faults;
+    const auto the_scene = [] { return std::string("the scene "); };
     check_points(scene, faults);
     check_textures(scene, faults);
+    for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
+    faults.add(sky_count_fault(scene), the_scene);
     check_materials(scene, faults);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
-    const auto the_scene = [] { return std::string("the scene "); };
     if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), the_scene);
-    for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     for (const View& v : scene.views) faults.add(view_fault(v), [&] { return fmt::format("view '{}': ", v.name); });
     return faults.take();
 }

@@ -34,21 +34,22 @@ double SkyModel::relative_luminance(double zenith_cosine, double sun_cosine) con
     return gradation(*this, zenith_cosine) * indicatrix(*this, sun_cosine);
 }
 
-/// By the midpoint rule, in cos^2 Z and the azimuth from the sun: one half of the sky mirrors the other.
+/// By the midpoint rule in both angles: one half of the sky, on one side of the sun, mirrors the other.
 double SkyModel::horizontal_integral(double sun_cosine) const {
     constexpr int rows = 512, columns = 256;
     const double sun_sine = std::sqrt(std::max(0.0, 1 - sun_cosine * sun_cosine));
     double sum = 0;
     for (int row = 0; row < rows; ++row) {
-        const double square = (row + 0.5) / rows, cosine = std::sqrt(square), sine = std::sqrt(1 - square);
+        const double angle = std::numbers::pi / 2 * (row + 0.5) / rows, cosine = std::cos(angle),
+                     sine = std::sin(angle);
         double of_row = 0;
         for (int column = 0; column < columns; ++column) {
             const double azimuth = std::numbers::pi * (column + 0.5) / columns;
             of_row += indicatrix(*this, cosine * sun_cosine + sine * sun_sine * std::cos(azimuth));
         }
-        sum += of_row * gradation(*this, cosine);
+        sum += of_row * gradation(*this, cosine) * cosine * sine;
     }
-    return std::numbers::pi * sum / (rows * columns);  // cos Z dOmega = d(cos^2 Z) / 2 dazimuth
+    return std::numbers::pi * std::numbers::pi * sum / (rows * columns);
 }
 
 SkyModel cie_standard_sky(int type) {
