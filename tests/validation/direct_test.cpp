@@ -1,5 +1,7 @@
-// Direct light: inverse-square and cosine law, measured luminaires, area sources (subjects of CIE 171:2006, 5.2
-// to 5.4).
+// Direct light: inverse-square and cosine law, measured luminaires, area sources.
+//
+// Seen to fail when directions of rays lack the cosine, intensities fall with 1/r, luminaires or lamps lack 1/pi in
+// gathering, C0 and C90 are exchanged, 0.5% of the power is lost.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,6 @@
 // Unified Glare Rating: published position indices, and a room whose background luminance is known.
+//
+// Seen to fail when the position index is not squared and when the background luminance lacks 1/pi.
 
 #include "interflect/glare.h"
 

@@ -1,4 +1,7 @@
-// Interreflection in closed rooms (subject of CIE 171:2006, 5.8), and what becomes of all power.
+// Interreflection in closed rooms, and what becomes of all power.
+//
+// Seen to fail when rho is 1% too small, 0.5% of the power is lost, what escapes is that of the last pass, what glass
+// transmits counts as absorbed.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
