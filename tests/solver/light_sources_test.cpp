@@ -2,9 +2,9 @@
 // reflects can reach another one: the irradiance of every patch is what the source alone causes there.
 //
 // Seen to fail when a part's power lacks the count of parts, a point light has 2 pi, a spot light's fall is linear, the
-// importance of parts drives rays but is left out of what they carry, a sky's rays go out uniformly, the cells of a sky lack
-// the cosine, a dome's integral lacks a factor of pi, rows of a map have equal weights, a directional light's area is
-// that of the box's top, measured light has C0 and C90 exchanged.
+// importance of parts drives rays but is left out of what they carry, a sky's rays go out uniformly, the cells of a sky
+// lack the cosine, a dome's integral lacks a factor of pi, rows of a map have equal weights, a directional light's area
+// is that of the box's top, measured light has C0 and C90 exchanged.
 
 #include <gtest/gtest.h>
 
