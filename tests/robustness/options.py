@@ -202,7 +202,8 @@ def bench(rng, seeds):
 def make_scene(rng, seeds):
     kind = rng.choice([words for words in seeds.helps if words[0] == "make-scene"])
     chosen = some_choices(rng, seeds, kind, most=2)
-    outputs = ("out.mgf", "out.views.json")
+    textures = tuple(f"out.texture-{i}.png" for i in range(3)) if "--texture" in chosen else ()
+    outputs = ("out.mgf", "out.views.json", *textures)
     return Case("", [*kind, "-o", "out.mgf", *chosen], outputs=outputs, checks=(check.scene_can_be_read("out.mgf"),))
 
 
