@@ -18,6 +18,7 @@
 #include "interflect/exports/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
+#include "interflect/photometry.h"
 #include "interflect/solution_file.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/memory.h"
@@ -92,16 +93,24 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
                             {"area", e.area},
                             {"power", json_of(e.power)}});
     const std::optional<UpAxis> up = find_up_axis(scene);
+    const std::optional<double> of_sky = exterior_illuminance(scene);
     const Json bounds{{"min", json_of(s.bounds.min)}, {"max", json_of(s.bounds.max)}};
-    return {
-        {"scene", scene.name},      {"patches", scene.patches.size()},
-        {"triangles", s.triangles}, {"two_sided_patches", s.two_sided},
-        {"bounds", bounds},         {"up", up ? Json{{"axis", up->axis}, {"evidence", up->evidence}} : Json(nullptr)},
-        {"area", s.area},           {"emitted_power", json_of(s.emitted_power)},
-        {"emitters", emitters},     {"lights", s.lights},
-        {"views", views},           {"memory", memory},
-        {"files", scene.files},     {"files_outside", outside},
-        {"warnings", warnings}};
+    return {{"scene", scene.name},
+            {"patches", scene.patches.size()},
+            {"triangles", s.triangles},
+            {"two_sided_patches", s.two_sided},
+            {"bounds", bounds},
+            {"up", up ? Json{{"axis", up->axis}, {"evidence", up->evidence}} : Json(nullptr)},
+            {"area", s.area},
+            {"emitted_power", json_of(s.emitted_power)},
+            {"emitters", emitters},
+            {"lights", s.lights},
+            {"sky_illuminance", of_sky ? Json(*of_sky) : Json(nullptr)},
+            {"views", views},
+            {"memory", memory},
+            {"files", scene.files},
+            {"files_outside", outside},
+            {"warnings", warnings}};
 }
 
 /// "-0.15 to 6": the ends of an interval, without digits that are rounding error in a scene of that size.
@@ -134,6 +143,8 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
         print_line("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm", scene.materials[material].name, e.patches,
                    e.area, luminance(e.power));
     for (const auto& [kind, count] : s.lights) print_line("  lights    {}: {}", kind, count);
+    if (const auto of_sky = exterior_illuminance(scene))
+        print_line("  sky       {:.6g} lx on an unobstructed horizontal surface", *of_sky);
     print_views(scene.views);
     print_line("  memory    to solve it {} MiB (scene {}, ray tracer {}, patches {}) and {} MiB a million elements",
                mebibytes(need.with(scene.patches.size())), mebibytes(need.scene), mebibytes(need.ray_tracer),

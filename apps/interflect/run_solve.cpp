@@ -33,7 +33,7 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
 
 /// Where a face lets light through one way only, what the solver finds depends on who looks.
 void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    constexpr double least_share = 5e-3;
+    constexpr double least_share = 0.02;
     const OneWayLight found = find_one_way_light(scene, ray_caster, solution);
     if (found.share < least_share) return;
     const bool has_name = found.object < scene.objects.size() && !scene.objects[found.object].empty();

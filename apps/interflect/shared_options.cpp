@@ -49,12 +49,13 @@ void SceneOptions::add_daylight_to(CLI::App& app) {
             throw CLI::ValidationError("--sky", e.what());
         }
     };
-    group(app.add_option_function<std::string>(
-                 "--sky", set_sky,
-                 "Add a sky: overcast, uniform, intermediate or clear, another type of the CIE (cie-1 to cie-16), or "
-                 "Perez's, from direct normal and diffuse horizontal irradiance [W/m2]; LUX: horizontal illuminance of "
-                 "the sky alone (default: usual for that sky and sun)")
-              ->type_name("MODEL[:LUX]|perez:DIRECT,DIFFUSE"));
+    CLI::Option* sky = group(
+        app.add_option_function<std::string>(
+               "--sky", set_sky,
+               "Add a sky: overcast, uniform, intermediate or clear, another type of the CIE (cie-1 to cie-16), or "
+               "Perez's, from direct normal and diffuse horizontal irradiance [W/m2]; LUX: horizontal illuminance of "
+               "the sky alone (default: usual for that sky and sun)")
+            ->type_name("MODEL[:LUX]|perez:DIRECT,DIFFUSE"));
     group(add_parsed(app, "--sun", daylight.sun, parse_sun,
                      "Add the sun: azimuth from north (y) over east (x) and altitude [degrees]; LUX: illuminance of a "
                      "surface that faces it (default: usual for the sky)")
@@ -63,7 +64,8 @@ void SceneOptions::add_daylight_to(CLI::App& app) {
                          "Reflectance of the ground below the horizon, which sky and sun light")
               ->type_name("SHARE")
               ->capture_default_str()
-              ->check(number_between(0, 1)));
+              ->check(number_between(0, 1))
+              ->needs(sky));
     group(add_parsed(app, "--environment", daylight.environment, parse_environment,
                      "Surround the scene with an image (.exr, .hdr) of longitudes and latitudes; ROTATION: azimuth in "
                      "its middle [degrees], SCALE: factor of its radiance")

@@ -10,7 +10,7 @@ namespace interflect {
 struct PowerBalance {
     RgbD emitted{0, 0, 0};   ///< By surfaces, and by luminaires into the scene.
     RgbD absorbed{0, 0, 0};  ///< Sum of (1 - rho - tau) H A, by the solution's mean.
-    RgbD escaped{0, 0, 0};   ///< Through openings, in the last iteration.
+    RgbD escaped{0, 0, 0};   ///< Through openings, averaged as irradiance is.
 
     /// What is left over, relative to what is emitted; 0 where nothing is. All channels together.
     double relative_difference() const;

@@ -163,7 +163,7 @@ struct IterationReport {
     std::int64_t escaped_rays = 0;
     std::uint32_t elements = 0, leaves = 0;
     RgbD total_power{0, 0, 0};    ///< Sum of P [lm or W].
-    RgbD escaped_power{0, 0, 0};  ///< What this iteration lost through the openings of the scene [lm or W].
+    RgbD escaped_power{0, 0, 0};  ///< Lost through the openings of the scene, averaged as irradiance is [lm or W].
     /// Estimated relative error of the solution, element by element. With a view: of the luminance of the reflected
     /// light that it shows, root of the mean square over the picture, over the mean; emission enters neither. Without:
     /// of the irradiance, likewise over the area. The root of the sum of squares of the two below; infinite as long as

@@ -1,7 +1,7 @@
 // `light sky` and `light environment` in MGF files, and daylight that is placed beside the lights of a scene's file.
 //
-// Seen to fail when the transform around a sky does not turn its zenith, when the ground forgets the sun, when the
-// rotation of a map goes the other way, when the sun of a placed sky is taken from the south.
+// Seen to fail when east and west change places in all skies, when azimuths count the other way, when the ground is
+// black, when a dome's integral lacks a factor of pi.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -18,9 +18,9 @@ namespace {
 
 using namespace testing_support;
 
-VertexSample sample_of(std::uint64_t seed, std::uint64_t i) {
+LightSample sample_of(std::uint64_t seed, std::uint64_t i) {
     const auto a = random_words(seed, i), b = random_words(~seed, i);
-    return {(a[0] + 0.5) * 0x1p-32, unit_float(a[1]), unit_float(a[2]), 0, 0, 0, unit_float(b[0])};
+    return {(a[0] + 0.5) * 0x1p-32, unit_float(a[1]), unit_float(a[2]), unit_float(b[0])};
 }
 
 /// Of a downlight with a narrow beam, and of one that shines upwards from a table whose pole is the horizontal.
@@ -70,10 +70,10 @@ TEST(LuminaireChoice, BringsWhatAllLuminairesBring) {
         double sum = 0, difference = 0, squares = 0;
         constexpr int samples = 40'000;
         for (int i = 0; i < samples; ++i) {
-            const VertexSample sample = sample_of(k, static_cast<std::uint64_t>(i));
+            const LightSample sample = sample_of(k, static_cast<std::uint64_t>(i));
             double all = 0;
             for (const Luminaire& l : scene.luminaires) {
-                const Illumination light = illumination(l, x, sample.light_u, sample.light_v);
+                const Illumination light = illumination(l, x, sample.u, sample.v);
                 all += channel_sum(light.irradiance) * static_cast<double>(std::max(0.0f, n.dot(light.towards)));
             }
             const double d = channel_sum(choice.choose(x, n, sample).irradiance) - all;

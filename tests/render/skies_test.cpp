@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "interflect/base/random.h"
@@ -18,6 +19,7 @@
 #include "interflect/measure.h"
 #include "interflect/path_tracer.h"
 #include "interflect/render.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
@@ -40,11 +42,15 @@ Scene under(const std::vector<Luminaire>& luminaires) {
 
 const std::vector<V3f> normals{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-0.5f, -0.6f, 0.3f}, {0.1f, 0.2f, -1}};
 
-std::vector<MeasuredIrradiance> measured(const Scene& scene, EmitterSampling sampling, int samples) {
+std::vector<MeasuredIrradiance> measured(const Scene& scene, EmitterSampling sampling, int samples,
+                                         bool is_gathered = false) {
     const RayCaster ray_caster(scene);
+    std::optional<Solution> solution;
+    if (is_gathered) solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
     std::vector<MeasuringPoint> points;
     for (const V3f& n : normals) points.push_back({{0, 0, 0}, n});
-    return measure_irradiance(scene, nullptr, ray_caster, points, {.samples = samples, .emitter_sampling = sampling});
+    return measure_irradiance(scene, solution ? &*solution : nullptr, ray_caster, points,
+                              {.samples = samples, .emitter_sampling = sampling});
 }
 
 class EverySky : public testing::TestWithParam<KnownSky> {};
@@ -56,18 +62,19 @@ INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
 TEST_P(EverySky, CausesItsIrradiance) {
     const KnownSky& sky = GetParam();
     const Scene scene = under({sky.luminaire});
-    for (const auto sampling : {EmitterSampling::combined, EmitterSampling::lights, EmitterSampling::directions}) {
-        const auto found = measured(scene, sampling, 1 << 14);
-        for (std::size_t i = 0; i < normals.size(); ++i) {
-            const double expected = sky.irradiance(V3d(normals[i].normalized()));
-            const double error = static_cast<double>(found[i].standard_error.x);
-            EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3)
-                << i << " " << static_cast<int>(sampling);
-            if (sampling != EmitterSampling::directions) {
-                EXPECT_LT(error, 0.025 * expected + 1e-3) << i;
+    for (const bool is_gathered : {false, true})
+        for (const auto sampling : {EmitterSampling::combined, EmitterSampling::lights, EmitterSampling::directions}) {
+            const auto found = measured(scene, sampling, 1 << 14, is_gathered);
+            for (std::size_t i = 0; i < normals.size(); ++i) {
+                const double expected = sky.irradiance(V3d(normals[i].normalized()));
+                const double error = static_cast<double>(found[i].standard_error.x);
+                EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3)
+                    << i << " " << static_cast<int>(sampling);
+                if (sampling != EmitterSampling::directions) {
+                    EXPECT_LT(error, 0.025 * expected + 1e-3) << i;
+                }
             }
         }
-    }
     const double up = sky.irradiance({0, 0, 1});
     if (const auto* dome = std::get_if<SkyDome>(&sky.luminaire.kind); dome && dome->zenith.z > 0) {
         EXPECT_NEAR(up / static_cast<double>(rating(sky.luminaire).x), 1, 1e-3) << "the illuminance that was asked for";

@@ -22,12 +22,14 @@ NUMBERS += ("127", "128", "65535", "65536", "2147483647", "2147483648", "4294967
 NUMBERS += ("9223372036854775808", "18446744073709551615", "18446744073709551616", "9" * 400, "0x10", "50%", "100%", "1T", "1k")
 # Of each type in the help, some values at the ends of what makes sense.
 TYPICAL = {
+    "AZIMUTH,ALTITUDE[,LUX]": ("200,35", "0,90", "-720,1e-6", "90,45,0", "90,45,1e10"),
     "AREA": ("0", "1e-12", "1e-300", "1e11", "1"),
     "BYTES": ("1", "120M", "200M", "1T", "1e18"),
     "COUNT": ("1", "2", "1k", "100k", "1e11", "1e18"),
     "DEGREES": ("0.001", "1", "179"),
     "EXPONENT": ("0", "1", "0.5", "1e-30"),
     "FLOAT": ("0.001", "0.5", "1", "179"),
+    "MODEL[": ("overcast", "clear:9000", "uniform:0", "cie-16:1e10", "perez:650,120", "perez:0,1e-9"),
     "METRES|auto|none": ("0.1", "0.3", "1e3", "1e15", "auto", "none"),
     "NUMBER": ("0", "1", "18446744073709551615"),
     "SECONDS": ("1e-9", "1e-300", "0.1", "1e9", "1e18", "1e300"),
@@ -200,7 +202,8 @@ def bench(rng, seeds):
 def make_scene(rng, seeds):
     kind = rng.choice([words for words in seeds.helps if words[0] == "make-scene"])
     chosen = some_choices(rng, seeds, kind, most=2)
-    outputs = ("out.mgf", "out.views.json")
+    textures = tuple(f"out.texture-{i}.png" for i in range(3)) if "--texture" in chosen else ()
+    outputs = ("out.mgf", "out.views.json", *textures)
     return Case("", [*kind, "-o", "out.mgf", *chosen], outputs=outputs, checks=(check.scene_can_be_read("out.mgf"),))
 
 

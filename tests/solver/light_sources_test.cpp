@@ -2,8 +2,9 @@
 // reflects can reach another one: the irradiance of every patch is what the source alone causes there.
 //
 // Seen to fail when a part's power lacks the count of parts, a point light has 2 pi, a spot light's fall is linear, the
-// importance of parts drives rays but is left out of what they carry, a sky's rays go out uniformly, a directional
-// light's area is that of the box's top, measured light has C0 and C90 exchanged.
+// importance of parts drives rays but is left out of what they carry, a sky's rays go out uniformly, the cells of a sky
+// lack the cosine, a dome's integral lacks a factor of pi, rows of a map have equal weights, a directional light's area
+// is that of the box's top, measured light has C0 and C90 exchanged.
 
 #include <gtest/gtest.h>
 
@@ -18,6 +19,7 @@
 #include "tests/solver/room_with_window.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
+#include "tests/support/skies.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -95,14 +97,35 @@ double tent_intensity(const V3d& x) {
     return 60 * (1 - share) + 180 * to_c90 * share;
 }
 
+/// Its upper half, rows of 45 degrees: a horizontal surface gets pi / 3 L (cos^2 - cos^2 of the row's edges) of a
+/// texel.
+EnvironmentMap six_texels_above_horizon() {
+    std::vector<Rgb> texels;
+    for (const int radiance : {10, 0, 40, 25, 90, 5, 7, 7, 7, 30, 60, 0})
+        texels.emplace_back(static_cast<float>(radiance));
+    return {image_of(3, 4, texels), {0, 0, 1}, {1, 1, 0}, Rgb(2)};
+}
+constexpr double of_six_texels = 2 * pi / 3 * (0.5 * (10 + 0 + 40) + 0.5 * (25 + 90 + 5));
+
 std::vector<Source> sources() {
-    const V3f position(lamp), slanted(1, 2, -2);
+    const V3f position(lamp), slanted(1, 2, -2), zenith(0, 0, 1);
     return {{"point", {"", 0, PointLight{position, Rgb(200)}}, [](const V3d& x) { return towards_floor(x, 200); }},
             {"spot",
              {"", 0, SpotLight{position, {0, 0, -3}, Rgb(300), 20, 50}},
              [](const V3d& x) { return towards_floor(x, spot_intensity(x)); }},
             {"directional", {"", 0, DirectionalLight{slanted, Rgb(90)}}, [](const V3d&) { return 90 * 2.0 / 3; }},
             {"sky", {"", 0, UniformSky{Rgb(50)}}, [](const V3d&) { return 50 * pi; }},
+            {"disc", {"", 0, DirectionalLight{slanted, Rgb(90), 20}}, [](const V3d&) { return 90 * 2.0 / 3; }},
+            {"overcast",
+             {"", 0, SkyDome{cie_standard_sky(1), Rgb(150), zenith, zenith, 0.5f}},
+             [](const V3d&) { return 150; }},
+            {"clear",
+             {"", 0, SkyDome{cie_standard_sky(12), Rgb(150), zenith, -slanted, 0.5f}},
+             [](const V3d&) { return 150; }},
+            {"perez",
+             {"", 0, SkyDome{perez_daylight(500, 200, 45).model, Rgb(150), zenith, {0, 1, 1}}},
+             [](const V3d&) { return 150; }},
+            {"environment", {"", 0, six_texels_above_horizon()}, [](const V3d&) { return of_six_texels; }},
             {"measured",
              {"", 0, MeasuredLight{tent_web(), position, {0, 0, -1}, {0, 1, 0}, false, Rgb(2)}},
              [](const V3d& x) { return towards_floor(x, 2 * tent_intensity(x)); }}};

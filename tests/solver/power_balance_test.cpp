@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -27,6 +30,42 @@ TEST_P(Balance, OfAClosedRoomIsExact) {
     EXPECT_NEAR(channel_sum(balance.emitted), 3 * 10 * 2 * (2 * 3 + 2 * 2 + 2 * 3), 1e-3);
     EXPECT_EQ(balance.escaped, RgbD(0));
     EXPECT_NEAR(balance.relative_difference(), 0, 1e-3);
+}
+
+/// A room lit by a panel, with a ninth of one wall missing.
+Scene open_room() {
+    Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.7f), Rgb(0)}});
+    scene.patches.erase(scene.patches.begin() + 13);
+    scene.patches[47].material = add_material(scene, Rgb(0.5f), Rgb(1000));
+    return scene;
+}
+
+/// What escapes is the mean of the passes, as irradiance is.
+/// Seen to fail, by 0.26%, where it is that of the last pass alone, which also shoots what the pass before it left.
+TEST_P(Balance, OfAnOpenRoomCloses) {
+    const Scene scene = open_room();
+    const RayCaster ray_caster(scene);
+    std::vector<double> escaped;
+    const Solution solution =
+        solve(scene, ray_caster, {.method = find_method(GetParam()), .limits = {.rays = 300'000}},
+              {.report = [&](const IterationReport& r) { escaped.push_back(r.escaped_power.x); }, .stop = nullptr});
+    const PowerBalance balance = power_balance(scene, solution);
+    EXPECT_GT(balance.escaped.x, 0.03 * balance.emitted.x);
+    EXPECT_NEAR(balance.relative_difference(), 0, 1e-4);
+    for (const double e : escaped) EXPECT_NEAR(e, balance.escaped.x, 0.3 * balance.escaped.x) << "from the first on";
+}
+
+/// Once the lamp is dimmed, what escaped before counts no more. Seen to fail, by 2%, where it does.
+TEST_P(Balance, ClosesAfterTheLampIsDimmed) {
+    Scene scene = open_room();
+    scene.light_groups = {{"lamp", scene.materials.back().name}};
+    Solver solver(scene, {.method = find_method(GetParam()), .limits = {.rays = 800'000}});
+    solver.advance({.rays = 400'000});
+    solver.set_exitance("lamp", 0.5f);
+    solver.advance({});
+    const PowerBalance balance = power_balance(solver.scene(), solver.solution());
+    EXPECT_NEAR(balance.emitted.x, 500 * 4 * 3 / 9.0, 1e-2);
+    EXPECT_NEAR(balance.relative_difference(), 0, 5e-3);
 }
 
 /// A point light over a floor, half of it under a pane of glass. Seen to fail without the pane's transmittance (light

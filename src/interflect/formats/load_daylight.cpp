@@ -36,7 +36,7 @@ class DaylightAdder {
                                                    : ModelledDaylight{};
         if (sun && !has_dome) light.sun_illuminance = usual_sun_illuminance(clear_type, sun->altitude);
         if (sun) light.sun_illuminance = sun->illuminance.value_or(light.sun_illuminance);
-        if (light.sun_illuminance != 0)
+        if (sun && light.sun_illuminance != 0)
             push("sun", DirectionalLight{-towards_sun(*sun), white(light.sun_illuminance), sun_diameter});
         if (has_dome) push("sky", dome(light));
         if (placed_.environment) add_environment(*placed_.environment);

@@ -234,10 +234,12 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
         const auto& b = points.coordinate[1];
         const auto& c = points.coordinate[2];
         const auto& d = points.coordinate[3];
-        for (std::size_t i = 0; i < count; ++i) {
-            const float u = (column + a[i]) / cells_per_side, v = (row + b[i]) / cells_per_side;
-            rays[begin + i] = std::visit([&](const auto& shape) { return shape.ray(u, v, c[i], d[i]); }, emitter.shape);
-        }
+        const auto shoot_from = [&](const auto& shape) {
+            for (std::size_t i = 0; i < count; ++i)
+                rays[begin + i] =
+                    shape.ray((column + a[i]) / cells_per_side, (row + b[i]) / cells_per_side, c[i], d[i]);
+        };
+        std::visit(shoot_from, emitter.shape);
     }
 }
 

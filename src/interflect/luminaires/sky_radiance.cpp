@@ -53,7 +53,7 @@ Rgb SkyRadiance::towards(const V3f& direction) const {
 
 SkyGrid SkyRadiance::grid() const {
     if (image_) return {image_->width, image_->height};
-    return {512, 256};
+    return {256, 128};
 }
 
 std::vector<Rgb> SkyRadiance::cell_integrals(const SkyGrid& grid) const {
@@ -82,7 +82,6 @@ std::vector<Rgb> SkyRadiance::texel_integrals(const SkyGrid& grid) const {
     std::vector<Rgb> integrals(grid.size(), Rgb(0));
     std::vector<std::vector<Overlap>> across(image_->width);
     for (std::size_t x = 0; x < across.size(); ++x) across[x] = overlaps(x, image_->width, grid.columns);
-    constexpr double full_turn = 2 * std::numbers::pi;
     for (std::size_t y = 0; y < image_->height; ++y)
         for (const Overlap& row : overlaps(y, image_->height, grid.rows)) {
             const double height = std::cos(std::numbers::pi * row.from) - std::cos(std::numbers::pi * row.to);
@@ -90,7 +89,7 @@ std::vector<Rgb> SkyRadiance::texel_integrals(const SkyGrid& grid) const {
                 const Rgb radiance = factor_ * image_->texels[y * image_->width + x];
                 for (const Overlap& column : across[x])
                     integrals[row.cell * grid.columns + column.cell] +=
-                        radiance * static_cast<float>(full_turn * (column.to - column.from) * height);
+                        radiance * static_cast<float>(2 * std::numbers::pi * (column.to - column.from) * height);
             }
         }
     return integrals;

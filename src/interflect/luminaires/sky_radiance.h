@@ -22,7 +22,7 @@ class SkyRadiance {
 
     /// The integral of radiance over the solid angle of each cell. Of a map exactly; of a dome by four points a cell.
     std::vector<Rgb> cell_integrals(const SkyGrid& grid) const;
-    /// A grid that suits what varies: the map's texels, or cells of 0.7 degrees.
+    /// A grid that suits what varies: the map's texels, or cells of 1.4 degrees.
     SkyGrid grid() const;
 
   private:

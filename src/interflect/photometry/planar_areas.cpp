@@ -159,8 +159,8 @@ PlanarArea find_top(const Scene& scene, const std::string& object) {
 }
 
 PlanarArea find_floor(const Scene& scene, double height) {
-    constexpr double rounding = 1e-6;
-    const double highest = height + rounding * std::max(std::abs(height), std::abs(scene.origin.z));
+    constexpr double height_rounding = 1e-6;
+    const double highest = height + height_rounding * std::max(std::abs(height), std::abs(scene.origin.z));
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const PatchGeometry geometry(scene, scene.patches[i]);

@@ -84,12 +84,12 @@ LuminaireChoice::LuminaireChoice(const Scene& scene)
         if (std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind)) parallel_.push_back(i);
 }
 
-Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const VertexSample& sample) const {
+Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const LightSample& sample) const {
     Illumination chosen;
     double all = 0, uniform = sample.light;
     // Each replaces the one chosen so far with the probability of its share; what is left of the number is uniform.
     const auto consider = [&](std::uint32_t luminaire, float chance) {
-        Illumination light = illumination(scene_.luminaires[luminaire], x, sample.light_u, sample.light_v);
+        Illumination light = illumination(scene_.luminaires[luminaire], x, sample.u, sample.v);
         light.irradiance *= std::max(0.0f, n.dot(light.towards)) / chance;
         const double brings = channel_sum(light.irradiance);
         if (!(brings > 0)) return;

@@ -21,7 +21,7 @@ class LuminaireChoice {
 
     /// Light that reaches the point x of a surface with normal n from one luminaire; with its irradiance, of that
     /// surface, divided by the chance of this choice, so that the mean over choices is what all luminaires cause.
-    Illumination choose(const V3f& x, const V3f& n, const VertexSample& sample) const;
+    Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:
     const Scene& scene_;

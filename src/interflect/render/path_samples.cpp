@@ -25,21 +25,20 @@ V3f cosine_direction(const V3f& n, float a, float b) {
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
     const std::uint64_t key = mix(batch_key, vertex);
     const auto words = random_words(key, index);
-    if (vertex > stratified_vertices) {
-        const auto more = random_words(~key, index);
-        return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]), unit_float(words[3]),
-                unit_float(more[0]),        unit_float(more[1]),  unit_float(more[2])};
-    }
-    const auto of_light = shuffled_point(mix(key, 1), index), of_direction = shuffled_point(mix(key, 2), index);
+    if (vertex > stratified_vertices) return {unit_float(words[2]), unit_float(words[3]), unit_float(words[1])};
+    const auto point = shuffled_point(mix(key, 2), index);
+    return {point[0], point[1], unit_float(words[1])};
+}
+
+LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
+    const std::uint64_t key = mix(mix(batch_key, vertex), 1);
+    const auto words = random_words(key, index);
+    if (vertex > stratified_vertices)
+        return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]), unit_float(words[3])};
+    const auto point = shuffled_point(key, index);
     // A point is the middle of one of 2^23 cells, too coarse for one of millions of lamps: move it within its cell.
     const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
-    return {of_light[0] + within_cell * 0x1p-23,
-            of_light[1],
-            of_light[2],
-            of_direction[0],
-            of_direction[1],
-            of_light[3],
-            unit_float(words[1])};
+    return {point[0] + within_cell * 0x1p-23, point[1], point[2], point[3]};
 }
 
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {

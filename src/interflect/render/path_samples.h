@@ -10,12 +10,16 @@ namespace interflect::inline detail {
 /// A direction with density cosine / pi over the hemisphere of n, for a and b uniform in (0, 1): Malley's method.
 V3f cosine_direction(const V3f& n, float a, float b);
 
-/// The random numbers of one vertex of a path.
+/// The random numbers of one vertex of a path, by which it goes on.
 struct VertexSample {
-    double light;            // chooses the emitting patch
-    float light_u, light_v;  // and the point on it
     float direction_u, direction_v;
     float roulette;
+};
+
+/// Those of a shadow ray to a lamp and of one to a luminaire.
+struct LightSample {
+    double light;      // chooses the emitting patch
+    float u, v;        // and the point on it
     float candidates;  // chooses luminaires that come into question; light, one of them
 };
 
@@ -36,6 +40,8 @@ struct SkySample {
 /// @param vertex     1 is the first that the camera sees.
 /// @param index      Of the path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
+/// @param index  Of the shadow ray among those of the batch at this vertex; likewise below.
+LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 

@@ -20,6 +20,10 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// one.
 constexpr float roulette_threshold = 0.5f;
 
+/// Where direct light is gathered. At 16 samples, filtered, the squared error times the time is 0.63, 0.76 and 0.51 of
+/// that with one ray in the maze, office-graz and office2; with two 0.75, 0.82 and 0.66.
+constexpr std::uint32_t gathered_shadow_rays = 4;
+
 /// Where a ray leaves the patch that another has hit at x: on the patch's surface, up by the ray caster's offset.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
@@ -176,13 +180,19 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
 bool PathWavefront::leave(Ray& ray, Path& path) {
     path.travelled = 0;
     const auto size = static_cast<std::uint32_t>(s_.batch_size);
-    const VertexSample sample = vertex_sample(keys_[path.index / size], vertex_, path.index % size);
-    if (s_.options.emitter_sampling != EmitterSampling::directions) connect_to_light(ray.origin, path, sample);
+    const std::uint64_t key = keys_[path.index / size];
+    const bool samples_emitters = s_.options.emitter_sampling != EmitterSampling::directions;
+    const std::uint32_t count = shadow_rays_at(vertex_);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const std::uint32_t index = path.index % size * count + k;
+        const LightSample sample = light_sample(key, vertex_, index);
+        if (samples_emitters) connect_to_light(ray.origin, path, sample);
+        if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
+        if (samples_emitters && s_.skies.can_sample()) connect_to_sky(ray.origin, path, index);
+    }
     if (s_.known) connect_to_known_light(ray.origin, path);
-    if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
-    if (s_.skies.can_sample() && s_.options.emitter_sampling != EmitterSampling::directions)
-        connect_to_sky(ray.origin, path);
 
+    const VertexSample sample = vertex_sample(key, vertex_, path.index % size);
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
     path.throughput /= survival;
@@ -194,10 +204,11 @@ void PathWavefront::add_sky(const Ray& ray, const Path& path) {
     if (vertex_ == 1) return add(path.index, 0, path.throughput * s_.skies.seen(ray.direction));
     Rgb radiance = s_.skies.uniform_radiance();
     if (s_.skies.can_sample()) {
+        const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
         float weight = 1;
         if (s_.options.emitter_sampling == EmitterSampling::lights) weight = 0;
         if (s_.options.emitter_sampling == EmitterSampling::combined)
-            weight = balance(path.normal.dot(ray.direction) / pi, s_.skies.density(ray.direction));
+            weight = balance(path.normal.dot(ray.direction) / pi, count * s_.skies.density(ray.direction));
         radiance += s_.skies.sampled_radiance(ray.direction) * weight;
     }
     add(path.index, vertex_ - 1, path.throughput * radiance);
@@ -212,7 +223,8 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
         const float distance = path.travelled + hit.distance;
         const float probability = s_.lights.probability(hit.patch, start_of(ray, path), path.normal);
         const float of_light = light_density(s_.geometry[hit.patch], probability, ray.direction, distance * distance);
-        weight = balance(path.normal.dot(ray.direction) / pi, of_light);
+        const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
+        weight = balance(path.normal.dot(ray.direction) / pi, count * of_light);
     }
     add(path.index, vertex_ - 1, radiance * weight);
 }
@@ -258,17 +270,22 @@ void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& r
     (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += radiance;
 }
 
-void PathWavefront::connect_to_light(const V3f& x, const Path& path, const VertexSample& sample) {
+std::uint32_t PathWavefront::shadow_rays_at(std::uint32_t vertex) const {
+    return s_.known && vertex == 1 ? gathered_shadow_rays : 1;
+}
+
+void PathWavefront::connect_to_light(const V3f& x, const Path& path, const LightSample& sample) {
     const LightTree::Choice choice = s_.lights.choose(x, path.normal, sample.light);
     if (choice.index == none) return;
     const PatchGeometry& lamp = s_.geometry[choice.index];
-    const Parameters on_lamp = lamp.uniform_parameters(sample.light_u, sample.light_v);
+    const Parameters on_lamp = lamp.uniform_parameters(sample.u, sample.v);
     const V3f to_light = lamp.point(on_lamp) - x;
     const float distance2 = to_light.length2();
     if (!(distance2 > 0)) return;
     const V3f direction = to_light / std::sqrt(distance2);
     const float of_direction = path.normal.dot(direction) / pi;  // density; also cosine / pi
-    const float of_light = light_density(lamp, choice.probability, direction, distance2);
+    const float of_light =
+        static_cast<float>(shadow_rays_at(vertex_)) * light_density(lamp, choice.probability, direction, distance2);
     if (!(of_direction > 0 && of_light > 0)) return;
     const float weight = s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
     // The integral over the hemisphere of (rho / pi) (M / pi) cosine.
@@ -278,22 +295,22 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Verte
         {choice.index, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
 }
 
-void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample) {
+void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample) {
     const Illumination light = s_.luminaires.choose(x, path.normal, sample);
     if (!(channel_sum(light.irradiance) > 0)) return;
+    const float share = 1 / (pi * static_cast<float>(shadow_rays_at(vertex_)));
     shadow_rays_.push_back({x, light.towards});
-    connections_.push_back({none, path.index, path.throughput * light.irradiance / pi, light.distance, vertex_});
+    connections_.push_back({none, path.index, path.throughput * light.irradiance * share, light.distance, vertex_});
 }
 
-void PathWavefront::connect_to_sky(const V3f& x, const Path& path) {
-    const auto size = static_cast<std::uint32_t>(s_.batch_size);
-    const SkySample numbers = sky_sample(keys_[path.index / size], vertex_, path.index % size);
+void PathWavefront::connect_to_sky(const V3f& x, const Path& path, std::uint32_t index) {
+    const SkySample numbers = sky_sample(keys_[path.index / s_.batch_size], vertex_, index);
     const Skies::Sample sample = s_.skies.sample(numbers.sky, numbers.u, numbers.v);
     const float of_direction = path.normal.dot(sample.direction) / pi;
-    if (!(of_direction > 0 && sample.density > 0)) return;
-    const float weight =
-        s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(sample.density, of_direction);
-    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (of_direction / sample.density * weight);
+    const float of_sky = static_cast<float>(shadow_rays_at(vertex_)) * sample.density;
+    if (!(of_direction > 0 && of_sky > 0)) return;
+    const float weight = s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(of_sky, of_direction);
+    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (of_direction / of_sky * weight);
     shadow_rays_.push_back({x, sample.direction});
     constexpr float everywhere = std::numeric_limits<float>::infinity();
     connections_.push_back({none, path.index, path.throughput * radiance, everywhere, vertex_});

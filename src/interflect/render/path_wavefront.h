@@ -131,12 +131,16 @@ class PathWavefront {
     void add_sky(const Ray& ray, const Path& path);
     /// Light from the emitting patch that a ray has hit.
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
-    /// Next event estimation. @param path  Of which the throughput has the reflectance at x.
-    void connect_to_light(const V3f& x, const Path& path, const VertexSample& sample);
+    /// Of each kind of light that is sampled at a vertex. Where paths end after the next one, all else costs little.
+    std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
+    /// Next event estimation by one of shadow_rays_at() rays.
+    /// @param path   Of which the throughput has the reflectance at x.
+    /// @param index  Of the ray among those of the batch.
+    void connect_to_light(const V3f& x, const Path& path, const LightSample& sample);
     /// The same for luminaires.
-    void connect_to_luminaire(const V3f& x, const Path& path, const VertexSample& sample);
+    void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
     /// The same for skies.
-    void connect_to_sky(const V3f& x, const Path& path);
+    void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
     /// Lets shadow rays that have hit a pane of glass on their way go on behind it.
     void pass_panes();

@@ -17,8 +17,8 @@ class IterationMethod {
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
     /// The next iteration; of 0 rays where there is none.
     virtual IterationPlan plan(SolverState& state);
-    /// Does an iteration. @param plan  Its rays become those that were traced. @return The power that left the scene.
-    /// @throws Interrupted
+    /// Does an iteration. @param plan  Its rays become those that were traced. @return The power that leaves the
+    /// scene, averaged as irradiance is. @throws Interrupted
     virtual RgbD iterate(SolverState& state, IterationPlan& plan) = 0;
     /// Completes the solution: what is known of each element beside its irradiance.
     virtual void finish(SolverState& state) const;

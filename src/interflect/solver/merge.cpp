@@ -94,6 +94,14 @@ void merge_details(const SolverState& state, GroupLight& mean, const GroupLight&
         if (state.solution.dimming[g] > 0) merge_details(state, mean[g], received[g], plan);
 }
 
+RgbD merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan) {
+    const auto rays = static_cast<double>(plan.rays);
+    const double tau = plan.warms_up ? 1 : rays / (state.escaped_power_rays + rays);
+    state.escaped_power += (escaped - state.escaped_power) * tau;
+    state.escaped_power_rays = plan.warms_up ? 0 : state.escaped_power_rays + rays;
+    return state.escaped_power;
+}
+
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new) {
     const auto rays = static_cast<float>(plan.rays),
                inherited = static_cast<float>(state.options.experimental.inherited_weight);

@@ -27,6 +27,10 @@ void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::
 void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 void merge_details(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 
+/// Eq. 6 for what an iteration lost through the openings of the scene: what escapes goes with what irradiance is the
+/// mean of. That of one iteration does not, since it also shoots what the one before it left. @return The mean.
+RgbD merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
+
 /// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
 /// inherited a mean that is too smooth, less of them count.
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new);

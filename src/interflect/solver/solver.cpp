@@ -65,6 +65,7 @@ void Solver::Run::dim(std::size_t group, float factor) {
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     method->scale_group(state, group, change);
     dim_sources();
+    state.escaped_power_rays = 0;  // known again after the next iteration
 }
 
 void Solver::Run::limit_time() {

@@ -176,6 +176,8 @@ void SolverState::archive(StateArchive& archive) {
     archive("importance_rays", importance_rays);
     archive("escaped_rays", escaped_rays);
     archive("rays_of_other_views", rays_of_other_views);
+    archive("escaped_power", escaped_power);
+    archive("escaped_power_rays", escaped_power_rays);
     if (!archive.reads()) return;
     solution.iterations.clear();
     for (const ReportNumbers& numbers : reports) solution.iterations.push_back(report_of(numbers));

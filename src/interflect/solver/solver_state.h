@@ -49,6 +49,8 @@ struct SolverState {
     Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     std::int64_t rays_of_other_views = 0;  // averaged before the views were changed
+    RgbD escaped_power{0, 0, 0};           // mean of the iterations, as irradiance is
+    double escaped_power_rays = 0;         // that it stands for
 
     // Of the work that is under way:
     std::function<void(const IterationReport&)> on_report;
@@ -98,7 +100,7 @@ void grow_with_forest(SolverState& state, std::uint32_t first);
 /// each element must be known as well.
 void refine_view_importance(SolverState& state);
 
-/// Adds a report of where the run stands. @param escaped_power  What the iteration lost.
+/// Adds a report of where the run stands. @param escaped_power  Averaged as irradiance is.
 void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
 }  // namespace interflect::inline detail

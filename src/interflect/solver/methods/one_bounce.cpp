@@ -27,7 +27,6 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
         }
         importance_step_is_done_ = true;
     }
-    RgbD escaped_power(0, 0, 0);
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         const Radiosity light(state.materials, solution.irradiance);
@@ -46,13 +45,13 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
         merge(state, solution.irradiance, fresh.irradiance, plan);
         merge(state, solution.groups, fresh.groups, plan);
         if (combined) merge(state, solution.indirect_importance, received.importance, plan);
-        escaped_power = received.escaped_power;
+        merge_escaped_power(state, received.escaped_power, plan);
     }
     state.importance_rays += for_importance;
     state.power_rays += plan.rays - for_importance;
     update_history(state, plan, elements_before_);
     importance_step_is_done_ = false;
-    return escaped_power;
+    return state.escaped_power;
 }
 
 void OneBounce::archive(StateArchive& archive) {

@@ -79,6 +79,7 @@ void Passes::start_importance(SolverState& state, std::int64_t rays) {
 void Passes::begin_pass(SolverState& state, std::int64_t rays) {
     pass_ = {};
     pass_.is_under_way = true;
+    escaped_power_ = RgbD(0, 0, 0);
     pass_.budget = BounceBudget(rays, bounces_, is_final_);
     pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
     pass_.unshot = std::exchange(unshot_, {});
@@ -340,7 +341,6 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         has_importance_step ? std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays)) : 0;
     if (finds_importance_ && !importance_step_is_done_) adapt_to_views(state);
     if (!importance_step_is_done_) {
-        escaped_power_ = RgbD(0, 0, 0);
         rays_before_ = rays_so_far(state);
         if (for_importance > 0) {
             const Importance psi = importance_of(state.solution);
@@ -360,6 +360,7 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         estimate_noise(state, fresh, plan.rays);
         merge_details(state, state.solution.irradiance, fresh.irradiance, plan);
         merge_details(state, state.solution.groups, fresh.groups, plan);
+        merge_escaped_power(state, escaped_power_, plan);
         update_history(state, plan, elements_before_);
         if (state.options.method.refines && !by_power && state.noise.is_known()) {
             const std::uint32_t size = state.forest->size();
@@ -369,7 +370,7 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         }
     }
     importance_step_is_done_ = false;
-    return escaped_power_;
+    return state.escaped_power;
 }
 
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {

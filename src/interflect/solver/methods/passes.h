@@ -78,7 +78,7 @@ class Passes : public IterationMethod {
     std::vector<float> old_q_, old_importance_;  // how rays were shared before, and by what, of patches
     std::int64_t rays_before_adaptation_ = 0;
     bool is_final_ = false;        // no other pass will shoot what this one leaves
-    RgbD escaped_power_{0, 0, 0};  // of this iteration
+    RgbD escaped_power_{0, 0, 0};  // of the last pass
     bool importance_step_is_done_ = false;
     std::int64_t rays_before_ = 0;  // this iteration
     std::uint32_t elements_before_ = 0;

@@ -238,6 +238,7 @@ void ProgressiveRefinement::shoot_power(SolverState& state, IterationPlan plan) 
     plan.rays = power_rays_;
     if (!plan.warms_up) estimate_noise(state, fresh_, plan.rays);
     merge(state, state.solution.irradiance, fresh_.irradiance, plan);
+    merge_escaped_power(state, escaped_, plan);
     update_history(state, plan, state.forest->size());
 }
 
@@ -255,7 +256,7 @@ RgbD ProgressiveRefinement::iterate(SolverState& state, IterationPlan& plan) {
     for_importance_ = -1;
     // Importance that nothing reflects, or light that all is absorbed of, leaves rays unused.
     plan.rays = std::max<std::int64_t>(1, state.power_rays + state.importance_rays - rays_before_);
-    return escaped_;
+    return state.escaped_power;
 }
 
 void ProgressiveRefinement::retarget(SolverState& state) {
