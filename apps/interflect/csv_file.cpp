@@ -22,7 +22,7 @@ void CsvFile::commit() {
 }
 
 std::string csv_field(const std::string& text) {
-    const std::string safe = escaped(text);
+    std::string safe = escaped(text);
     if (safe.find_first_of("\",") == safe.npos) return safe;
     std::string quoted = "\"";
     for (const char c : safe) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -91,7 +91,7 @@ std::string key_figures(const ReportContent& content) {
     for (const LightFacts& light : content.facts.lights)
         if (!light.far_away) flux += light.flux;
     text += key_figure(number(flux) + " lm", "luminous flux of all luminaires");
-    if (content.glare.size() > 0) {
+    if (!content.glare.empty()) {
         double worst = -std::numeric_limits<double>::infinity();
         for (const RatedGrid& g : content.glare)
             if (!g.ratings.empty()) worst = std::max(worst, g.ratings[g.worst()].ugr);

@@ -128,6 +128,6 @@ double usual_sun_illuminance(int cie_type, double sun_altitude) {
            std::exp(-(cie_type <= last_intermediate ? partly_cloudy : clear) / sine_of(sun_altitude));
 }
 
-void add_daylight(Scene& scene, const Daylight& placed) { DaylightAdder(scene, placed).add(); }
+void add_daylight(Scene& scene, const Daylight& added) { DaylightAdder(scene, added).add(); }
 
 }  // namespace interflect

@@ -94,9 +94,9 @@ class SourcePlaces {
         const LuminaireFrame frame(light);
         sums_.push_back({luminaire.name});
         for (int i = 0; i < count; ++i) {
-            const Illumination seen =
-                illumination(luminaire, eye_, (static_cast<float>(i % per_side) + 0.5f) / per_side,
-                             (static_cast<float>(i / per_side) + 0.5f) / per_side);
+            const int column = i % per_side, row = i / per_side;
+            const Illumination seen = illumination(luminaire, eye_, (static_cast<float>(column) + 0.5f) / per_side,
+                                                   (static_cast<float>(row) + 0.5f) / per_side);
             const V3f d = frame.to_luminaire(-seen.towards);
             const float area = projected_area(light.web->opening, d);
             const Rgb radiance = light.factor * (light.web->intensity(d) / area);

@@ -60,7 +60,7 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
     grid.row_spacing = sides.y / grid.rows;
     grid.along_row = outline.u;
     grid.along_column = outline.v;
-    const auto raised = [&](Imath::V3d p) { return height ? Imath::V3d(p.x, p.y, *height) : p; };
+    const auto raised = [&](const Imath::V3d& p) { return height ? Imath::V3d(p.x, p.y, *height) : p; };
     grid.corner = raised(outline.point(low));
 
     const std::vector<PlanarSegment> border = options.boundary > 0 ? outline.border() : std::vector<PlanarSegment>();

@@ -185,6 +185,7 @@ std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& a
         part.area += static_cast<double>(patch_area(scene, scene.patches[i]));
     }
     std::vector<PlanarArea> sorted;
+    sorted.reserve(parts.size());
     for (auto& [name, part] : parts) sorted.push_back(std::move(part));
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const PlanarArea& a, const PlanarArea& b) { return a.area > b.area; });

@@ -100,7 +100,8 @@ bool PlanarOutline::holds(const V2d& p) const {
     const double tolerance = tolerance_of(box);
     return std::any_of(faces.begin(), faces.end(), [&](const std::vector<V2d>& face) {
         for (std::size_t i = 0; i < face.size(); ++i) {
-            const V2d a = face[i], side = face[(i + 1) % face.size()] - a;
+            const V2d& a = face[i];
+            const V2d side = face[(i + 1) % face.size()] - a;
             if (side.cross(p - a) < -tolerance * side.length()) return false;
         }
         return true;

@@ -14,8 +14,8 @@ struct SkyPlace {
 struct SkyFrame {
     V3f east, north, zenith;
     /// North is towards the axis y of the scene, or -z where y is close to the zenith.
-    explicit SkyFrame(const V3f& zenith);
-    SkyFrame(const V3f& zenith, const V3f& north);
+    explicit SkyFrame(const V3f& up);
+    SkyFrame(const V3f& up, const V3f& towards_north);
     V3f direction(const SkyPlace& place) const;
     SkyPlace place(const V3f& direction) const;
 };
