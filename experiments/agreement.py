@@ -96,7 +96,7 @@ def draw() -> None:
             mean = f"{run['ratio_of_means'] - 1:+.2%} (± {run['error_of_mean']:.2%})"
             lines.append([name, f"{run['rays'] / 1e6:g} M", f"{run['samples']:g}", f"{run['relative_rmse']:.1%}", mean])
     drawing.logarithmic(axes, "rays of the solver (4, 8, 16 and 32 samples a pixel)", "relative RMSE a pixel")
-    axes.legend()
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=4)
     caption = f"""Gathered pictures of 640 x 360 pixels, not filtered: relative root mean square error of pixels of reflected light.
         Reference: twice {REFERENCE_PATHS} paths a pixel, whose noise does not count."""
     folder = program.ROOT / "docs/figures"

@@ -93,7 +93,7 @@ def draw() -> None:
     drawing.logarithmic(axes, "seconds on two cores, with the solve", "relative RMSE a pixel")
     axes.axhline(TARGET, color="#999999", linewidth=0.8, linestyle="--")
     axes.axvline(TARGET_SECONDS, color="#999999", linewidth=0.8, linestyle="--")
-    axes.legend()
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2)
     caption = f"""office-graz at 960 x 540: relative root mean square error of pixels of reflected light against the time that the picture
         takes, processor time over two. Reference: twice {REFERENCE_PATHS} paths a pixel, whose noise does not count. Dashed: what is asked for,
         5% in 20 seconds."""
