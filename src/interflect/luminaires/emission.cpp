@@ -54,7 +54,7 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
         edge_u[(axis + 1) % 3] = size[(axis + 1) % 3];
         edge_v[(axis + 2) % 3] = size[(axis + 2) % 3];
         normal[axis] = 1, across[axis] = size[axis];
-        const auto first = static_cast<std::size_t>(2 * axis);
+        const std::size_t first = 2 * static_cast<std::size_t>(axis);
         sides[first] = {low, edge_u, edge_v, normal};
         sides[first + 1] = {low + across, edge_u, edge_v, -normal};
     }
