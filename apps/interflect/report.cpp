@@ -51,14 +51,21 @@ std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
     return rooms;
 }
 
+/// A grid over the floor of each room.
+std::vector<MeasuringGrid> room_grids(const Scene& scene, const std::vector<PlanarArea>& rooms,
+                                      const ReportArguments& options, double height) {
+    std::vector<MeasuringGrid> grids;
+    for (const PlanarArea& room : rooms) {
+        grids.push_back(area_grid(scene, room, options.places.grid.options(), height));
+        grids.back().name += fmt::format(", z = {:.3g} m", height);
+    }
+    return grids;
+}
+
 /// The working planes of the rooms, then what else is to be measured.
 std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCaster& ray_caster,
                                         const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
-    std::vector<MeasuringGrid> grids;
-    for (const PlanarArea& room : rooms) {
-        grids.push_back(area_grid(solved.scene, room, options.places.grid.options(), options.working_plane));
-        grids.back().name += fmt::format(", z = {:.3g} m", options.working_plane);
-    }
+    std::vector<MeasuringGrid> grids = room_grids(solved.scene, rooms, options, options.working_plane);
     MeasuringPlaces places = options.places;
     places.grid.boundary.clear();  // rooms have walls, desks have none
     for (MeasuringGrid& grid : places.grids(solved.scene)) grids.push_back(std::move(grid));
@@ -71,13 +78,9 @@ std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCast
 
 std::vector<RatedGrid> rate_rooms(const SolvedScene& solved, const RayCaster& ray_caster,
                                   const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
-    std::vector<MeasuringGrid> grids;
-    for (const PlanarArea& room : rooms) {
-        grids.push_back(area_grid(solved.scene, room, options.places.grid.options(), options.eye_height));
-        grids.back().name += fmt::format(", z = {:.3g} m", options.eye_height);
-    }
     const std::array<V3f, 4> directions = {V3f(1, 0, 0), V3f(-1, 0, 0), V3f(0, 1, 0), V3f(0, -1, 0)};
-    return rate_grids(solved.scene, &solved.solution, ray_caster, grids, directions,
+    return rate_grids(solved.scene, &solved.solution, ray_caster,
+                      room_grids(solved.scene, rooms, options, options.eye_height), directions,
                       {.samples = options.samples, .seed = options.seed});
 }
 
