@@ -101,14 +101,14 @@ class Statistics(CommandTest):
         self.assertGreater(iterations[-1]["error_estimate"], 0.0001)
 
     def test_time(self):
+        """Bounds that hold on a machine whose speed changes meanwhile: a step that it makes too long is undone."""
         asked = 1.0  # [s]
         start = time.monotonic()
-        _, iterations = self.solve("--time", asked)
+        _, iterations = self.solve("--time", asked, "--rays", "1e12")
         took = time.monotonic() - start
-        # Iterations are sized by the speed so far. The margins allow for a machine whose speed changes meanwhile.
-        self.assertGreater(iterations[-1]["seconds"], 0.8 * asked)
+        self.assertGreater(took, 0.8 * asked)
+        self.assertLess(took, 20 * asked)
         self.assertLess(iterations[-1]["seconds"], 2 * asked)
-        self.assertLess(took, 4 * asked)
 
 
 class BlackView(CommandTest):
