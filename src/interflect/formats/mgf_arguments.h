@@ -14,11 +14,6 @@ using MgfWords = std::span<const std::string_view>;
 /// What is wrong with the line being read; where it is read, file and line are added.
 using MgfFault = std::invalid_argument;
 
-/// A fault for which the reader throws TooManyPatches.
-struct MgfPatchLimit : MgfFault {
-    using MgfFault::MgfFault;
-};
-
 /// @throws MgfFault where the word is not a finite number in single precision.
 double number_argument(std::string_view word);
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "interflect/formats/location.h"
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/scene.h"
 
@@ -69,13 +70,6 @@ class ContextTable {
     Context unnamed_;
     Context* current_ = &unnamed_;  // elements of an unordered_map stay where they are
     std::string_view current_name_;
-};
-
-/// A place in a file, for messages.
-struct Location {
-    const std::filesystem::path* file = nullptr;
-    std::int64_t line = 0;
-    std::string text() const { return file ? fmt::format("{}:{}", file->string(), line) : std::string(); }
 };
 
 /// MGF's colour.

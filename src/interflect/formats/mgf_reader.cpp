@@ -92,7 +92,7 @@ void MgfReader::read_lines() {
                 throw MgfFault(fmt::format("a line of {} characters; at most {} are read", file_->lines.length(),
                                            options_.max_line_length));
             read_line(file_->lines.words());
-        } catch (const MgfPatchLimit& fault) {
+        } catch (const PatchLimit& fault) {
             throw TooManyPatches(file_->source.path, file_->lines.line(), fault.what());
         } catch (const MgfFault& fault) {
             throw InputError(file_->source.path, file_->lines.line(), fault.what());

@@ -1,7 +1,5 @@
 #include "interflect/formats/mgf_scene_builder.h"
 
-#include <ImathBox.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +8,6 @@
 #include "interflect/formats/mgf_arguments.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
-#include "interflect/geometry/polygon.h"
 #include "interflect/scene/environment_maps.h"
 #include "interflect/scene/limits.h"
 
@@ -19,14 +16,6 @@ namespace interflect::inline detail {
 namespace {
 
 constexpr std::size_t most_lights = 1 << 16;
-
-/// Twice the area over the squared size, from which a face counts for where the scene lies, and from which it is no
-/// sliver of which rounding may leave nothing.
-constexpr double least_shape = 1e-6, least_shape_of_lost = 1e-3;
-
-/// Size of a face that may be lost to rounding, over the reach of the scene: 60 steps of a float there. Smaller ones
-/// are litter that real files have anywhere.
-constexpr double largest_lost_size = 0x1p-16;
 
 /// Equal for materials that look the same and are called the same, however often a file defines them.
 std::string identity(const Material& m) {
@@ -47,7 +36,7 @@ bool is_mirror(const MgfMaterial& m) {
 
 MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options,
                                  const Imath::V3d& origin)
-    : options_(options), weld_(scene_) {
+    : faces_(scene_, options), weld_(scene_) {
     scene_.origin = origin;
     scene_.name = file.string();
     scene_.objects.emplace_back();
@@ -56,19 +45,6 @@ MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOp
 
 void MgfSceneBuilder::warn(const std::string& kind, const std::string& message, const Location& where) {
     scene_.warnings.add(kind, message, where.text());
-}
-
-void MgfSceneBuilder::require_room(double patches) const {
-    if (static_cast<double>(scene_.patches.size() + left_out_) + patches > static_cast<double>(options_.max_patches))
-        throw MgfPatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));
-}
-
-V3f MgfSceneBuilder::position(const Imath::V3d& world) const {
-    if (!is_within_reach(world) || !is_within_reach(world - scene_.origin))
-        throw std::invalid_argument(
-            fmt::format("the transformed point ({}, {}, {}) is farther than {:g} m from the origin, which is too far",
-                        world.x, world.y, world.z, farthest_coordinate));
-    return V3f(world - scene_.origin) + V3f(0);  // -0 + 0 = 0
 }
 
 Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double largest, const Location& where) {
@@ -172,44 +148,6 @@ std::uint32_t MgfSceneBuilder::object(const std::string& name) {
     return entry->second;
 }
 
-void MgfSceneBuilder::place_face(std::span<const Imath::V3d> outline) {
-    Imath::Box3d box;
-    Imath::V3d doubled_area(0);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        box.extendBy(outline[i]);
-        if (i > 1) doubled_area += (outline[i - 1] - outline[0]).cross(outline[i] - outline[0]);
-    }
-    const double size = box.size().length();
-    const double shape = size > 0 ? doubled_area.length() / (size * size) : 0;
-    placed_ = {shape > least_shape_of_lost ? size : 0, box.center(), {}};
-    if (shape > least_shape && sample_.wants_next()) sample_.add({box.center(), size});
-}
-
-void MgfSceneBuilder::add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
-                               std::uint32_t object, bool two_sided, const Location& where) {
-    require_room(two_sided ? 2 : 1);
-    const std::size_t before = scene_.patches.size();
-    const PolygonResult result = add_polygon(scene_, loops, material, object, two_sided);
-    require_room(0);  // one face may have become many patches
-    if (result == PolygonResult::self_crossing)
-        leave_out(
-            "face whose outline crosses itself or runs back along itself, so that its areas cancel, is left out; split "
-            "it",
-            where);
-    if (result == PolygonResult::degenerate) {
-        leave_out("face without area is left out", where);
-        if (placed_.size > lost_.size) lost_ = {placed_.size, placed_.centre, where};
-    }
-    for (std::size_t i = before; i < scene_.patches.size(); ++i)
-        if (const std::string fault = patch_fault(scene_, scene_.patches[i]); !fault.empty())
-            throw std::invalid_argument("this face " + fault);
-}
-
-void MgfSceneBuilder::leave_out(const std::string& message, const Location& where) {
-    warn("degenerate-face", message, where);
-    if (left_out_++ == 0) first_left_out_ = {message, where};
-}
-
 void MgfSceneBuilder::warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share) {
     double lost = 0, all = 0;
     for (const MgfMaterial& m : used_materials_) {
@@ -225,49 +163,8 @@ void MgfSceneBuilder::warn_of_lost(const std::string& kind, const std::string& w
         if (m.*share > 0) warn(kind, message, m.defined);
 }
 
-void MgfSceneBuilder::require_precision() const {
-    const Core core = core_of(sample_.faces());
-    if (lost_.size <= largest_lost_size * core.reach) return;
-    const Imath::V3d &x = lost_.centre, &middle = core.middle;
-    throw InputError(
-        *lost_.where.file, lost_.where.line,
-        fmt::format("this face, {:.3g} m wide at ({:.10g}, {:.10g}, {:.10g}), is lost to rounding: it is {:.3g} m from "
-                    "the middle of the scene, ({:.10g}, {:.10g}, {:.10g}), and coordinates have seven digits",
-                    lost_.size, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
-}
-
-/// That the scene is not too small: by the faces as they were, where rounding left nothing of them.
-void MgfSceneBuilder::require_width() const {
-    double width = scene_width(scene_);
-    if (scene_.patches.empty()) {
-        if (sample_.faces().empty()) return;
-        const Core core = core_of(sample_.faces());
-        width = 2 * core.reach;
-    }
-    if (const std::string fault = scene_width_fault(width); !fault.empty())
-        throw InputError(scene_.name, 0, "the scene " + fault);
-}
-
-/// That the scene is dark or bright enough.
-void MgfSceneBuilder::require_brightness() const {
-    if (const std::string fault = brightness_fault(brightest_source(scene_)); !fault.empty())
-        throw InputError(scene_.name, 0, "the scene " + fault);
-}
-
-void MgfSceneBuilder::require_patches() const {
-    if (!scene_.patches.empty()) return;
-    if (left_out_ > 0)
-        throw InputError(*first_left_out_.where.file, first_left_out_.where.line,
-                         fmt::format("no usable face is left: {} are left out, and this is the first of them: {}",
-                                     left_out_, first_left_out_.message));
-    throw InputError(scene_.name, 0, "no usable face is left: the scene is empty");
-}
-
 Scene MgfSceneBuilder::finish() {
-    require_width();
-    require_brightness();
-    require_precision();
-    require_patches();
+    faces_.require_usable();
     warn_of_lost("specular-reflection", "specular reflectance (rs), but for mirrors in view of the camera,",
                  &MgfMaterial::rs);
     warn_of_lost("diffuse-transmission", "diffuse transmittance (td)", &MgfMaterial::td);

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "interflect/formats/mgf_contexts.h"
+#include "interflect/formats/scene_faces.h"
 #include "interflect/geometry/vertex_weld.h"
 #include "interflect/read_options.h"
 #include "interflect/scene.h"
-#include "interflect/scene/core.h"
 
 namespace interflect::inline detail {
 
@@ -28,10 +28,10 @@ class MgfSceneBuilder {
 
     std::uint64_t patch_count() const { return scene_.patches.size(); }
     /// @throws std::invalid_argument  where `patches` more would pass the limit, to which faces left out count as well.
-    void require_room(double patches) const;
+    void require_room(double patches) const { faces_.require_room(patches); }
 
     /// A place in the world [m], relative to the scene's origin.
-    V3f position(const Imath::V3d& world) const;
+    V3f position(const Imath::V3d& world) const { return faces_.position(world); }
     /// Index of the vertex at `world` [m] with these texture coordinates, if it has some.
     std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate) {
         return weld_.vertex(position(world), texture_coordinate);
@@ -46,16 +46,17 @@ class MgfSceneBuilder {
     void add_light(Luminaire luminaire, const std::string& name);
     Warnings& warnings() { return scene_.warnings; }
     /// Tells where the outline of the face that is added next lies in the world, before rounding.
-    void place_face(std::span<const Imath::V3d> outline);
+    void place_face(std::span<const Imath::V3d> outline) { faces_.place(outline); }
     /// Adds a face; one without area is left out.
     void add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
-                  bool two_sided, const Location& where);
-
+                  bool two_sided, const Location& where) {
+        faces_.add(loops, material, object, two_sided, where);
+    }
     /// Counts a face that is left out. @param message  Says what kind of face.
-    void leave_out(const std::string& message, const Location& where);
+    void leave_out(const std::string& message, const Location& where) { faces_.leave_out(message, where); }
 
     /// The origin that suits the faces added so far: where it is not the present one, the file should be read again.
-    Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
+    Imath::V3d suitable_origin() const { return faces_.suitable_origin(); }
 
     /// Adds the warnings that need the whole, and hands over the scene. @throws InputError where it has no patch, or
     /// lost a face that is as large as others to rounding, since it is too far from them.
@@ -71,28 +72,8 @@ class MgfSceneBuilder {
     void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
-    /// A face of which rounding leaves nothing.
-    struct LostFace {
-        double size = 0;  // [m]
-        Imath::V3d centre{0, 0, 0};
-        Location where;
-    };
-    struct LeftOut {
-        std::string message;
-        Location where;
-    };
-    void require_width() const;
-    void require_brightness() const;
-    void require_precision() const;
-    void require_patches() const;
-
     Scene scene_;
-    FaceSample sample_;
-    LostFace placed_;  // the face that is added next; size 0 where its shape leaves nothing even before rounding
-    LostFace lost_;    // the largest of them
-    LeftOut first_left_out_;
-    std::uint64_t left_out_ = 0;
-    ReadOptions options_;
+    SceneFaces faces_;
     VertexWeld weld_;
     std::unordered_map<std::string, std::uint32_t> material_index_, object_index_, texture_index_;
     std::vector<Rgb> largest_texels_;          // of each of scene_.textures

@@ -17,7 +17,7 @@ constexpr std::uint64_t free_of_made = 50'000'000, words_per_made_patch = 1000;
 void RepeatedWork::add(std::uint64_t words, std::uint64_t patches) {
     words_ += words;
     if (words_ > free_of_limit + words_per_allowed_patch * max_patches_)
-        throw MgfPatchLimit(
+        throw PatchLimit(
             fmt::format("arrays and includes repeat more than {} patches (max_patches) could need", max_patches_));
     if (words_ > free_of_made + words_per_made_patch * patches)
         throw MgfFault(
