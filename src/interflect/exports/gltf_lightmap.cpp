@@ -127,6 +127,9 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
         document.use_extension("KHR_materials_unlit");
     } else {
         json["pbrMetallicRoughness"] = textures.diffuse(material);
+        // Without it there is a specular layer, which takes light from the diffuse one.
+        json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+        document.use_extension("KHR_materials_specular");
         json["extensions"]["MOZ_lightmap"] = {
             {"index", lightmap_texture}, {"texCoord", 1}, {"intensity", encoding.intensity()}};
         document.use_extension("MOZ_lightmap");
