@@ -122,10 +122,10 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
             Rgb texel = texels.colour != none ? colour_at(colour, pixel) : Rgb(1);
             float share = texels.metallic_factor;
             if (texels.metallic != none) share *= metallic.value(pixel_at(metallic, x, y, result), blue);
-            texel *= 1 - share;
+            texel *= texels.factor * (1 - share);
             for (int c = 0; c < 3; ++c) {
-                is_reduced |= texel[c] > texels.largest[c];
-                texel[c] = std::min(texel[c], texels.largest[c]);
+                is_reduced |= texel[c] > 1;
+                texel[c] = std::min(texel[c], 1.0f);
             }
             result.texels.push_back(texel);
         }

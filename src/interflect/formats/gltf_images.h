@@ -18,9 +18,9 @@ struct GltfTexels {
     std::uint32_t colour = none;    ///< Image of sRGB colours; none: white.
     std::uint32_t metallic = none;  ///< Image whose blue channel is metallic; none: `metallic_factor` alone.
     float metallic_factor = 0;      ///< Colours are multiplied by 1 - metallic.
-    Rgb largest{1, 1, 1};           ///< To which each channel is reduced.
+    Rgb factor{1, 1, 1};            ///< Of the result, which is reduced to 1 where it is more.
 
-    auto key() const { return std::tuple(colour, metallic, metallic_factor, largest.x, largest.y, largest.z); }
+    auto key() const { return std::tuple(colour, metallic, metallic_factor, factor.x, factor.y, factor.z); }
 };
 
 /// Means over all pixels of an image.

@@ -39,8 +39,8 @@ SpotLight spot_of(const GltfValue& light) {
     constexpr double quarter_turn = std::numbers::pi / 2;
     const GltfValue spot = light.object("spot");
     const double inner = spot.amount("innerConeAngle", 0), outer = spot.amount("outerConeAngle", quarter_turn / 2);
-    if (!(inner < outer) || outer > quarter_turn + 1e-6)
-        spot.fail(fmt::format("its cone goes from {} to {}, expected 0 <= inner < outer <= pi / 2", inner, outer));
+    if (!(inner <= outer) || outer > quarter_turn + 1e-6)
+        spot.fail(fmt::format("its cone goes from {} to {}, expected 0 <= inner <= outer <= pi / 2", inner, outer));
     SpotLight result;
     result.inner_angle = static_cast<float>(inner * degrees_per_radian);
     result.outer_angle = static_cast<float>(outer * degrees_per_radian);

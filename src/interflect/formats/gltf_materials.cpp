@@ -151,10 +151,10 @@ void GltfMaterials::reflect(const GltfValue& owner, const Parts& parts, Material
         for (int c = 0; c < 3; ++c) material.reflectance[c] = std::min(material.reflectance[c], most_reflected);
     } else {
         GltfTexels texels{colour, metallic, parts.metallic, Rgb(1)};
-        constexpr float rounding = 1 - 0x1p-20f;
-        for (int c = 0; c < 3; ++c)
-            if (material.reflectance[c] > most_reflected)
-                texels.largest[c] = most_reflected * rounding / material.reflectance[c];
+        for (int c = 0; c < 3; ++c) {
+            texels.factor[c] = std::max(1.0f, material.reflectance[c] / most_reflected);
+            material.reflectance[c] = std::min(material.reflectance[c], most_reflected);
+        }
         std::tie(material.reflectance_texture, is_reduced) = images_.texture(texels);
     }
     if (is_reduced)
