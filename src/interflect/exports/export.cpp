@@ -37,8 +37,8 @@ void require_usable(const LightmapOptions& options) {
             fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
     require(options.samples >= 2, fmt::format("samples is {}, expected at least 2", options.samples));
-    require(options.image_extension == ".exr" || options.image_extension == ".hdr",
-            fmt::format("image_extension is '{}', expected .exr or .hdr", options.image_extension));
+    require(options.image == ".exr" || options.image == ".hdr",
+            fmt::format("image is '{}', expected .exr or .hdr", options.image));
 }
 
 void require_usable(const ExportFormat& format, const ExportOptions& options) {
@@ -80,6 +80,7 @@ std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, 
                                       const ExportOptions& options) {
     const ExportFormat& format = require_export_format(path);
     require_usable(format, options);
+    require_no_faults(scene_faults(scene), "cannot export", scene);
     solution.forest->require_made_for(scene);
     require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
     const PendingFile can_be_written(path);
