@@ -123,11 +123,24 @@ def point(name, position, intensity):
     place(thing, position, (0, 0, -1))
 
 
-def spot(name, position, direction, intensity, inner, outer):
-    data, thing = lamp(name, "SPOT", intensity, WATTS_PER_INTENSITY)
+def spot(name, position, direction, intensity, inner_cosine, outer_cosine):
+    """A point lamp whose intensity follows the cosine of the angle from its axis; a spot of Cycles fades otherwise."""
+    data, thing = lamp(name, "POINT", intensity, WATTS_PER_INTENSITY)
     data.shadow_soft_size = 0
-    data.spot_size = 2 * outer
-    data.spot_blend = 0 if inner == outer else 1 - math.tan(inner) / math.tan(outer)
+    data.use_nodes = True
+    nodes, links = data.node_tree.nodes, data.node_tree.links
+    axis = nodes.new("ShaderNodeSeparateXYZ")
+    links.new(nodes.new("ShaderNodeTexCoord").outputs["Normal"], axis.inputs[0])
+    share = nodes.new("ShaderNodeMapRange")
+    links.new(axis.outputs["Z"], share.inputs["Value"])
+    edge = max(inner_cosine - outer_cosine, 1e-6)
+    for socket, value in zip(("From Min", "From Max", "To Min", "To Max"), (-outer_cosine, -outer_cosine - edge, 0, 1)):
+        share.inputs[socket].default_value = value
+    square = nodes.new("ShaderNodeMath")
+    square.operation = "MULTIPLY"
+    for k in (0, 1):
+        links.new(share.outputs[0], square.inputs[k])
+    links.new(square.outputs[0], nodes["Emission"].inputs["Strength"])
     place(thing, position, direction)
 
 
@@ -159,8 +172,8 @@ def camera(name, eye, look_at, up, fov, extent):
     scene.camera = scene.camera or thing
 
 
-# A lamp of 1 W has the radiant intensity 1 / (4 pi^2) W/sr.
-WATTS_PER_INTENSITY = 4 * math.pi**2
+# A lamp of 1 W has the radiant intensity 1 / (4 pi) W/sr.
+WATTS_PER_INTENSITY = 4 * math.pi
 
 scene.render.engine = "CYCLES"
 scene.cycles.use_adaptive_sampling = False
@@ -211,13 +224,9 @@ std::string mesh_text(ForeignScene& scene, const ForeignMesh& mesh) {
 std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, const std::string& name) {
     if (const auto* light = std::get_if<PointLight>(&luminaire.kind))
         return fmt::format("point(\"{}\", {}, {})\n", name, tuple(light->position), tuple(light->intensity));
-    if (const auto* light = std::get_if<SpotLight>(&luminaire.kind)) {
-        if (light->inner_angle < light->outer_angle) scene.warnings.add("spot", "spots fade in another way there");
-        if (light->outer_angle > 90) scene.leave_out("what spots shine beyond 90 degrees from their axes");
+    if (const auto* light = std::get_if<SpotLight>(&luminaire.kind))
         return fmt::format("spot(\"{}\", {}, {}, {}, {}, {})\n", name, tuple(light->position), tuple(light->direction),
-                           tuple(light->intensity), radians(light->inner_angle),
-                           radians(std::min(light->outer_angle, 90.0f)));
-    }
+                           tuple(light->intensity), light->inner_cosine(), light->outer_cosine());
     if (const auto* light = std::get_if<DirectionalLight>(&luminaire.kind))
         return fmt::format("sun(\"{}\", {}, {}, {})\n", name, tuple(light->direction), tuple(light->irradiance),
                            radians(light->diameter));
