@@ -73,9 +73,9 @@ def pictures(command: program.Program, folder: Path, scene: str, views: str | No
     information = json.loads(program.run(command, ["info", scene, *options, "--json"]).output)
     first = information["views"][0]["name"]
     program.run(command, ["render", scene, "--view", first, "--shading", "path", "--no-mirrors", *drawing, "-o", str(files[0])])
-    program.run(command, ["export", scene, *drawing, "-o", str(folder / "scene.py")])
-    script = ["blender", "--background", "--python-exit-code", "1", "--python", "scene.py", "--", "cycles.exr"]
-    finished = subprocess.run(script, cwd=folder, capture_output=True, text=True)
+    program.run(command, ["export", scene, *options, *SIZE.split(), "--pixel-samples", str(SAMPLES), "-o", str(folder / "scene.py")])
+    script = ["blender", "--background", "--python-exit-code", "1", "--python", str(folder / "scene.py"), "--", str(files[1])]
+    finished = subprocess.run(script, capture_output=True, text=True)
     if finished.returncode != 0 or not files[1].is_file():
         raise program.ExperimentError(f"blender failed:\n{finished.stdout[-1000:]}{finished.stderr[-1000:]}")
     return [read_exr(file) for file in files]

@@ -161,7 +161,7 @@ class Scenes(Exported):
         return self.bytes(name).decode(), result.stderr
 
     def test_mitsuba_has_views_surfaces_and_units(self):
-        text, stderr = self.export("room.xml", "--size", "64x48", "--samples", "16")
+        text, stderr = self.export("room.xml", "--size", "64x48", "--pixel-samples", "16")
         scene = ElementTree.fromstring(text)
         self.assertEqual(scene.get("version"), "3.0.0")
         sensors = scene.findall("sensor")

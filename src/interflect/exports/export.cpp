@@ -74,6 +74,7 @@ std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, 
                                       const ExportOptions& options) {
     const ExportFormat& format = require_export_format(path);
     require_usable(format, options);
+    require_no_faults(scene_faults(scene), "cannot export", scene);
     solution.forest->require_made_for(scene);
     require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
     const PendingFile can_be_written(path);

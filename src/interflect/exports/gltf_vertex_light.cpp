@@ -1,0 +1,135 @@
+#include "interflect/exports/gltf_vertex_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "interflect/base/escapes.h"
+#include "interflect/exports/element_mesh.h"
+#include "interflect/exports/gltf_scene.h"
+#include "interflect/exports/welded_vertices.h"
+#include "interflect/geometry/texture_mapping.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+using Json = GltfDocument::Json;
+
+/// Whether the image of a material stays in the file, so that vertices hold only what it is multiplied by.
+bool keeps_texture(const Material& material) {
+    return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
+}
+
+Rgb clamped(const Rgb& colour) {
+    return {std::clamp(colour.x, 0.0f, 1.0f), std::clamp(colour.y, 0.0f, 1.0f), std::clamp(colour.z, 0.0f, 1.0f)};
+}
+
+struct LitVertex {
+    std::uint32_t point;
+    Rgb irradiance, colour;
+    V2f coordinate;
+};
+
+/// The largest of each channel of a material's image; 1 where it is 0. The file has the image divided by it, so that
+/// vertices, which hold at most 1, are no darker than they need be.
+Rgb peak_of(const Scene& scene, const Material& material) {
+    Rgb peak = largest_texel(scene.textures[material.reflectance_texture]);
+    for (int k = 0; k < 3; ++k)
+        if (!(peak[k] > 0)) peak[k] = 1;
+    return peak;
+}
+
+/// What the vertices of a scene show.
+class VertexLight {
+  public:
+    VertexLight(const Scene& scene, float exposure)
+        : scene_(scene), scale_(std::exp2(exposure) / std::numbers::pi_v<float>) {
+        for (const Material& material : scene.materials)
+            brightest_.push_back(keeps_texture(material) ? material.reflectance * peak_of(scene, material) : Rgb(0));
+    }
+
+    LitVertex vertex(const Patch& patch, const MeshCorner& corner) const {
+        if (keeps_texture(scene_.materials[patch.material]))
+            return {corner.point, corner.irradiance, clamped(scale_ * brightest_[patch.material] * corner.irradiance),
+                    gltf_coordinate(texture_coordinate(scene_, patch, corner.at))};
+        const Rgb reflected = reflectance_at(scene_, patch, corner.at) * corner.irradiance;
+        const Rgb radiosity = exitance_at(scene_, patch, corner.at) + reflected;
+        return {corner.point, corner.irradiance, clamped(scale_ * radiosity), V2f(0, 0)};
+    }
+
+  private:
+    const Scene& scene_;
+    float scale_;
+    std::vector<Rgb> brightest_;  // reflectance of each material that keeps its texture, at its brightest texel
+};
+
+/// The triangles of one object and material.
+using LitPrimitive = WeldedVertices<LitVertex>;
+
+Json write_primitive(GltfDocument& document, const LitPrimitive& primitive, const std::vector<V3f>& points,
+                     const Material& material) {
+    Json attributes;
+    const auto add = [&](const char* name, const auto& values) { attributes[name] = document.add_attribute(values); };
+    attributes["POSITION"] =
+        document.add_positions(primitive.values([&](const LitVertex& v) { return points[v.point]; }));
+    add("COLOR_0", primitive.values([](const LitVertex& v) { return v.colour; }));
+    add("_IRRADIANCE", primitive.values([](const LitVertex& v) { return v.irradiance; }));
+    if (keeps_texture(material)) add("TEXCOORD_0", primitive.values([](const LitVertex& v) { return v.coordinate; }));
+    return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
+}
+
+int add_material(GltfDocument& document, GltfTextures& textures, const Scene& scene, const Material& material) {
+    Json colour{{"metallicFactor", 0}, {"roughnessFactor", 1}};
+    if (keeps_texture(material))
+        colour["baseColorTexture"] = textures.reference(material.reflectance_texture, peak_of(scene, material));
+    return document.add("materials", {{"name", escaped(material.name)},
+                                      {"pbrMetallicRoughness", colour},
+                                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+}
+
+/// By object and material.
+using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
+
+LitPrimitives primitives_of(const Scene& scene, const ElementForest& forest, ElementMesh& mesh, float exposure) {
+    const VertexLight light(scene, exposure);
+    LitPrimitives primitives;
+    std::vector<MeshTriangle> triangles;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        triangles.clear();
+        mesh.triangulate(leaf, triangles);
+        const Patch& patch = scene.patches[forest.patch(leaf)];
+        LitPrimitive& primitive = primitives[{patch.object, patch.material}];
+        for (const MeshTriangle& triangle : triangles)
+            for (const MeshCorner& corner : triangle) primitive.add(light.vertex(patch, corner));
+    }
+    return primitives;
+}
+
+}  // namespace
+
+void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
+                      const ExportOptions& options) {
+    ElementMesh mesh(scene, *solution.forest, solution.irradiance);
+    GltfTextures textures(document, scene);
+    std::map<std::uint32_t, int> materials;
+    GltfPrimitives written;
+    for (const auto& [key, primitive] : primitives_of(scene, *solution.forest, mesh, options.exposure)) {
+        const auto& [object, material] = key;
+        const auto [entry, is_new] = materials.try_emplace(material, 0);
+        if (is_new) entry->second = add_material(document, textures, scene, scene.materials[material]);
+        Json json = write_primitive(document, primitive, mesh.points(), scene.materials[material]);
+        json["material"] = entry->second;
+        written[object].push_back(std::move(json));
+    }
+    document.use_extension("KHR_materials_unlit");
+    document.json["asset"]["extras"]["interflect"] = {
+        {"exposure", options.exposure},
+        {"COLOR_0",
+         "radiance [cd/m^2] * 2^exposure, clamped to [0, 1]; that of the brightest "
+         "texel where there is a base colour texture"},
+        {"_IRRADIANCE", "irradiance [lm/m^2] of each channel, linear Rec. 709"}};
+    add_nodes(document, scene, written, options.up);
+}
+
+}  // namespace interflect::inline detail
