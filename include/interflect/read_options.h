@@ -14,7 +14,10 @@ struct ReadOptions {
     std::size_t max_line_length = 1 << 16;   ///< Characters, continued lines together.
     std::size_t max_face_vertices = 1024;    ///< Twice what MGF's own parser takes; loops that cross cost its square.
     std::size_t max_name_length = 256;       ///< Characters of one name; four times that for a dotted object name.
-    std::size_t max_photometric_bytes = 1 << 24;     ///< Of one file with measured light (.ies, .ldt).
+    std::size_t max_photometric_bytes = 1 << 24;             ///< Of one file with measured light (.ies, .ldt).
+    std::uint64_t max_model_bytes = std::uint64_t{1} << 32;  ///< Of a file of meshes, with what it names and unpacks.
+    std::size_t max_json_bytes = 1 << 26;                    ///< Of the text of a glTF file.
+    bool outside_files = false;                      ///< Whether a glTF file may name files outside of its folder.
     std::size_t max_photometric_values = 1'000'000;  ///< Intensities in it: each 0.1 degrees by each degree is 650,000.
 };
 

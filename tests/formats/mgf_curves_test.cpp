@@ -14,7 +14,7 @@ namespace {
 using Imath::V3d;
 using std::numbers::pi;
 
-V3d area_vector(const Mesh& mesh, const std::vector<std::uint32_t>& face) {
+V3d area_vector(const PolygonMesh& mesh, const std::vector<std::uint32_t>& face) {
     V3d sum(0);
     for (std::size_t i = 1; i + 1 < face.size(); ++i)
         sum +=
@@ -22,21 +22,21 @@ V3d area_vector(const Mesh& mesh, const std::vector<std::uint32_t>& face) {
     return sum;
 }
 
-double area(const Mesh& mesh) {
+double area(const PolygonMesh& mesh) {
     double sum = 0;
     for (const auto& face : mesh.faces) sum += area_vector(mesh, face).length();
     return sum;
 }
 
 /// By the divergence theorem; positive where the faces look outwards. Only meaningful for a closed mesh.
-double volume(const Mesh& mesh) {
+double volume(const PolygonMesh& mesh) {
     double sum = 0;
     for (const auto& face : mesh.faces) sum += area_vector(mesh, face).dot(mesh.points[face[0]]) / 3;
     return sum;
 }
 
 /// Every edge is used once in each direction.
-bool is_closed(const Mesh& mesh) {
+bool is_closed(const PolygonMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const auto& face : mesh.faces)
         for (std::size_t i = 0; i < face.size(); ++i) ++uses[{face[i], face[(i + 1) % face.size()]}];
@@ -46,7 +46,7 @@ bool is_closed(const Mesh& mesh) {
     });
 }
 
-std::size_t triangles(const Mesh& mesh) {
+std::size_t triangles(const PolygonMesh& mesh) {
     return static_cast<std::size_t>(
         std::count_if(mesh.faces.begin(), mesh.faces.end(), [](const auto& face) { return face.size() == 3; }));
 }
@@ -54,7 +54,7 @@ std::size_t triangles(const Mesh& mesh) {
 const V3d centre(1, 2, 3), tilted = V3d(1, -2, 2) / 3;
 
 TEST(MgfCurves, SphereHasTrianglesAtThePolesAndQuadrilateralsElsewhere) {
-    const Mesh sphere = make_sphere(centre, 0.5, 4);
+    const PolygonMesh sphere = make_sphere(centre, 0.5, 4);
     EXPECT_EQ(sphere.faces.size(), 16u * 8);
     EXPECT_EQ(triangles(sphere), 2u * 16);
     EXPECT_EQ(sphere.points.size(), 16u * 7 + 2);
@@ -79,7 +79,7 @@ TEST(MgfCurves, NegativeRadiusTurnsTheFrontInside) {
 TEST(MgfCurves, CylinderLooksAwayFromItsAxis) {
     const V3d end = centre + 2.0 * tilted;
     for (const double radius : {0.5, -0.5}) {
-        const Mesh cylinder = make_cone(centre, radius, end, radius, 4);
+        const PolygonMesh cylinder = make_cone(centre, radius, end, radius, 4);
         EXPECT_EQ(cylinder.faces.size(), 16u);
         EXPECT_EQ(triangles(cylinder), 0u);
         EXPECT_NEAR(area(cylinder), 2 * 32 * 0.5 * std::sin(pi / 16), 1e-12);  // height times 16 chords
@@ -101,7 +101,7 @@ TEST(MgfCurves, ConeWithATipIsMadeOfTriangles) {
 }
 
 TEST(MgfCurves, RingLooksAlongItsNormal) {
-    const Mesh ring = make_ring(centre, tilted, 0.5, 1, 4), disk = make_ring(centre, tilted, 0, 1, 4);
+    const PolygonMesh ring = make_ring(centre, tilted, 0.5, 1, 4), disk = make_ring(centre, tilted, 0, 1, 4);
     const double polygon = 16 * 0.5 * std::sin(pi / 8);  // area of a regular 16-gon of radius 1
     EXPECT_NEAR(area(ring), 0.75 * polygon, 1e-12);
     EXPECT_NEAR(area(disk), polygon, 1e-12);
@@ -111,7 +111,7 @@ TEST(MgfCurves, RingLooksAlongItsNormal) {
 }
 
 TEST(MgfCurves, Torus) {
-    const Mesh torus = make_torus(centre, tilted, 0.2, 0.6, 40);
+    const PolygonMesh torus = make_torus(centre, tilted, 0.2, 0.6, 40);
     EXPECT_TRUE(is_closed(torus));
     EXPECT_NEAR(area(torus) / (4 * pi * pi * 0.4 * 0.2), 1, 1e-3);
     EXPECT_NEAR(volume(torus) / (2 * pi * pi * 0.4 * 0.04), 1, 1e-3);
@@ -120,12 +120,12 @@ TEST(MgfCurves, Torus) {
 
 TEST(MgfCurves, PrismIsBehindItsOutlineAndClosed) {
     const V3d outline[] = {{0, 0, 5}, {2, 0, 5}, {2, 3, 5}, {0, 3, 5}, {-1, 1, 5}};
-    const Mesh prism = make_prism(outline, 2);
+    const PolygonMesh prism = make_prism(outline, 2);
     EXPECT_EQ(prism.faces.size(), 7u);
     EXPECT_TRUE(is_closed(prism));
     EXPECT_NEAR(volume(prism), 7.5 * 2, 1e-12);
     for (const V3d& p : prism.points) EXPECT_TRUE(p.z == 5 || p.z == 3);
-    const Mesh inwards = make_prism(outline, -2);
+    const PolygonMesh inwards = make_prism(outline, -2);
     EXPECT_NEAR(volume(inwards), -7.5 * 2, 1e-12);
     for (const V3d& p : inwards.points) EXPECT_TRUE(p.z == 5 || p.z == 7);
 }

@@ -11,6 +11,7 @@
 #include "interflect/base/crc32.h"
 #include "interflect/error.h"
 #include "interflect/formats/extension.h"
+#include "interflect/formats/gltf.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
@@ -28,7 +29,7 @@ struct Format {
     Scene (*read)(const fs::path&, const ReadOptions&);
 };
 
-constexpr Format formats[] = {{".mgf", read_mgf}};
+constexpr Format formats[] = {{".mgf", read_mgf}, {".gltf", read_gltf}, {".glb", read_gltf}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);

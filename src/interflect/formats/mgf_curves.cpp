@@ -28,19 +28,20 @@ V3d perpendicular(const V3d& axis) {
 
 double quarter_turns(int step, int steps_per_quarter) { return step * std::numbers::pi / (2.0 * steps_per_quarter); }
 
-void reverse_faces(Mesh& mesh) {
+void reverse_faces(PolygonMesh& mesh) {
     for (auto& face : mesh.faces) std::reverse(face.begin(), face.end());
 }
 
 /// Turns a profile about `axis` (of unit length). The front is to the right of the profile's direction of travel, seen
 /// with the axis up and the radius to the right: outside when it climbs.
-Mesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3d& centre, const V3d& axis, int divisions) {
+PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3d& centre, const V3d& axis,
+                    int divisions) {
     const auto around = static_cast<std::uint32_t>(4 * divisions);
     const V3d u = perpendicular(axis), v = axis.cross(u);
     double largest = 0;
     for (const ProfilePoint& p : profile) largest = std::max(largest, p.radius);
 
-    Mesh mesh;
+    PolygonMesh mesh;
     std::vector<std::uint32_t> first_point;  // of each ring
     std::vector<bool> is_pole;
     for (const ProfilePoint& p : profile) {
@@ -74,36 +75,36 @@ Mesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3d& cent
 
 }  // namespace
 
-Mesh make_sphere(const V3d& centre, double radius, int divisions) {
+PolygonMesh make_sphere(const V3d& centre, double radius, int divisions) {
     if (radius == 0) throw std::invalid_argument("the radius of a sphere must not be 0");
     std::vector<ProfilePoint> profile;
     for (int i = 0; i <= 2 * divisions; ++i) {
         const double angle = quarter_turns(i, divisions);
         profile.push_back({std::abs(radius) * std::sin(angle), -std::abs(radius) * std::cos(angle)});
     }
-    Mesh mesh = revolve(profile, false, centre, V3d(0, 0, 1), divisions);
+    PolygonMesh mesh = revolve(profile, false, centre, V3d(0, 0, 1), divisions);
     if (radius < 0) reverse_faces(mesh);
     return mesh;
 }
 
-Mesh make_cone(const V3d& end1, double radius1, const V3d& end2, double radius2, int divisions) {
+PolygonMesh make_cone(const V3d& end1, double radius1, const V3d& end2, double radius2, int divisions) {
     if (radius1 == 0 && radius2 == 0) throw std::invalid_argument("the radii of a cone must not both be 0");
     if (radius1 * radius2 < 0) throw std::invalid_argument("the radii of a cone must not differ in sign");
     const double length = (end2 - end1).length();
     if (!(length > 0)) throw std::invalid_argument("the ends of a cone or cylinder must not be at one place");
     const ProfilePoint profile[] = {{std::abs(radius1), 0}, {std::abs(radius2), length}};
-    Mesh mesh = revolve(profile, false, end1, (end2 - end1) / length, divisions);
+    PolygonMesh mesh = revolve(profile, false, end1, (end2 - end1) / length, divisions);
     if (radius1 < 0 || radius2 < 0) reverse_faces(mesh);
     return mesh;
 }
 
-Mesh make_ring(const V3d& centre, const V3d& normal, double inner, double outer, int divisions) {
+PolygonMesh make_ring(const V3d& centre, const V3d& normal, double inner, double outer, int divisions) {
     if (!(0 <= inner && inner < outer)) throw std::invalid_argument("a ring needs radii 0 <= inner < outer");
     const ProfilePoint profile[] = {{outer, 0}, {inner, 0}};
     return revolve(profile, false, centre, normal, divisions);
 }
 
-Mesh make_torus(const V3d& centre, const V3d& normal, double inner, double outer, int divisions) {
+PolygonMesh make_torus(const V3d& centre, const V3d& normal, double inner, double outer, int divisions) {
     if (inner * outer < 0 || !(std::abs(inner) < std::abs(outer)))
         throw std::invalid_argument("a torus needs radii of one sign, the first smaller than the second");
     const double tube = 0.5 * (std::abs(outer) - std::abs(inner)), middle = 0.5 * (std::abs(outer) + std::abs(inner));
@@ -112,12 +113,12 @@ Mesh make_torus(const V3d& centre, const V3d& normal, double inner, double outer
         const double angle = quarter_turns(i, divisions);
         profile.push_back({std::max(0.0, middle + tube * std::cos(angle)), tube * std::sin(angle)});
     }
-    Mesh mesh = revolve(profile, true, centre, normal, divisions);
+    PolygonMesh mesh = revolve(profile, true, centre, normal, divisions);
     if (outer < 0) reverse_faces(mesh);
     return mesh;
 }
 
-Mesh make_prism(std::span<const V3d> outline, double length) {
+PolygonMesh make_prism(std::span<const V3d> outline, double length) {
     if (length == 0) throw std::invalid_argument("the length of a prism must not be 0");
     V3d area(0);
     for (std::size_t i = 1; i + 1 < outline.size(); ++i)
@@ -125,7 +126,7 @@ Mesh make_prism(std::span<const V3d> outline, double length) {
     if (!(area.length() > 0)) throw std::invalid_argument("the outline of a prism must enclose an area");
     const V3d behind = area.normalized() * -length;
 
-    Mesh mesh;
+    PolygonMesh mesh;
     mesh.points.assign(outline.begin(), outline.end());
     for (const V3d& p : outline) mesh.points.push_back(p + behind);
     const auto n = static_cast<std::uint32_t>(outline.size());

@@ -9,7 +9,7 @@
 namespace interflect::inline detail {
 
 /// A surface made of flat polygons that share points.
-struct Mesh {
+struct PolygonMesh {
     std::vector<Imath::V3d> points;
     std::vector<std::vector<std::uint32_t>> faces;  ///< Indices of points, counter-clockwise seen from the front.
 };
@@ -22,21 +22,21 @@ struct Mesh {
 // All throw std::invalid_argument, with a sentence, where MGF calls the arguments illegal.
 
 /// Poles on the z axis. @param radius  Not 0.
-Mesh make_sphere(const Imath::V3d& centre, double radius, int divisions);
+PolygonMesh make_sphere(const Imath::V3d& centre, double radius, int divisions);
 
 /// A right cone or cylinder, open at its ends, about the line from `end1` to `end2`.
 /// @param radius1, radius2  Not both 0, and not of different signs.
-Mesh make_cone(const Imath::V3d& end1, double radius1, const Imath::V3d& end2, double radius2, int divisions);
+PolygonMesh make_cone(const Imath::V3d& end1, double radius1, const Imath::V3d& end2, double radius2, int divisions);
 
 /// A disk or flat ring whose front is towards `normal`. @param inner, outer  0 <= inner < outer.
-Mesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
+PolygonMesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
 /// @param inner, outer  Distances from the axis to the near and the far side of the tube: of one sign (inner may be 0),
 ///                      and |inner| < |outer|.
-Mesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
+PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
 /// A closed prism: the polygon, its copy `length` behind it, and the walls between. Where `length` is negative the copy
 /// is in front, and all faces look inwards. @param outline  Three points or more that enclose an area.
-Mesh make_prism(std::span<const Imath::V3d> outline, double length);
+PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
 }  // namespace interflect::inline detail

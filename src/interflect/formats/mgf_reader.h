@@ -129,7 +129,7 @@ class MgfReader {
     void add_loop(MgfWords names);
     std::uint32_t usable_material();
     void add_face();
-    void add_mesh(const Mesh& mesh);
+    void add_mesh(const PolygonMesh& mesh);
     void open_transform(MgfWords words, const LineReader::Position& body);
     bool close_transform();
     Imath::M44d total_transform() const { return transforms_.empty() ? Imath::M44d() : transforms_.back().total; }

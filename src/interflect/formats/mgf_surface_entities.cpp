@@ -81,7 +81,7 @@ void MgfReader::face_with_holes(MgfWords words) {
     add_face();
 }
 
-void MgfReader::add_mesh(const Mesh& mesh) {
+void MgfReader::add_mesh(const PolygonMesh& mesh) {
     const std::uint32_t material = usable_material();
     if (materials_.current().is_textured())
         throw MgfFault("the material has a texture, and only faces (f, fh) have texture coordinates");

@@ -1,0 +1,98 @@
+#include "interflect/geometry/triangle_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "interflect/base/random.h"
+
+namespace interflect {
+namespace {
+
+using Faces = std::vector<FaceVertices>;
+
+std::size_t quadrilaterals(const Faces& faces) {
+    return static_cast<std::size_t>(std::count_if(faces.begin(), faces.end(), [](auto& f) { return f[3] != none; }));
+}
+
+const std::vector<V3f> unit_square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+
+/// The vertices of a face, from the lowest on in its order round the face.
+FaceVertices from_lowest(FaceVertices face) {
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    return face;
+}
+
+TEST(TrianglePairs, ASquareSplitAlongEitherDiagonalIsOneFace) {
+    for (const std::vector<std::uint32_t>& triangles :
+         {std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}, {0, 1, 3, 3, 1, 2}, {2, 3, 0, 1, 2, 0}}) {
+        const Faces faces = merge_triangle_pairs(unit_square, {}, triangles);
+        ASSERT_EQ(faces.size(), 1u);
+        EXPECT_EQ(from_lowest(faces[0]), (FaceVertices{0, 1, 2, 3}));
+    }
+}
+
+struct Unmergeable {
+    const char* name;
+    std::vector<V3f> vertices;
+    std::vector<V2f> coordinates;
+    std::vector<std::uint32_t> triangles;
+};
+
+class UnmergeablePair : public testing::TestWithParam<Unmergeable> {};
+
+TEST_P(UnmergeablePair, StaysTwoTriangles) {
+    const auto& [name, vertices, coordinates, triangles] = GetParam();
+    const Faces faces = merge_triangle_pairs(vertices, coordinates, triangles);
+    ASSERT_EQ(faces.size(), 2u);
+    EXPECT_EQ(quadrilaterals(faces), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, UnmergeablePair,
+    testing::Values(Unmergeable{"Folded", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.001f}, {0, 1, 0}}, {}, {0, 1, 2, 0, 2, 3}},
+                    Unmergeable{"Concave", {{0, 0, 0}, {1, 0, 0}, {0.3f, 0.3f, 0}, {0, 1, 0}}, {}, {0, 1, 2, 0, 2, 3}},
+                    Unmergeable{"InALine", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {}, {0, 1, 3, 1, 2, 3}},
+                    Unmergeable{"BackToBack", unit_square, {}, {0, 1, 2, 0, 3, 2}},
+                    Unmergeable{"Twice", unit_square, {}, {0, 1, 2, 0, 1, 2}},
+                    Unmergeable{"Distorted", unit_square, {{0, 0}, {1, 0}, {1, 0.5f}, {0, 1}}, {0, 1, 2, 0, 2, 3}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(TrianglePairs, ALinearTextureIsKept) {
+    const std::vector<V2f> coordinates{{0, 0}, {2, 1}, {1, 3}, {-1, 2}};
+    EXPECT_EQ(merge_triangle_pairs(unit_square, coordinates, std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}).size(), 1u);
+}
+
+/// A grid of cells 1 by 0.7, its triangles in any order and each turned any way: no triangle is left alone.
+TEST(TrianglePairs, AGridIsMergedWholeWhateverTheOrder) {
+    constexpr std::uint32_t n = 20;
+    std::vector<V3f> vertices;
+    for (std::uint32_t i = 0; i < n * n; ++i)
+        vertices.emplace_back(static_cast<float>(i % n), 0.7f * static_cast<float>(i / n), 5.0f);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::uint32_t y = 0; y + 1 < n; ++y)
+        for (std::uint32_t x = 0; x + 1 < n; ++x) {
+            const std::uint32_t a = y * n + x;
+            triangles.push_back({a, a + 1, a + n + 1});
+            triangles.push_back({a + n + 1, a + n, a});
+        }
+    std::uint64_t number = 7;
+    for (std::size_t i = triangles.size(); i-- > 1;) std::swap(triangles[i], triangles[(number = mix(number, i)) % i]);
+    std::vector<std::uint32_t> corners;
+    for (auto& triangle : triangles) {
+        std::rotate(triangle.begin(), triangle.begin() + static_cast<int>((number = mix(number, 1)) % 3),
+                    triangle.end());
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    }
+    const Faces faces = merge_triangle_pairs(vertices, {}, corners);
+    EXPECT_EQ(faces.size(), (n - 1) * (n - 1));
+    EXPECT_EQ(quadrilaterals(faces), faces.size());
+    std::set<FaceVertices> cells;
+    for (const FaceVertices& face : faces) cells.insert(from_lowest(face));
+    EXPECT_TRUE(cells.contains(FaceVertices{0, 1, n + 1, n}));
+    EXPECT_EQ(cells.size(), faces.size());
+}
+
+}  // namespace
+}  // namespace interflect
