@@ -27,8 +27,8 @@ IN_ROOM = '{"views": [{"name": "door", "eye": [0.3, 0.2, 1.6], "look_at": [1.2, 
 AT_BALL = '{"views": [{"name": "ball", "eye": [5, -4, 2.5], "look_at": [0, 0, 0.5], "up": [0, 0, 1], "fov": 45}]}'
 # What each adds to the comparison: a file and its views, or a scene that is there, and options of reading.
 SCENES = {
-    "area lamps": ("scenes/office.mgf", None, ""),
-    "two-sided lamps": ("maze:4:furniture", None, ""),
+    "office": ("scenes/office.mgf", None, ""),
+    "maze": ("maze:4:furniture", None, ""),
     "images": ("make-scene boxes --texture", None, ""),
     "point light": (SHELL + "v bulb =\n\tp 0.7 1.2 1.9\nlight point bulb 100\n", IN_ROOM, ""),
     "spot": (SHELL + "v bulb =\n\tp 0.9 1.6 2.3\n\tn 0.1 0.2 -1\nlight spot bulb 300 20 35\n", IN_ROOM, ""),

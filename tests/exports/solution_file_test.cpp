@@ -14,7 +14,6 @@
 #include "interflect/elements/forest.h"
 #include "interflect/error.h"
 #include "interflect/exports/checksums.h"
-#include "interflect/exports/solve_report.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -269,41 +268,6 @@ TEST_F(SolutionFile, OpensVersion4) {
     EXPECT_EQ(read.solution.groups.size(), 1u);
     ASSERT_EQ(read.solution.iterations.size(), 1u) << "the last one alone";
     EXPECT_EQ(read.solution.iterations[0].rays, 20'000);
-}
-
-TEST_F(SolutionFile, KeepsEveryIteration) {
-    SolvedScene solved = example();
-    SolveOptions options = solved.solution.options;
-    options.experimental.rays_per_iteration = 2000;
-    solved.solution = solve(solved.scene, RayCaster(solved.scene), options);
-    write_solution(path_, solved.scene, solved.solution);
-    const std::vector<IterationReport> read = read_solution(path_).solution.iterations;
-    ASSERT_EQ(read.size(), 5u);
-    for (std::size_t i = 0; i < read.size(); ++i)
-        EXPECT_EQ(report_row(read[i]), report_row(solved.solution.iterations[i])) << i;
-    EXPECT_TRUE(std::isinf(read[0].error_estimate)) << "not known after one iteration";
-    EXPECT_EQ(read[4].rays, 10'000);
-}
-
-TEST_F(SolutionFile, KeepsTheChecksumsOfTheFilesThatWereRead) {
-    SolvedScene solved = example();
-    solved.scene.files = {"room.mgf", "oak.png"};
-    solved.scene.file_checksums = {0x1234abcd, 0x0000000f};
-    write_solution(path_, solved.scene, solved.solution);
-    const Scene read = read_solution(path_).scene;
-    EXPECT_EQ(read.files, solved.scene.files);
-    EXPECT_EQ(read.file_checksums, solved.scene.file_checksums);
-}
-
-/// The table of checksums has a line for all arrays of a group that are numbered.
-TEST_F(SolutionFile, HasRoomForAnyNumberOfTextures) {
-    SolvedScene solved = example();
-    solved.scene.textures.resize(300, Texture{"grey.png", 1, 1, {Rgb(0.5f)}});
-    write_solution(path_, solved.scene, solved.solution);
-    EXPECT_EQ(read_solution(path_).scene.textures.size(), 300u);
-    std::string damaged = contents(path_);
-    damaged[damaged.find(std::string("\0\0\0\x3f\0\0\0\x3f\0\0\0\x3f", 12))] ^= 1;
-    EXPECT_THAT(error_of(folder_.write("damaged.h5", damaged)), HasSubstr("the checksum of /scene/textures differs"));
 }
 
 TEST_F(SolutionFile, OpensVersion2) {
