@@ -51,6 +51,12 @@ class Addon(unittest.TestCase):
         self.assertLess(found["normal"][2], -0.999)  # it shines down
         self.assertEqual(found["objects_after"], found["objects_before"])
 
+    def test_a_plain_world_lights_the_scene(self):
+        found = self.blender("world")
+        self.assertEqual(found["result"], ["FINISHED"])
+        for found, expected in zip(found["brightest"], (0.8 * 0.4, 0.8 * 0.8, 0.8 * 1.6)):
+            self.assertAlmostEqual(found / expected, 1, delta=0.05)
+
     def test_cancelling_leaves_the_scene_as_it_was(self):
         found = self.blender("cancel")
         self.assertTrue(found["was_cancelled"])

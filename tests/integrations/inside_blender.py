@@ -96,5 +96,26 @@ def cancel() -> dict:
     return {"was_cancelled": running.is_cancelled and not running.error, "seconds": time.monotonic() - start}
 
 
-cases = {"vertex": lambda: bake("VERTEX"), "lightmap": lambda: bake("LIGHTMAP"), "panel": panel, "cancel": cancel}
+def world() -> dict:
+    """A grey floor under a sky of one colour, of radiance L: as bright as the sky times its reflectance."""
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
+    sky = bpy.data.worlds.new("sky")
+    sky.use_nodes = True
+    sky.node_tree.nodes["Background"].inputs["Color"].default_value = (0.2, 0.4, 0.8, 1)
+    sky.node_tree.nodes["Background"].inputs["Strength"].default_value = 2
+    bpy.context.scene.world = sky
+    settings = bpy.context.scene.interflect
+    settings.rays, settings.kind, settings.use_camera = 0.5, "VERTEX", False
+    result = list(bpy.ops.interflect.bake())
+    (lit,) = [o for o in bpy.data.collections[exchange.LIT_COLLECTION].objects if o.type == "MESH"]
+    nodes = lit.data.materials[0].node_tree.nodes
+    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+    front = output.inputs["Surface"].links[0].from_node.inputs[1].links[0].from_node
+    strength = front.inputs["Strength"].default_value
+    colours = [list(c.color)[:3] for c in lit.data.color_attributes[0].data]
+    return {"result": result, "brightest": [strength * max(c[i] for c in colours) for i in range(3)]}
+
+
+cases = {"world": world, "vertex": lambda: bake("VERTEX"), "lightmap": lambda: bake("LIGHTMAP"), "panel": panel, "cancel": cancel}
 Path(out).write_text(json.dumps(cases[case]()))
