@@ -12,6 +12,7 @@
 #include "interflect/formats/extension.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
+#include "interflect/formats/rad.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
@@ -27,7 +28,7 @@ struct Format {
     Scene (*read)(const fs::path&, const ReadOptions&);
 };
 
-constexpr Format formats[] = {{".mgf", read_mgf}};
+constexpr Format formats[] = {{".mgf", read_mgf}, {".rad", read_rad}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);
