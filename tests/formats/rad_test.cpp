@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
 #include "interflect/formats/curves.h"
 #include "interflect/formats/rad_materials.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/load_scene.h"
+#include "tests/formats/read_faults.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::numbers::pi;
-using testing_support::TemporaryFolder;
+using namespace testing_support;
 
 const std::string grey = "void plastic grey\n0\n0\n5 .5 .5 .5 0 0\n";
 const std::string square = "grey polygon square\n0\n0\n12\n 0 0 0\n 1 0 0\n 1 1 0\n 0 1 0\n";
@@ -199,7 +199,8 @@ TEST(Rad, XformPlacesCopiesOfAFile) {
     EXPECT_NEAR(area(scene), 6 * 4 + 1, 1e-5);
     EXPECT_EQ(scene.objects.back(), "square");
     EXPECT_EQ(scene.objects[6], "row.1.2.square");
-    const Patch& last = scene.patches[10];  // of copy 1.2: the square moved by (10, 10), then all twice as large and 3 m up
+    const Patch& last =
+        scene.patches[10];  // of copy 1.2: the square moved by (10, 10), then all twice as large and 3 m up
     EXPECT_EQ(scene.objects[last.object], "row.1.2.square");
     EXPECT_EQ(V3f(scene.origin) + scene.vertices[last.vertices[0]], V3f(20, 20, 3));
     EXPECT_EQ(PatchGeometry(scene, scene.patches[12]).normal(), V3f(0, -1, 0));
@@ -233,20 +234,6 @@ TEST(Rad, NoCommandIsEverRun) {
         EXPECT_EQ(scene.warnings.entries()[0].kind, "unsupported-command");
         EXPECT_FALSE(fs::exists(target)) << command;
     }
-}
-
-template <class Read>
-std::string message_of(const Read& read) {
-    try {
-        read();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
-void expect_in(const std::string& message, const std::string& part) {
-    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
 }
 
 TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
@@ -287,11 +274,7 @@ TEST(Rad, FilesThatMultiplyEachOtherAreRefusedInTime) {
 
 // ---- Bad files
 
-struct BadText {
-    const char* name;
-    const char* text;      // after the material, which has four lines
-    const char* expected;  // part of the message
-};
+// Each comes after the material, which has four lines.
 class RadBadText : public testing::TestWithParam<BadText> {};
 
 TEST_P(RadBadText, IsNamedWithItsFault) {

@@ -12,7 +12,10 @@
 #include "interflect/formats/extension.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
+#include "interflect/formats/obj.h"
+#include "interflect/formats/ply.h"
 #include "interflect/formats/rad.h"
+#include "interflect/formats/stl.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
@@ -28,7 +31,8 @@ struct Format {
     Scene (*read)(const fs::path&, const ReadOptions&);
 };
 
-constexpr Format formats[] = {{".mgf", read_mgf}, {".rad", read_rad}};
+constexpr Format formats[] = {
+    {".mgf", read_mgf}, {".obj", read_obj}, {".ply", read_ply}, {".rad", read_rad}, {".stl", read_stl}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);

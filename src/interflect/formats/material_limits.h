@@ -14,6 +14,14 @@ inline bool is_mirror(double specular_reflectance, double roughness) {
     return specular_reflectance > 0 && roughness <= roughest;
 }
 
+/// What surfaces have of which the file tells nothing.
+inline Material default_material() {
+    Material grey;
+    grey.name = "default";
+    grey.reflectance = Rgb(0.5f);
+    return grey;
+}
+
 /// Limits every channel to `largest_reflectance`. @return whether one was above
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;

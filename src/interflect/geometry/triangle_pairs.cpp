@@ -71,7 +71,7 @@ class PairFinder {
         for (std::uint32_t t = 0; t < faces_.size(); ++t) {
             if (!is_single(t)) continue;
             for (std::uint32_t k = 0; k < 3; ++k) {
-                const auto [low, high] = std::minmax(corner(t, k), corner(t, k + 1));
+                const auto [low, high] = std::minmax({corner(t, k), corner(t, k + 1)});
                 edges.push_back({std::uint64_t{low} << 32 | high, t, k});
             }
         }
