@@ -31,3 +31,7 @@ interflect_find_library(interflect::glu HEADER GL/glu.h LIBRARY GLU)
 # CMake's own FindHDF5 asks the compiler of C, which a project need not have enabled.
 interflect_find_library(interflect::hdf5 HEADER hdf5.h LIBRARY hdf5 hdf5_serial FOLDERS hdf5/serial)
 interflect_find_library(interflect::deflate HEADER libdeflate.h LIBRARY deflate)
+interflect_find_library(interflect::spng HEADER spng.h LIBRARY spng)
+interflect_find_library(interflect::turbojpeg HEADER turbojpeg.h LIBRARY turbojpeg)
+interflect_find_library(interflect::meshoptimizer HEADER meshoptimizer.h LIBRARY meshoptimizer)
+interflect_find_library(interflect::draco HEADER draco/compression/decode.h LIBRARY draco)

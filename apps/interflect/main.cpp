@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
     add_render(app, exit_code);
     add_probe(app, exit_code);
     add_report(app);
+    add_export(app);
     add_compare(app);
     add_bench(app);
     add_make_scene(app);

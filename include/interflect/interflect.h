@@ -6,6 +6,7 @@
 #include "interflect/denoise.h"
 #include "interflect/dimming.h"
 #include "interflect/error.h"
+#include "interflect/export.h"
 #include "interflect/gather.h"
 #include "interflect/glare.h"
 #include "interflect/image_files.h"

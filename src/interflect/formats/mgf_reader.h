@@ -132,11 +132,12 @@ class MgfReader {
     void add_mesh(const PolygonMesh& mesh);
     void open_transform(MgfWords words, const LineReader::Position& body);
     bool close_transform();
-    Imath::M44d total_transform() const { return transforms_.empty() ? Imath::M44d() : transforms_.back().total; }
+    Imath::M44d total_transform() const { return transforms_.empty() ? file_to_world_ : transforms_.back().total; }
     void place_copy(OpenMgfTransform& transform);
     bool next_copy(OpenMgfTransform& transform);
 
     ReadOptions options_;
+    Imath::M44d file_to_world_;
     SourceFiles sources_;
     OpenMgfFile* file_ = nullptr;
     int include_depth_ = 0, repeating_arrays_ = 0;

@@ -53,8 +53,9 @@ ObjMaterials::ObjMaterials(Model& model, const ReadOptions& options) : model_(mo
 }
 
 void ObjMaterials::read(const fs::path& path, const Location& where) {
-    if (!is_within(path, model_.file.parent_path()))
-        throw std::invalid_argument(fmt::format("'{}' lies outside the scene's folder", path.string()));
+    if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
+        throw std::invalid_argument(
+            fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", path.string()));
     std::error_code ignored;
     if (!fs::exists(path, ignored)) {
         warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
@@ -109,8 +110,9 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     std::string name = fmt::format("{}", fmt::join(words, " "));
     std::replace(name.begin(), name.end(), '\\', '/');
     const fs::path path = where.file->parent_path() / name;
-    if (!is_within(path, model_.file.parent_path()))
-        throw std::invalid_argument(fmt::format("the texture '{}' lies outside the scene's folder", name));
+    if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
+        throw std::invalid_argument(fmt::format(
+            "the texture '{}' lies outside the scene's folder, which is not allowed (outside_files)", name));
     return path;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "interflect/error.h"
+#include "interflect/formats/file_to_world.h"
 #include "interflect/formats/number.h"
 
 namespace interflect::inline detail {
@@ -148,7 +149,7 @@ std::uint32_t ObjReader::mesh() {
         mesh.material = material_;
         mesh.back_emits = false;
         model_.meshes.push_back(std::move(mesh));
-        model_.instances.push_back({entry->second, Imath::M44d(), entry->first.first});
+        model_.instances.push_back({entry->second, file_to_world(options_), entry->first.first});
     }
     return entry->second;
 }

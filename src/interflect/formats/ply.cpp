@@ -9,6 +9,7 @@
 
 #include "interflect/error.h"
 #include "interflect/formats/checked_options.h"
+#include "interflect/formats/file_to_world.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/model.h"
 #include "interflect/formats/ply_header.h"
@@ -48,7 +49,7 @@ class PlyReader {
             if (index >= mesh_.positions.size())
                 throw std::invalid_argument(
                     fmt::format("a face has vertex {}, but there are {}", index, mesh_.positions.size()));
-        model_.instances.push_back({0, Imath::M44d(), 0});
+        model_.instances.push_back({0, file_to_world(options_), 0});
         model_.materials.push_back(material());
     }
 

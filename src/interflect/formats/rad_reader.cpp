@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "interflect/error.h"
+#include "interflect/formats/file_to_world.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/formats/text_file.h"
 
@@ -59,7 +60,7 @@ RadReader::RadReader(const fs::path& path, const ReadOptions& options)
 void RadReader::read(std::string text) {
     main_ = &sources_.add(model_.file, std::move(text)).first;
     model_.files.push_back(model_.file.string());
-    read_file({*main_, {{M44d(), ""}}, ""});
+    read_file({*main_, {{file_to_world(options_), ""}}, ""});
 }
 
 void RadReader::read_file(const OpenFile& file) {
@@ -121,8 +122,9 @@ const SourceFile& RadReader::included_file(const std::string& name, const OpenFi
     if (!known) {
         std::error_code ignored;
         const SourceFile& beside = fs::exists(main_->path.parent_path() / name, ignored) ? *main_ : file.source;
-        if (!is_within(beside.path.parent_path() / name, main_->path.parent_path()))
-            throw std::invalid_argument(fmt::format("'{}' lies outside the scene's folder", name));
+        if (!options_.outside_files && !is_within(beside.path.parent_path() / name, main_->path.parent_path()))
+            throw std::invalid_argument(
+                fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", name));
         const auto& [source, is_new] = sources_.find(name, beside);
         if (is_new) model_.files.push_back(source.path.string());
         known = &source;

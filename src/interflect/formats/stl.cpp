@@ -8,6 +8,7 @@
 #include "interflect/error.h"
 #include "interflect/formats/byte_order.h"
 #include "interflect/formats/checked_options.h"
+#include "interflect/formats/file_to_world.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/model.h"
@@ -32,13 +33,13 @@ std::optional<std::size_t> binary_triangles(std::string_view bytes) {
 }
 
 /// Adds a mesh for an object of this name.
-Mesh& add_solid(Model& model, const std::string& name) {
+Mesh& add_solid(Model& model, const std::string& name, const ReadOptions& options) {
     const auto index = static_cast<std::uint32_t>(model.meshes.size());
     Mesh& mesh = model.meshes.emplace_back();
     mesh.name = "solid '" + name + "'";
     if (!name.empty()) model.objects.push_back(name);
     model.instances.push_back(
-        {index, Imath::M44d(), name.empty() ? 0 : static_cast<std::uint32_t>(model.objects.size() - 1)});
+        {index, file_to_world(options), name.empty() ? 0 : static_cast<std::uint32_t>(model.objects.size() - 1)});
     return mesh;
 }
 
@@ -47,8 +48,8 @@ void add_vertex(Mesh& mesh, const V3d& x) {
     mesh.positions.push_back(x);
 }
 
-void read_binary_stl(std::string_view bytes, std::size_t count, Model& model) {
-    Mesh& mesh = add_solid(model, "");
+void read_binary_stl(std::string_view bytes, std::size_t count, Model& model, const ReadOptions& options) {
+    Mesh& mesh = add_solid(model, "", options);
     mesh.positions.reserve(3 * count);
     mesh.indices.reserve(3 * count);
     for (std::size_t triangle = 0; triangle < count; ++triangle) {
@@ -76,7 +77,7 @@ void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& opti
         const auto fail = [&](const std::string& fault) { throw InputError(model.file, lines.line(), fault); };
         if (words[0] == "solid") {
             if (lines.rest().size() > options.max_name_length) fail("the name of this solid is too long");
-            solid = &add_solid(model, std::string(lines.rest()));
+            solid = &add_solid(model, std::string(lines.rest()), options);
         } else if (words[0] == "vertex") {
             if (!solid) fail("a vertex before the first 'solid'");
             if (words.size() != 4) fail(fmt::format("a vertex has {} coordinates, not 3", words.size() - 1));
@@ -118,7 +119,7 @@ Scene read_stl_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
             throw TooManyPatches(
                 path, 0,
                 fmt::format("{} triangles would give more than {} patches (max_patches)", *count, options.max_patches));
-        read_binary_stl(bytes, *count, model);
+        read_binary_stl(bytes, *count, model, options);
     } else {
         if (!bytes.starts_with("solid"))
             throw InputError(

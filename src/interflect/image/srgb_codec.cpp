@@ -1,17 +1,12 @@
-// PNG and JPEG through stb. JPEG is written only: stb's reader of it can be made to write outside its tables.
+// PNG and JPEG: written through stb. stored_image.cpp reads them.
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
+#include "interflect/image/stored_image.h"
 
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_NO_STDIO
-#define STBI_ONLY_PNG
-#include <stb/stb_image.h>
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
@@ -23,38 +18,6 @@ namespace {
 
 constexpr int channels = 3;
 constexpr int jpeg_quality = 95;  // of 100: no blocks that the eye would see on smooth walls
-
-/// Bytes as stb asks for them. stb takes zeros for what is missing at the end and says nothing: this notices.
-struct ByteSource {
-    std::string_view bytes;
-    std::size_t position = 0;
-    bool asked_too_far = false;
-
-    static int read(void* user, char* data, int size) {
-        auto& source = *static_cast<ByteSource*>(user);
-        const std::size_t count = source.bytes.substr(source.position, static_cast<std::size_t>(size)).copy(data, size);
-        source.position += count;
-        source.asked_too_far |= count == 0 && size > 0;
-        return static_cast<int>(count);
-    }
-    static void skip(void* user, int count) {
-        auto& source = *static_cast<ByteSource*>(user);
-        const auto target = static_cast<std::int64_t>(source.position) + count;
-        source.asked_too_far |= target > static_cast<std::int64_t>(source.bytes.size());
-        source.position = static_cast<std::size_t>(
-            std::clamp<std::int64_t>(target, 0, static_cast<std::int64_t>(source.bytes.size())));
-    }
-    static int at_end(void* user) {
-        const auto& source = *static_cast<ByteSource*>(user);
-        return source.position >= source.bytes.size();
-    }
-};
-
-constexpr stbi_io_callbacks callbacks = {ByteSource::read, ByteSource::skip, ByteSource::at_end};
-
-struct Free {
-    void operator()(stbi_us* values) const { stbi_image_free(values); }
-};
 
 std::vector<std::uint8_t> srgb_bytes(const Image& image) {
     std::vector<std::uint8_t> bytes;
@@ -91,22 +54,10 @@ std::string encode_jpeg(const Image& image) {
 }
 
 Image decode_png(std::string_view bytes, std::int64_t most_pixels) {
-    int width = 0, height = 0, file_channels = 0;
-    ByteSource header{bytes};
-    if (!stbi_info_from_callbacks(&callbacks, &header, &width, &height, &file_channels))
-        throw std::runtime_error(std::string("it is no PNG of a usable size (") + stbi_failure_reason() + ")");
-    require_allowed_size(width, height, most_pixels);
-
-    // 8 bit files come as exact multiples of 65535 / 255.
-    ByteSource source{bytes};
-    const std::unique_ptr<stbi_us, Free> values(
-        stbi_load_16_from_callbacks(&callbacks, &source, &width, &height, &file_channels, channels));
-    if (source.asked_too_far) throw std::runtime_error("it ends too early");
-    if (!values) throw std::runtime_error(stbi_failure_reason());
-    Image image(width, height);
+    const StoredImage stored = decode_stored_png(bytes, most_pixels);
+    Image image(stored.width, stored.height);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        for (int c = 0; c < channels; ++c)
-            image.pixels[i][c] = srgb_decode(static_cast<float>(values.get()[channels * i + c]) / 65535);
+        for (int c = 0; c < channels; ++c) image.pixels[i][c] = srgb_decode(stored.value(i, c));
     return image;
 }
 

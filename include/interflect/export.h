@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interflect/path_tracer.h"
+#include "interflect/scene.h"
+#include "interflect/solve.h"
+
+namespace interflect {
+
+/// How the irradiance of a lightmap's texels is found.
+enum class LightmapShading {
+    smooth,  ///< Interpolated between the elements, as by Shading::smooth.
+    gather,  ///< Gathered at each texel, as by measure_irradiance().
+};
+
+/// What lightmaps hold.
+enum class LightmapContent {
+    irradiance,  ///< H: the renderer multiplies it by the reflectance over pi, so textures stay as sharp as they are.
+    radiance,    ///< L = (M + rho H) / pi, shown as it is by any renderer.
+};
+
+struct LightmapOptions {
+    float texels_per_metre = 20;  ///< At least, > 0; less only on a surface that would not fit an image otherwise.
+    int max_size = 4096;          ///< Of an image [texels], 64 to 16384, a multiple of 4; more images where needed.
+    int gutter = 2;               ///< Around each chart, filled from its edge [texels], 1 to 64.
+    LightmapShading shading = LightmapShading::smooth;
+    LightmapContent content = LightmapContent::irradiance;
+    int samples = 64;  ///< Gathered directions a texel, >= 2.
+    std::uint64_t seed = 1;
+    std::string image_extension = ".exr";  ///< Of the images beside the file: .exr or .hdr.
+};
+
+/// What is exported and how.
+struct ExportOptions {
+    /// [stops]: a radiance of 2^-exposure becomes 1, the brightest that 8 bits hold. See automatic_exposure().
+    float exposure = 0;
+    V3f up{0, 0, 1};                          ///< Of the scene. Formats with an up axis of their own are turned.
+    std::optional<LightmapOptions> lightmap;  ///< None: the light is at the vertices of the elements.
+    PathMonitor monitor;                      ///< Of gathering.
+};
+
+/// A file of an export: its own, or one beside it.
+struct ExportedFile {
+    std::filesystem::path path;
+    std::string bytes;
+};
+
+/// A format that solved scenes are exported to.
+struct ExportFormat {
+    const char* extension;  ///< ".glb"
+    const char* name;       ///< For people: "binary glTF".
+    bool takes_lightmaps;   ///< Whether ExportOptions::lightmap means something.
+    /// The files at and beside `path`, the one at `path` last. Arguments are valid.
+    std::vector<ExportedFile> (*make)(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
+                                      const ExportOptions& options);
+};
+
+/// All there are; docs/export.md describes them.
+extern const std::span<const ExportFormat> export_formats;
+
+/// The format that a file name's extension asks for, in any case. @throws InputError that lists the extensions.
+const ExportFormat& require_export_format(const std::filesystem::path& path);
+
+/// Writes a solved scene in the format of the extension of `path`. Each file appears under its name when all are
+/// complete; the same arguments give the same bytes.
+/// @return  The files that were written.
+/// @throws InputError for an unknown extension, options out of range or without meaning in the format, a path that
+///         cannot be written, and a solution of another scene; std::runtime_error where writing fails.
+std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
+                                                   const Solution& solution, const ExportOptions& options = {});
+
+}  // namespace interflect

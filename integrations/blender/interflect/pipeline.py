@@ -1,0 +1,97 @@
+"""Runs the `interflect` command: solve, then export. Knows nothing of Blender."""
+
+import re
+import signal
+import subprocess
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+
+PERCENT = re.compile(rb"^\s*(\d+)%")
+KEPT_LINES = 20  # of what the command said, for messages
+
+
+class BakeError(Exception):
+    """The command failed; the message is what it said."""
+
+
+@dataclass
+class Stage:
+    name: str  # as shown beside the progress
+    arguments: list[str]
+
+
+@dataclass
+class Settings:
+    command: str = "interflect"
+    rays: int = 20_000_000
+    views: list[str] = field(default_factory=list)  # cameras that steer the solver; none: everywhere alike
+    kind: str = "LIGHTMAP"  # or "VERTEX"
+    texels_per_metre: float = 16
+    gather: bool = False  # texels by final gathering, slower and cleaner
+    options: list[str] = field(default_factory=list)  # more of `interflect solve`
+
+
+def stages(scene: Path, solution: Path, lit: Path, settings: Settings) -> list[Stage]:
+    solve = [str(scene), "-o", str(solution), "--rays", str(settings.rays), *settings.options]
+    for view in settings.views:
+        solve += ["--view", view]
+    export = [str(solution), "-o", str(lit)]
+    if settings.kind == "LIGHTMAP":
+        export += ["--lightmap", "--texels-per-metre", f"{settings.texels_per_metre:g}"]
+        if settings.gather:
+            export += ["--shading", "gather"]
+    return [Stage("Solving", ["solve", *solve]), Stage("Exporting", ["export", *export])]
+
+
+class Bake:
+    """The stages one after the other, in a thread of its own, so that a user interface can look at it now and then."""
+
+    def __init__(self, command: str, stages: list[Stage]):
+        self.stage, self.fraction = stages[0].name, 0.0
+        self.error: BakeError | None = None
+        self.is_cancelled = False
+        self._process: subprocess.Popen | None = None
+        self._lock = threading.Lock()  # of the two members above
+        self._thread = threading.Thread(target=self._run, args=(command, stages), daemon=True)
+        self._thread.start()
+
+    def is_running(self) -> bool:
+        return self._thread.is_alive()
+
+    def wait(self) -> None:
+        self._thread.join()
+
+    def cancel(self) -> None:
+        with self._lock:
+            self.is_cancelled = True
+            if self._process and self._process.poll() is None:
+                self._process.send_signal(signal.SIGINT)
+
+    def _run(self, command: str, stages: list[Stage]) -> None:
+        try:
+            for stage in stages:
+                self.stage, self.fraction = stage.name, 0.0
+                self._run_stage(command, stage)
+                if self.is_cancelled:
+                    return
+        except BakeError as error:
+            self.error = error
+        except OSError as error:
+            self.error = BakeError(f"cannot run '{command}': {error.strerror}. Set its path in the add-on's preferences")
+
+    def _run_stage(self, command: str, stage: Stage) -> None:
+        with self._lock:
+            if self.is_cancelled:
+                return
+            self._process = subprocess.Popen(
+                [command, *stage.arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL
+            )
+        said: list[bytes] = []
+        for line in self._process.stderr:
+            if found := PERCENT.match(line):
+                self.fraction = int(found[1]) / 100
+            else:
+                said = [*said[1 - KEPT_LINES :], line]
+        if self._process.wait() != 0 and not self.is_cancelled:
+            raise BakeError(b"".join(said).decode(errors="replace").strip() or f"{stage.name} failed")

@@ -1,0 +1,99 @@
+#include "interflect/export.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "interflect/base/pending_file.h"
+#include "interflect/elements/forest.h"
+#include "interflect/error.h"
+#include "interflect/exports/lit_gltf.h"
+#include "interflect/formats/extension.h"
+#include "interflect/render/camera_samples.h"
+
+namespace interflect {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array formats{
+    ExportFormat{".glb", "binary glTF", true, make_glb},
+    ExportFormat{".gltf", "glTF", true, make_gltf},
+};
+
+void require_usable(const LightmapOptions& options) {
+    const auto require = [](bool holds, const std::string& fault) {
+        if (!holds) throw InputError("lightmap: " + fault);
+    };
+    require(options.texels_per_metre > 0 && std::isfinite(options.texels_per_metre),
+            fmt::format("texels_per_metre is {}, expected a number above 0", options.texels_per_metre));
+    require(options.max_size >= 64 && options.max_size <= 16384 && options.max_size % 4 == 0,
+            fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
+    require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
+    require(options.samples >= 2, fmt::format("samples is {}, expected at least 2", options.samples));
+    require(options.image_extension == ".exr" || options.image_extension == ".hdr",
+            fmt::format("image_extension is '{}', expected .exr or .hdr", options.image_extension));
+}
+
+void require_usable(const ExportFormat& format, const ExportOptions& options) {
+    if (!std::isfinite(options.exposure))
+        throw InputError(fmt::format("exposure is {}, expected a finite number of stops", options.exposure));
+    const float length = options.up.length();
+    if (!(length > 0 && std::isfinite(length))) throw InputError("up has no direction");
+    if (!options.lightmap) return;
+    if (!format.takes_lightmaps)
+        throw InputError(fmt::format("{} ({}) takes no lightmaps", format.name, format.extension));
+    require_usable(*options.lightmap);
+}
+
+void write(const ExportedFile& file, const PendingFile& pending) {
+    errno = 0;
+    std::ofstream stream(pending.temporary_path(), std::ios::binary);
+    stream.write(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
+    stream.close();
+    if (!stream)
+        throw std::runtime_error(
+            fmt::format("cannot write '{}': {}", file.path.string(), errno != 0 ? std::strerror(errno) : "it failed"));
+}
+
+}  // namespace
+
+const std::span<const ExportFormat> export_formats(formats);
+
+const ExportFormat& require_export_format(const fs::path& path) {
+    const std::string extension = lower_case_extension(path);
+    std::string known;
+    for (const ExportFormat& format : export_formats) {
+        if (extension == format.extension) return format;
+        known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", format.extension, format.name);
+    }
+    throw InputError(path, 0, "expected one of the extensions " + known);
+}
+
+std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, const Solution& solution,
+                                      const ExportOptions& options) {
+    const ExportFormat& format = require_export_format(path);
+    require_usable(format, options);
+    solution.forest->require_made_for(scene);
+    require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
+    const PendingFile can_be_written(path);
+
+    const std::vector<ExportedFile> files = format.make(path, scene, solution, options);
+    std::vector<PendingFile> pending;
+    for (const ExportedFile& file : files) pending.emplace_back(file.path);
+    for (std::size_t i = 0; i < files.size(); ++i) write(files[i], pending[i]);
+    std::vector<fs::path> written;
+    for (PendingFile& file : pending) {
+        file.commit();
+        written.push_back(file.final_path());
+    }
+    return written;
+}
+
+}  // namespace interflect

@@ -1,0 +1,85 @@
+#include "interflect/exports/gltf_scene.h"
+
+#include <ImathBox.h>
+#include <ImathMatrix.h>
+#include <ImathMatrixAlgo.h>
+#include <ImathQuat.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "interflect/base/escapes.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+using Json = GltfDocument::Json;
+
+Json json_of(const Imath::V3d& v) { return {v.x, v.y, v.z}; }
+/// (x, y, z, w), as glTF has them.
+Json json_of(const Imath::Quatd& q) { return {q.v.x, q.v.y, q.v.z, q.r}; }
+
+double size_of(const Scene& scene) {
+    Imath::Box3d bounds;
+    for (const Patch& patch : scene.patches)
+        for (int c = 0; c < patch.vertex_count(); ++c) bounds.extendBy(Imath::V3d(scene.vertices[patch.vertices[c]]));
+    return bounds.size().length();
+}
+
+/// A camera looks along -z, with y up and x to the right.
+Imath::Quatd rotation_of(const View& view) {
+    const Imath::V3d back = (view.eye - view.look_at).normalized();
+    const Imath::V3d right = Imath::V3d(view.up).cross(back).normalized(), up = back.cross(right);
+    const Imath::M44d rows(right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, 0, 0, 0, 1);
+    return Imath::extractQuat(rows).normalized();
+}
+
+Json camera_of(const View& view, double scene_size) {
+    const double distance = (view.look_at - view.eye).length();
+    const double far = scene_size + distance, near = 1e-4 * far;  // what single-precision depth buffers can tell apart
+    if (view.extent > 0) {
+        const double half = view.extent / 2;
+        return {{"name", escaped(view.name)},
+                {"type", "orthographic"},
+                {"orthographic", {{"xmag", half}, {"ymag", half}, {"znear", 0}, {"zfar", far}}}};
+    }
+    const double yfov = view.fov * std::numbers::pi / 180;
+    return {{"name", escaped(view.name)},
+            {"type", "perspective"},
+            {"perspective", {{"yfov", yfov}, {"znear", near}, {"zfar", 2 * far}}}};
+}
+
+}  // namespace
+
+void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up) {
+    const std::string name = escaped(std::filesystem::path(scene.name).stem().string());
+    Json children = Json::array();
+    for (auto p = primitives.begin(); p != primitives.end();) {
+        const std::uint32_t object = p->first.first;
+        const std::string object_name = scene.objects[object].empty() ? name : escaped(scene.objects[object]);
+        Json of_object = Json::array();
+        for (; p != primitives.end() && p->first.first == object; ++p) of_object.push_back(p->second);
+        const int mesh = document.add("meshes", {{"name", object_name}, {"primitives", of_object}});
+        children.push_back(document.add("nodes", {{"name", object_name}, {"mesh", mesh}}));
+    }
+    const double scene_size = size_of(scene);
+    for (const View& view : scene.views) {
+        const int camera = document.add("cameras", camera_of(view, scene_size));
+        children.push_back(document.add("nodes", {{"name", escaped(view.name)},
+                                                  {"camera", camera},
+                                                  {"translation", json_of(view.eye - scene.origin)},
+                                                  {"rotation", json_of(rotation_of(view))}}));
+    }
+    Imath::Quatd to_y_up;
+    to_y_up.setRotation(Imath::V3d(up).normalized(), Imath::V3d(0, 1, 0));
+    Json root{{"name", name},
+              {"rotation", json_of(to_y_up)},
+              {"translation", json_of(to_y_up.rotateVector(scene.origin))},
+              {"children", children}};
+    const int root_index = document.add("nodes", root);
+    document.json["scene"] = 0;
+    document.add("scenes", {{"name", name}, {"nodes", {root_index}}});
+}
+
+}  // namespace interflect::inline detail

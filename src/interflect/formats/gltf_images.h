@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "interflect/formats/gltf_buffers.h"
+#include "interflect/image/stored_image.h"
+
+namespace interflect::inline detail {
+
+/// What a texture of the model is made of; equal ones are one texture.
+struct GltfTexels {
+    std::uint32_t colour = none;    ///< Image of sRGB colours; none: white.
+    std::uint32_t metallic = none;  ///< Image whose blue channel is metallic; none: `metallic_factor` alone.
+    float metallic_factor = 0;      ///< Colours are multiplied by 1 - metallic.
+    Rgb factor{1, 1, 1};            ///< Of the result, which is reduced to 1 where it is more.
+
+    auto key() const { return std::tuple(colour, metallic, metallic_factor, factor.x, factor.y, factor.z); }
+};
+
+/// Means over all pixels of an image.
+struct GltfImageMeans {
+    Rgb colour{1, 1, 1};    ///< Decoded from sRGB.
+    Rgb stored{1, 1, 1};    ///< As it is.
+    float least_alpha = 1;  ///< Not a mean, but the smallest.
+};
+
+/// The images of a glTF file, from buffer views, data URIs and files: PNG and JPEG.
+class GltfImages {
+  public:
+    GltfImages(GltfAsset& asset, GltfBuffers& buffers);
+
+    /// The image of a texture; none where it has none that can be read, with a warning.
+    std::uint32_t image_of_texture(std::uint32_t texture);
+    std::size_t texture_count() const { return textures_.size(); }
+    /// Whether a texture repeats in both directions.
+    bool repeats(std::uint32_t texture) const;
+
+    /// @return  index into Model::textures, and whether a texel was reduced to `largest`.
+    std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
+    const GltfImageMeans& means(std::uint32_t image);
+
+  private:
+    StoredImage decode(std::uint32_t image);
+    std::string bytes_of(std::uint32_t image);
+    std::uint32_t first_alike(std::uint32_t image) const;
+    Texture make_texture(const GltfTexels& texels, bool& is_reduced);
+
+    GltfAsset& asset_;
+    GltfBuffers& buffers_;
+    std::vector<GltfValue> images_, textures_, samplers_;
+    std::vector<std::uint32_t> first_alike_;  // the first image from the same source
+    std::map<decltype(GltfTexels().key()), std::pair<std::uint32_t, bool>> index_;
+    std::map<std::uint32_t, GltfImageMeans> means_;
+    std::uint64_t texels_ = 0, decoded_ = 0;
+};
+
+}  // namespace interflect::inline detail

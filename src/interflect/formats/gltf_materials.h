@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "interflect/formats/gltf_images.h"
+
+namespace interflect::inline detail {
+
+/// Which of a vertex's texture coordinates a texture uses, and how.
+struct GltfMapping {
+    std::uint64_t set = 0;                                ///< TEXCOORD_set
+    double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;  ///< (u, v) becomes (xx u + xy v + x, yx u + yy v + y).
+
+    bool operator==(const GltfMapping&) const = default;
+    /// The coordinates that a Scene has, whose v goes up.
+    V2f apply(double u, double v) const {
+        return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
+    }
+};
+
+/// A material as the primitives that use it see it.
+struct GltfSurface {
+    std::uint32_t material = 0;          ///< Index into Model::materials.
+    std::optional<GltfMapping> mapping;  ///< Of its textures, if it has any.
+    bool repeats = true;                 ///< Whether they repeat beyond [0, 1].
+    bool double_sided = false;
+    bool is_invisible = false;  ///< Its alpha mask leaves nothing of it.
+};
+
+/// A reference to a texture, of a material.
+struct GltfTextureUse {
+    std::uint32_t image = none;  ///< none: there is no texture.
+    GltfMapping mapping;
+    bool repeats = true;
+};
+
+/// The materials of a glTF file, each made when a primitive first asks for it.
+class GltfMaterials {
+  public:
+    GltfMaterials(GltfAsset& asset, GltfImages& images);
+
+    std::size_t count() const { return materials_.size(); }
+    /// @param index     Below count(), or none: the default material.
+    /// @param textured  Else its textures are replaced by their means.
+    const GltfSurface& surface(std::uint32_t index, bool textured);
+
+    /// To call when all are made: says how much of the light that they reflect is left out.
+    void warn_of_lost();
+
+  private:
+    struct Parts;
+
+    GltfSurface make(std::uint32_t index, bool textured);
+    GltfSurface make_default();
+    Parts parts_of(const GltfValue& owner);
+    GltfTextureUse use_of(const GltfValue& owner, const char* key);
+    void warn_of_ignored(const GltfValue& owner);
+    void apply_alpha(const GltfValue& owner, Parts& parts, GltfSurface& surface);
+    void choose_mapping(const GltfValue& owner, Parts& parts, bool textured);
+    void reflect(const GltfValue& owner, const Parts& parts, Material& material);
+    void transmit(const GltfValue& owner, const Parts& parts, Material& material);
+
+    GltfAsset& asset_;
+    GltfImages& images_;
+    std::vector<GltfValue> materials_;
+    std::map<std::pair<std::uint32_t, bool>, GltfSurface> surfaces_;
+    double lost_ = 0, all_ = 0;
+    std::vector<std::string> losing_;  // places of the materials that lose
+};
+
+}  // namespace interflect::inline detail

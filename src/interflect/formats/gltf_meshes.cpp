@@ -1,0 +1,259 @@
+#include "interflect/formats/gltf_meshes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "interflect/error.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+using Imath::V3d;
+
+constexpr int float_component = 5126;
+enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
+
+V3d vector_at(const GltfElements& elements, std::uint64_t i) {
+    return {elements.number(i, 0), elements.number(i, 1), elements.number(i, 2)};
+}
+
+GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
+    return {.first = reinterpret_cast<const char*>(attribute.values.data()),
+            .stride = static_cast<std::size_t>(attribute.components) * sizeof(float),
+            .count = count,
+            .component_type = float_component,
+            .components = attribute.components};
+}
+
+/// The triangles of a strip or a fan, but for those that use a vertex twice, by which strips turn and leap.
+std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
+    if (mode == triangles) return corners;
+    std::vector<std::uint32_t> result;
+    for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+        const std::size_t odd = i % 2;
+        const std::uint32_t a = corners[mode == triangle_fan ? 0 : i];
+        const std::uint32_t b = corners[mode == triangle_fan ? i + 1 : i + 1 + odd];
+        const std::uint32_t c = corners[mode == triangle_fan ? i + 2 : i + 2 - odd];
+        if (a != b && b != c && c != a) result.insert(result.end(), {a, b, c});
+    }
+    return result;
+}
+
+/// Which vertices are used, ascending; the indices become places in that list.
+std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
+    std::vector<std::uint32_t> used;
+    if (indices.size() >= vertex_count) {
+        used.resize(vertex_count);
+        std::iota(used.begin(), used.end(), 0u);
+        return used;
+    }
+    used = indices;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (std::uint32_t& index : indices)
+        index = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), index) - used.begin());
+    return used;
+}
+
+}  // namespace
+
+/// Where a primitive's vertices are.
+struct GltfMeshes::Vertices {
+    struct Target {
+        GltfElements offsets;
+        double weight;
+    };
+    GltfElements positions, coordinates;
+    bool has_coordinates = false;
+    DracoMesh draco;
+    std::vector<Target> targets;
+    GltfElements joint_indices, joint_weights;
+    std::span<const Imath::M44d> joints;
+
+    V3d position(std::uint64_t i, const GltfValue& primitive) const {
+        V3d result = vector_at(positions, i);
+        for (const Target& target : targets) result += vector_at(target.offsets, i) * target.weight;
+        return joints.empty() ? result : skinned(result, i, primitive);
+    }
+    V3d skinned(const V3d& position, std::uint64_t i, const GltfValue& primitive) const {
+        V3d result(0);
+        double sum = 0;
+        for (int k = 0; k < 4; ++k) {
+            const double weight = joint_weights.number(i, k), joint = joint_indices.number(i, k);
+            if (weight == 0) continue;
+            if (!(joint < static_cast<double>(joints.size())))
+                primitive.fail(fmt::format("vertex {} has joint {}, but there are {}", i, joint, joints.size()));
+            result += position * joints[static_cast<std::size_t>(joint)] * weight;
+            sum += weight;
+        }
+        return sum > 0 ? result / sum : position;
+    }
+};
+
+GltfMeshes::GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials)
+    : asset_(asset),
+      buffers_(buffers),
+      accessors_(accessors),
+      materials_(materials),
+      meshes_(asset.root().objects("meshes")) {}
+
+void GltfMeshes::require_room(std::uint64_t count, const GltfValue& primitive) {
+    triangles_ += count;
+    if (triangles_ > asset_.options().max_patches)
+        throw TooManyPatches(asset_.path(), 0,
+                             fmt::format("{}: with its {} triangles there would be more than {} patches (max_patches)",
+                                         primitive.place(), count, asset_.options().max_patches));
+}
+
+GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, const char* types) {
+    const GltfValue attributes = primitive.object("attributes");
+    return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
+}
+
+void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices) {
+    const GltfValue ids = extension.object("attributes");
+    constexpr std::size_t most_ids = 1 << 16;
+    std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", most_ids)};
+    const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
+    const std::string key = fmt::format("TEXCOORD_{}", surface.mapping ? surface.mapping->set : 0);
+    vertices.has_coordinates = surface.mapping && ids.has(key.c_str());
+    if (vertices.has_coordinates) wanted.push_back(ids.index(key.c_str(), most_ids));
+    const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
+    const GltfElements indices =
+        accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
+    const GltfElements positions = attribute(primitive, "POSITION", "VEC3");
+    require_room(indices.count / 3, primitive);
+    if (positions.count > indices.count) extension.fail("it has more vertices than corners");
+    vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
+    vertices.positions = elements_of(vertices.draco.attributes[0], vertices.draco.vertex_count);
+    if (vertices.has_coordinates)
+        vertices.coordinates = elements_of(vertices.draco.attributes[1], vertices.draco.vertex_count);
+}
+
+void GltfMeshes::open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices) {
+    const auto require_count = [&](const GltfElements& elements, const GltfValue& user) {
+        if (elements.count != vertices.positions.count)
+            user.fail(fmt::format("{} elements for {} vertices", elements.count, vertices.positions.count));
+    };
+    const std::vector<GltfValue> targets = primitive.objects("targets");
+    for (std::size_t i = 0; i < std::min(targets.size(), pose.weights.size()); ++i) {
+        if (pose.weights[i] == 0 || !targets[i].has("POSITION")) continue;
+        const std::uint32_t accessor = targets[i].index("POSITION", accessors_.count());
+        vertices.targets.push_back({accessors_.elements(accessor, "VEC3", targets[i]), pose.weights[i]});
+        require_count(vertices.targets.back().offsets, targets[i]);
+    }
+    if (pose.joints.empty() || !primitive.object("attributes").has("JOINTS_0")) return;
+    vertices.joint_indices = attribute(primitive, "JOINTS_0", "VEC4");
+    vertices.joint_weights = attribute(primitive, "WEIGHTS_0", "VEC4");
+    require_count(vertices.joint_indices, primitive);
+    require_count(vertices.joint_weights, primitive);
+    vertices.joints = pose.joints;
+}
+
+GltfMeshes::Vertices GltfMeshes::vertices_of(const GltfValue& primitive) {
+    Vertices vertices;
+    const GltfValue attributes = primitive.object("attributes");
+    if (const GltfValue draco = primitive.extension("KHR_draco_mesh_compression"); draco.exists()) {
+        open_draco(primitive, draco, vertices);
+    } else {
+        vertices.positions = attribute(primitive, "POSITION", "VEC3");
+        if (vertices.positions.stride == 0) attributes.fail("the accessor of POSITION has no data");
+        const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
+        const std::string key = fmt::format("TEXCOORD_{}", surface.mapping ? surface.mapping->set : 0);
+        vertices.has_coordinates = surface.mapping && attributes.has(key.c_str());
+        if (vertices.has_coordinates) vertices.coordinates = attribute(primitive, key.c_str(), "VEC2");
+    }
+    if (vertices.positions.components != 3) attributes.fail("POSITION has not three components");
+    if (vertices.has_coordinates &&
+        (vertices.coordinates.count != vertices.positions.count || vertices.coordinates.components != 2))
+        attributes.fail(fmt::format("{} texture coordinates for {} vertices", vertices.coordinates.count,
+                                    vertices.positions.count));
+    return vertices;
+}
+
+std::vector<std::uint32_t> GltfMeshes::corners_of(const GltfValue& primitive, Vertices& vertices) {
+    const std::uint64_t mode = primitive.integer("mode", triangles);
+    const auto count_triangles = [&](std::uint64_t corners) {
+        if (mode == triangles && corners % 3 != 0)
+            primitive.fail(fmt::format("{} corners are no whole number of triangles", corners));
+        require_room(mode == triangles ? corners / 3 : std::max<std::uint64_t>(corners, 2) - 2, primitive);
+    };
+    std::vector<std::uint32_t> corners;
+    const std::uint64_t vertex_count = vertices.positions.count;
+    if (primitive.extension("KHR_draco_mesh_compression").exists()) {
+        return std::move(vertices.draco.indices);
+    } else if (primitive.has("indices")) {
+        const GltfElements indices = accessors_.indices(primitive.index("indices", accessors_.count()), primitive);
+        count_triangles(indices.count);
+        corners.reserve(indices.count);
+        for (std::uint64_t i = 0; i < indices.count; ++i) corners.push_back(indices.whole_number(i));
+    } else {
+        count_triangles(vertex_count);
+        if (vertex_count > std::numeric_limits<std::uint32_t>::max()) primitive.fail("it has too many vertices");
+        corners.resize(vertex_count);
+        std::iota(corners.begin(), corners.end(), 0u);
+    }
+    const auto largest = std::max_element(corners.begin(), corners.end());
+    if (largest != corners.end() && *largest >= vertex_count)
+        primitive.fail(fmt::format("vertex {} is used, but there are {}", *largest, vertex_count));
+    return as_triangles(corners, mode);
+}
+
+void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vector<std::uint32_t>& result) {
+    const std::uint64_t mode = primitive.integer("mode", triangles);
+    if (mode > triangle_fan) primitive.fail(fmt::format("its mode is {}, expected 0 to 6", mode));
+    if (mode < triangles) {
+        asset_.warn("no-faces", "points and lines are left out", primitive.place());
+        return;
+    }
+    if (!primitive.object("attributes").has("POSITION")) {
+        asset_.warn("no-faces", "a primitive without positions is left out", primitive.place());
+        return;
+    }
+    if (primitive.object("attributes").has("COLOR_0"))
+        asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are ignored", primitive.place());
+    Vertices vertices = vertices_of(primitive);
+    const GltfSurface& surface =
+        materials_.surface(primitive.index("material", materials_.count()), vertices.has_coordinates);
+    if (surface.is_invisible) return;
+    open_deformation(primitive, pose, vertices);
+
+    Mesh mesh;
+    mesh.name = primitive.place();
+    mesh.material = surface.material;
+    mesh.back_emits = surface.double_sided;
+    mesh.indices = corners_of(primitive, vertices);
+    const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
+    mesh.positions.reserve(used.size());
+    for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
+    bool is_outside = false;
+    if (surface.mapping) mesh.texture_coordinates.reserve(used.size());
+    for (const std::uint32_t v : surface.mapping ? used : std::vector<std::uint32_t>()) {
+        const GltfElements& c = vertices.coordinates;
+        const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));
+        is_outside |= std::min(coordinate.x, coordinate.y) < 0 || std::max(coordinate.x, coordinate.y) > 1;
+        mesh.texture_coordinates.push_back(coordinate);
+    }
+    if (is_outside && !surface.repeats)
+        asset_.warn("texture-wrap", "a texture that its sampler clamps or mirrors repeats beyond its edges",
+                    primitive.place());
+    if (mesh.indices.empty()) return;
+    result.push_back(static_cast<std::uint32_t>(asset_.model.meshes.size()));
+    asset_.model.meshes.push_back(std::move(mesh));
+}
+
+const std::vector<std::uint32_t>& GltfMeshes::meshes(std::uint32_t index, const GltfPose& pose) {
+    const GltfValue& owner = meshes_[index];
+    GltfPose actual = pose;
+    if (actual.weights.empty()) actual.weights = owner.numbers("weights");
+    const auto [entry, is_new] = made_.try_emplace({index, actual.weights, actual.skin});
+    if (is_new)
+        for (const GltfValue& primitive : owner.objects("primitives")) add(primitive, actual, entry->second);
+    return entry->second;
+}
+
+}  // namespace interflect::inline detail

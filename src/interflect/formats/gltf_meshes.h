@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "interflect/formats/gltf_accessors.h"
+#include "interflect/formats/gltf_draco.h"
+#include "interflect/formats/gltf_materials.h"
+
+namespace interflect::inline detail {
+
+/// How a mesh is deformed before it is placed.
+struct GltfPose {
+    std::vector<double> weights;      ///< Of its morph targets; empty: the mesh's own.
+    std::uint32_t skin = none;        ///< Tells poses apart, for the cache.
+    std::vector<Imath::M44d> joints;  ///< Of the skin: from the mesh to the world.
+};
+
+/// The meshes of a glTF file, each read in each pose when a node first asks for it.
+class GltfMeshes {
+  public:
+    GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
+
+    std::size_t count() const { return meshes_.size(); }
+    /// Indices into Model::meshes: one for each primitive that has faces. @param index  Below count().
+    const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
+
+  private:
+    struct Vertices;
+
+    void add(const GltfValue& primitive, const GltfPose& pose, std::vector<std::uint32_t>& result);
+    Vertices vertices_of(const GltfValue& primitive);
+    void open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices);
+    void open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices);
+    GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
+    std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
+    void require_room(std::uint64_t triangles, const GltfValue& primitive);
+
+    GltfAsset& asset_;
+    GltfBuffers& buffers_;
+    GltfAccessors& accessors_;
+    GltfMaterials& materials_;
+    std::vector<GltfValue> meshes_;
+    std::map<std::tuple<std::uint32_t, std::vector<double>, std::uint32_t>, std::vector<std::uint32_t>> made_;
+    std::uint64_t triangles_ = 0;
+};
+
+}  // namespace interflect::inline detail

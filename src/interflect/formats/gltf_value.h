@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "interflect/scene.h"
+
+namespace interflect::inline detail {
+
+/// What is wrong with a glTF file, with the place in it but not the file's name.
+struct GltfFault : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A value of a file's JSON that knows its place: "meshes[3] 'chair'.primitives[0]". What is absent is as good as an
+/// empty object. Getters check the type of what they get; all errors are GltfFaults that name place and key.
+class GltfValue {
+  public:
+    /// Whole numbers of a file; larger ones are refused, so that sums and products of three fit 64 bits.
+    static constexpr std::uint64_t largest_integer = std::uint64_t{1} << 40;
+
+    /// @param json  Lives as long as this does; null: absent.
+    GltfValue(const nlohmann::json* json, std::string place) : json_(json), place_(std::move(place)) {}
+
+    bool exists() const { return json_ != nullptr; }
+    bool has(const char* key) const { return find(key) != nullptr; }
+    const std::string& place() const { return place_; }
+    [[noreturn]] void fail(const std::string& message) const;
+
+    GltfValue object(const char* key) const;
+    GltfValue extension(const char* name) const { return object("extensions").object(name); }
+    /// The objects of an array; none where it is absent.
+    std::vector<GltfValue> objects(const char* key) const;
+
+    std::optional<std::uint64_t> find_integer(const char* key) const;
+    std::uint64_t integer(const char* key) const;
+    std::uint64_t integer(const char* key, std::uint64_t otherwise) const;
+    /// Below `count`; `none` where it is absent.
+    std::uint32_t index(const char* key, std::size_t count) const;
+    std::uint32_t required_index(const char* key, std::size_t count) const;
+    std::vector<std::uint32_t> indices(const char* key, std::size_t count) const;
+
+    double number(const char* key, double otherwise) const;
+    double number(const char* key) const;
+    /// Not negative.
+    double amount(const char* key, double otherwise) const;
+    /// An array of any length; empty where it is absent.
+    std::vector<double> numbers(const char* key) const;
+    template <std::size_t size>
+    std::array<double, size> numbers(const char* key, const std::array<double, size>& otherwise) const {
+        std::array<double, size> result = otherwise;
+        if (!has(key)) return result;
+        const std::vector<double> values = numbers(key);
+        if (values.size() != size) fail(std::string(key) + " has not " + std::to_string(size) + " numbers");
+        for (std::size_t i = 0; i < size; ++i) result[i] = values[i];
+        return result;
+    }
+    /// Linear Rec. 709, no channel negative.
+    Rgb colour(const char* key, const Rgb& otherwise) const;
+
+    std::string text(const char* key, const std::string& otherwise = "") const;
+    std::vector<std::string> texts(const char* key) const;
+    bool flag(const char* key, bool otherwise) const;
+
+  private:
+    const nlohmann::json* find(const char* key) const;
+    const nlohmann::json& array(const char* key) const;
+    std::uint64_t whole_number(const nlohmann::json& value, const char* key) const;
+    double finite_number(const nlohmann::json& value, const char* key) const;
+    std::uint32_t index_below(std::size_t count, const nlohmann::json& value, const char* key) const;
+
+    const nlohmann::json* json_;
+    std::string place_;
+};
+
+/// "nodes[3] 'chair'"; a long name is cut.
+std::string gltf_place(const std::string& list, std::size_t index, const std::string& name);
+
+}  // namespace interflect::inline detail
