@@ -53,6 +53,8 @@ ObjMaterials::ObjMaterials(Model& model, const ReadOptions& options) : model_(mo
 }
 
 void ObjMaterials::read(const fs::path& path, const Location& where) {
+    if (options_.max_include_depth < 1)
+        throw std::invalid_argument("no other file may be read (max_include_depth is 0)");
     if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
         throw std::invalid_argument(
             fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", path.string()));
@@ -61,7 +63,10 @@ void ObjMaterials::read(const fs::path& path, const Location& where) {
         warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
         return;
     }
-    const std::string text = read_text_file(path);
+    read_text(read_text_file(path), path);
+}
+
+void ObjMaterials::read_text(std::string_view text, const fs::path& path) {
     libraries_.push_back(path);
     model_.files.push_back(path.string());
     Definition* current = nullptr;

@@ -21,6 +21,8 @@ class ObjMaterials {
 
     /// Reads a library. @param where  The line that names it. @throws InputError, std::invalid_argument
     void read(const std::filesystem::path& path, const Location& where);
+    /// The same from memory. @param path  Name for messages; its folder is where textures are looked for.
+    void read_text(std::string_view text, const std::filesystem::path& path);
     /// Index in Model::materials; of the default one, with a warning, where no library has the name.
     std::uint32_t find(const std::string& name, const Location& where);
 
