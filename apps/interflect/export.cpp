@@ -7,6 +7,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
+#include "apps/interflect/path_progress.h"
 #include "apps/interflect/up_axis.h"
 #include "interflect/error.h"
 #include "interflect/render.h"
@@ -22,7 +23,12 @@ struct ExportArguments {
     std::filesystem::path input, output;
     Exposure exposure;
     std::optional<Imath::V3d> up;
+    bool has_lightmap = false;
+    LightmapOptions lightmap;
 };
+
+/// Where the help lists them.
+constexpr const char* lightmap_group = "Lightmaps";
 
 /// As `render` chooses it for the scene's first view, else for an overview.
 float automatic_exposure_of(const SolvedScene& solved) {
@@ -55,8 +61,53 @@ void run(const ExportArguments& arguments) {
     ExportOptions options;
     options.exposure = arguments.exposure.stops + (arguments.exposure.relative ? automatic_exposure_of(solved) : 0);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
-    for (const auto& path : export_solution(arguments.output, solved.scene, solved.solution, options))
-        spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
+    if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
+    std::vector<std::filesystem::path> written;
+    const auto write = [&] { written = export_solution(arguments.output, solved.scene, solved.solution, options); };
+    const bool traces_rays = options.lightmap && options.lightmap->shading == LightmapShading::gather;
+    if (traces_rays)
+        with_path_progress([&](const PathMonitor& monitor) {
+            options.monitor = monitor;
+            write();
+        });
+    else
+        write();
+    for (const auto& path : written) spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
+}
+
+void add_lightmap(CLI::App& command, ExportArguments& arguments) {
+    LightmapOptions& lightmap = arguments.lightmap;
+    const auto group = [](CLI::Option* option) { return option->group(lightmap_group); };
+    CLI::Option* const flag =
+        command.add_flag("--lightmap", arguments.has_lightmap, "The light in images, not in vertices");
+    group(flag);
+    const auto of_lightmap = [&](CLI::Option* option) { return group(option)->needs(flag); };
+    of_lightmap(command.add_option("--texels-per-metre", lightmap.texels_per_metre, "Of the images, at least"))
+        ->capture_default_str()
+        ->check(number_between(1e-6, 1e6));
+    of_lightmap(command.add_option("--lightmap-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
+        ->capture_default_str()
+        ->check(CLI::Range(64, 16384));
+    of_lightmap(command.add_option("--gutter", lightmap.gutter, "Texels around each surface, filled from its edge"))
+        ->capture_default_str()
+        ->check(CLI::Range(1, 64));
+    of_lightmap(add_choice<LightmapContent>(
+                    command, "--lightmap-content", lightmap.content,
+                    {{"irradiance", LightmapContent::irradiance}, {"radiance", LightmapContent::radiance}},
+                    "irradiance, which the renderer multiplies by the reflectance; or radiance, shown as it is"))
+        ->default_str("irradiance");
+    of_lightmap(add_choice<LightmapShading>(
+                    command, "--shading", lightmap.shading,
+                    {{"smooth", LightmapShading::smooth}, {"gather", LightmapShading::gather}},
+                    "smooth: interpolated between the elements; gather: each texel finds its own light"))
+        ->default_str("smooth");
+    of_lightmap(command.add_option("--samples", lightmap.samples, "Gathered directions a texel"))
+        ->capture_default_str()
+        ->check(CLI::Range(2, 1 << 24));
+    of_lightmap(add_parsed(command, "--seed", lightmap.seed, parse_seed, "Of gathering"))->default_str("1");
+    of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image_extension,
+                                        {{"exr", ".exr"}, {"hdr", ".hdr"}}, "Of the unclamped images beside the file"))
+        ->default_str("exr");
 }
 
 }  // namespace
@@ -74,6 +125,7 @@ void add_export(CLI::App& app) {
         ->default_str("auto");
     add_parsed(command, "--up", options->up, parse_vector, "Which way is up (default: that of the views, or the light)")
         ->type_name("X,Y,Z");
+    add_lightmap(command, *options);
     command.callback([options] { run(*options); });
 }
 

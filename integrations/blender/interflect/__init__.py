@@ -7,6 +7,7 @@ from pathlib import Path
 import bpy
 
 from . import exchange, pipeline
+from .lit_materials import glTF2ImportUserExtension  # found here by the importer
 
 bl_info = {
     "name": "Interflect",
@@ -97,6 +98,13 @@ class Bake(bpy.types.Operator):
             texels_per_metre=settings.texels_per_metre,
             gather=settings.gather,
         )
+        radiance = exchange.world_radiance()
+        if radiance is None:
+            self.report({"WARNING"}, "The world's light varies and is left out: only a plain background is baked")
+        elif max(radiance) > 0:
+            environment = self._folder / "world.hdr"
+            exchange.write_environment(environment, radiance)
+            wanted.options += ["--environment", str(environment), "--zenith", "0,1,0"]
         command = context.preferences.addons[__name__].preferences.command
         self._bake = pipeline.Bake(command, pipeline.stages(scene, solution, self._lit, wanted))
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import bpy
 import numpy
 
-if not hasattr(numpy, "bool"):
-    numpy.bool = bool  # Blender 3.4's importer asks for it by the name that later versions of NumPy have dropped
+if bpy.app.version < (3, 5):
+    numpy.bool = bool  # its importer asks for it by the name that later versions of NumPy have dropped
 
 LIT_COLLECTION = "Interflect"
 DISC_CORNERS = 32
@@ -27,6 +27,29 @@ def export_scene(path: Path) -> None:
             export_animations=False,
             convert_lighting_mode="COMPAT",
         )
+
+
+def world_radiance():
+    """Radiance of the world where it is of one colour, [r, g, b]; none where nodes make it vary."""
+    world = bpy.context.scene.world
+    if world is None:
+        return [0.0, 0.0, 0.0]
+    if not world.use_nodes:
+        return list(world.color)
+    backgrounds = [node for node in world.node_tree.nodes if node.type == "BACKGROUND"]
+    if len(backgrounds) != 1 or any(socket.is_linked for socket in backgrounds[0].inputs):
+        return None
+    strength = backgrounds[0].inputs["Strength"].default_value
+    return [strength * channel for channel in backgrounds[0].inputs["Color"].default_value[:3]]
+
+
+def write_environment(path: Path, radiance) -> None:
+    """Writes an image of one colour as Radiance has them (.hdr), for `interflect solve --environment`."""
+    width, height = 8, 4
+    exponent = math.frexp(max(radiance))[1]
+    texel = bytes([*(min(255, round(256 * math.ldexp(channel, -exponent))) for channel in radiance), exponent + 128])
+    header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
+    path.write_bytes(header.encode() + width * height * texel)
 
 
 @contextmanager

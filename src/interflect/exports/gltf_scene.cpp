@@ -37,7 +37,7 @@ Imath::Quatd rotation_of(const View& view) {
 
 Json camera_of(const View& view, double scene_size) {
     const double distance = (view.look_at - view.eye).length();
-    const double far = scene_size + distance, near = 1e-4 * far;  // what single-precision depth buffers can tell apart
+    const double far = scene_size + distance, near = 1e-3 * far;  // what single-precision depth buffers can tell apart
     if (view.extent > 0) {
         const double half = view.extent / 2;
         return {{"name", escaped(view.name)},
@@ -55,11 +55,8 @@ Json camera_of(const View& view, double scene_size) {
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up) {
     const std::string name = escaped(std::filesystem::path(scene.name).stem().string());
     Json children = Json::array();
-    for (auto p = primitives.begin(); p != primitives.end();) {
-        const std::uint32_t object = p->first.first;
+    for (const auto& [object, of_object] : primitives) {
         const std::string object_name = scene.objects[object].empty() ? name : escaped(scene.objects[object]);
-        Json of_object = Json::array();
-        for (; p != primitives.end() && p->first.first == object; ++p) of_object.push_back(p->second);
         const int mesh = document.add("meshes", {{"name", object_name}, {"primitives", of_object}});
         children.push_back(document.add("nodes", {{"name", object_name}, {"mesh", mesh}}));
     }
@@ -80,6 +77,24 @@ void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives&
     const int root_index = document.add("nodes", root);
     document.json["scene"] = 0;
     document.add("scenes", {{"name", name}, {"nodes", {root_index}}});
+}
+
+Json GltfTextures::reference(std::uint32_t texture) {
+    const auto [entry, is_new] = numbers_.try_emplace(texture, 0);
+    if (is_new) {
+        const Texture& image = scene_.textures[texture];
+        Image pixels(static_cast<int>(image.width), static_cast<int>(image.height));
+        pixels.pixels = image.texels;
+        entry->second = document_.add_texture(pixels, image.name, true);
+    }
+    return {{"index", entry->second}};
+}
+
+Json GltfTextures::diffuse(const Material& material) {
+    const Rgb& rho = material.reflectance;
+    Json result{{"baseColorFactor", {rho.x, rho.y, rho.z, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
+    if (material.reflectance_texture != none) result["baseColorTexture"] = reference(material.reflectance_texture);
+    return result;
 }
 
 }  // namespace interflect::inline detail

@@ -10,12 +10,28 @@
 
 namespace interflect::inline detail {
 
-/// The primitives of a glTF file's meshes, by object and material of the scene.
-using GltfPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, GltfDocument::Json>;
+/// The primitives of glTF meshes, by object of the scene.
+using GltfPrimitives = std::map<std::uint32_t, std::vector<GltfDocument::Json>>;
 
 /// Adds the nodes: below a root, which turns `up` to y and moves the scene's origin where it is in the world, each
 /// object with its mesh, and each view with its camera.
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up);
+
+/// Adds a scene's textures, each once.
+class GltfTextures {
+  public:
+    GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
+
+    /// Diffuse reflection as pbrMetallicRoughness, with the image of the reflectance where there is one.
+    GltfDocument::Json diffuse(const Material& material);
+    /// A reference to a texture of the scene.
+    GltfDocument::Json reference(std::uint32_t texture);
+
+  private:
+    GltfDocument& document_;
+    const Scene& scene_;
+    std::map<std::uint32_t, int> numbers_;
+};
 
 /// Texture coordinates from the upper left corner of an image, as glTF has them.
 inline V2f gltf_coordinate(const V2f& coordinate) { return {coordinate.x, 1 - coordinate.y}; }

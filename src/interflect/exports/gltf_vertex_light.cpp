@@ -1,0 +1,110 @@
+#include "interflect/exports/gltf_vertex_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "interflect/base/escapes.h"
+#include "interflect/exports/element_mesh.h"
+#include "interflect/exports/gltf_scene.h"
+#include "interflect/exports/welded_vertices.h"
+#include "interflect/geometry/texture_mapping.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+using Json = GltfDocument::Json;
+
+/// Whether the image of a material stays in the file, so that vertices hold only what it is multiplied by.
+bool keeps_texture(const Material& material) {
+    return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
+}
+
+Rgb clamped(const Rgb& colour) {
+    return {std::clamp(colour.x, 0.0f, 1.0f), std::clamp(colour.y, 0.0f, 1.0f), std::clamp(colour.z, 0.0f, 1.0f)};
+}
+
+struct LitVertex {
+    std::uint32_t point;
+    Rgb irradiance, colour;
+    V2f coordinate;
+};
+
+LitVertex lit_vertex(const Scene& scene, const Patch& patch, const MeshCorner& corner, float exposure) {
+    const float scale = std::exp2(exposure) / std::numbers::pi_v<float>;
+    if (keeps_texture(scene.materials[patch.material]))
+        return {corner.point, corner.irradiance, clamped(scale * corner.irradiance),
+                gltf_coordinate(texture_coordinate(scene, patch, corner.at))};
+    const Rgb reflected = reflectance_at(scene, patch, corner.at) * corner.irradiance;
+    const Rgb radiosity = exitance_at(scene, patch, corner.at) + reflected;
+    return {corner.point, corner.irradiance, clamped(scale * radiosity), V2f(0, 0)};
+}
+
+/// The triangles of one object and material.
+using LitPrimitive = WeldedVertices<LitVertex>;
+
+Json write_primitive(GltfDocument& document, const LitPrimitive& primitive, const std::vector<V3f>& points,
+                     const Material& material) {
+    Json attributes;
+    const auto add = [&](const char* name, const auto& values) { attributes[name] = document.add_attribute(values); };
+    attributes["POSITION"] =
+        document.add_positions(primitive.values([&](const LitVertex& v) { return points[v.point]; }));
+    add("COLOR_0", primitive.values([](const LitVertex& v) { return v.colour; }));
+    add("_IRRADIANCE", primitive.values([](const LitVertex& v) { return v.irradiance; }));
+    if (keeps_texture(material)) add("TEXCOORD_0", primitive.values([](const LitVertex& v) { return v.coordinate; }));
+    return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
+}
+
+int add_material(GltfDocument& document, GltfTextures& textures, const Material& material) {
+    Json colour{{"metallicFactor", 0}, {"roughnessFactor", 1}};
+    if (keeps_texture(material)) colour = textures.diffuse(material);
+    return document.add("materials", {{"name", escaped(material.name)},
+                                      {"pbrMetallicRoughness", colour},
+                                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+}
+
+/// By object and material.
+using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
+
+LitPrimitives primitives_of(const Scene& scene, const ElementForest& forest, ElementMesh& mesh, float exposure) {
+    LitPrimitives primitives;
+    std::vector<MeshTriangle> triangles;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        triangles.clear();
+        mesh.triangulate(leaf, triangles);
+        const Patch& patch = scene.patches[forest.patch(leaf)];
+        LitPrimitive& primitive = primitives[{patch.object, patch.material}];
+        for (const MeshTriangle& triangle : triangles)
+            for (const MeshCorner& corner : triangle) primitive.add(lit_vertex(scene, patch, corner, exposure));
+    }
+    return primitives;
+}
+
+}  // namespace
+
+void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
+                      const ExportOptions& options) {
+    ElementMesh mesh(scene, *solution.forest, solution.irradiance);
+    GltfTextures textures(document, scene);
+    std::map<std::uint32_t, int> materials;
+    GltfPrimitives written;
+    for (const auto& [key, primitive] : primitives_of(scene, *solution.forest, mesh, options.exposure)) {
+        const auto& [object, material] = key;
+        const auto [entry, is_new] = materials.try_emplace(material, 0);
+        if (is_new) entry->second = add_material(document, textures, scene.materials[material]);
+        Json json = write_primitive(document, primitive, mesh.points(), scene.materials[material]);
+        json["material"] = entry->second;
+        written[object].push_back(std::move(json));
+    }
+    document.use_extension("KHR_materials_unlit");
+    document.json["asset"]["extras"]["interflect"] = {
+        {"exposure", options.exposure},
+        {"COLOR_0",
+         "radiance [cd/m^2] * 2^exposure, clamped to [0, 1]; with a base colour texture what it multiplies: "
+         "irradiance / pi * 2^exposure"},
+        {"_IRRADIANCE", "irradiance [lm/m^2] of each channel, linear Rec. 709"}};
+    add_nodes(document, scene, written, options.up);
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "interflect/export.h"
+#include "interflect/exports/gltf_document.h"
+
+namespace interflect::inline detail {
+
+/// Adds a solved scene with the light in the vertices of its elements (ElementMesh): unlit materials, what is seen in
+/// COLOR_0, the irradiance in _IRRADIANCE.
+void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
+                      const ExportOptions& options);
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,254 @@
+#include "interflect/exports/lightmap.h"
+
+#include <ImathBoxAlgo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/exports/lightmap_atlas.h"
+#include "interflect/geometry/box_tree.h"
+#include "interflect/geometry/texture_mapping.h"
+#include "interflect/measure.h"
+#include "interflect/render/element_vertices.h"
+#include "interflect/render/smooth_field.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// Where a texel's light is evaluated.
+struct TexelPlace {
+    std::uint32_t patch = none;
+    Parameters at;
+    bool is_inside = false;  // the texel's centre is on the patch
+};
+
+/// Finds the nearest points of a chart's patches.
+class NearestPatch {
+  public:
+    NearestPatch(const ElementForest& forest, const LightmapChart& chart) : forest_(forest), patches_(chart.patches) {
+        for (std::uint32_t i = 0; i < patches_.size(); ++i) {
+            const PatchGeometry& geometry = forest.geometry(patches_[i]);
+            Imath::Box3f box;
+            for (const Parameters p : {Parameters{0, 0}, {1, 0}, {0, 1}}) box.extendBy(geometry.point(p));
+            if (!geometry.is_triangle()) box.extendBy(geometry.point({1, 1}));
+            tree_.push_back({box, i});
+        }
+        arrange_box_tree(tree_);
+    }
+
+    TexelPlace find(const V3f& x, float texel) const {
+        TexelPlace nearest;
+        float least = std::numeric_limits<float>::max();
+        const auto is_near = [&](const Imath::Box3f& box) {
+            return (Imath::closestPointInBox(x, box) - x).length2() <= least;
+        };
+        visit_box_tree(std::span<const Boxed>(tree_), is_near, [&](std::uint32_t i) {
+            const Parameters p = nearest_parameters(forest_.geometry(patches_[i]), x);
+            const float distance2 = (forest_.geometry(patches_[i]).point(p) - x).length2();
+            const bool precedes = nearest.patch == none || patches_[i] < nearest.patch;
+            if (distance2 < least || (distance2 == least && precedes)) {
+                least = distance2;
+                nearest = {patches_[i], p};
+            }
+        });
+        constexpr float rounding = 1e-3f;  // of a texel
+        nearest.is_inside = least <= rounding * rounding * texel * texel;
+        return nearest;
+    }
+
+  private:
+    static Parameters nearest_parameters(const PatchGeometry& geometry, const V3f& x);
+
+    const ElementForest& forest_;
+    const std::vector<std::uint32_t>& patches_;
+    std::vector<Boxed> tree_;
+};
+
+V3f nearest_on_segment(const V3f& a, const V3f& b, const V3f& x) {
+    const V3f along = b - a;
+    return a + along * std::clamp((x - a).dot(along) / along.length2(), 0.0f, 1.0f);
+}
+
+/// On the patch, of which x is in the plane.
+Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const V3f& x) {
+    const std::array<Parameters, 4> corners = geometry.is_triangle()
+                                                  ? std::array<Parameters, 4>{{{0, 0}, {1, 0}, {0, 1}, {0, 1}}}
+                                                  : std::array<Parameters, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    const std::size_t count = geometry.is_triangle() ? 3 : 4;
+    V3f nearest = x;
+    float least = std::numeric_limits<float>::max();
+    bool is_inside = true;
+    for (std::size_t c = 0; c < count; ++c) {
+        const V3f a = geometry.point(corners[c]), b = geometry.point(corners[(c + 1) % count]);
+        if (geometry.normal().dot((b - a).cross(x - a)) >= 0) continue;
+        is_inside = false;
+        const V3f candidate = nearest_on_segment(a, b, x);
+        if ((candidate - x).length2() >= least) continue;
+        least = (candidate - x).length2();
+        nearest = candidate;
+    }
+    return geometry.parameters_of(is_inside ? x : nearest);
+}
+
+/// Further inside than the border by `distance`, where the patch is wide enough.
+Parameters inset(const PatchGeometry& geometry, Parameters p, float distance) {
+    const auto& shape = geometry.shape();
+    const auto share = [&](const V3f& edge) { return std::min(distance / edge.length(), 0.25f); };
+    const float u = share(shape.edge_u), v = share(shape.edge_v);
+    p = {std::clamp(p.u, u, 1 - u), std::clamp(p.v, v, 1 - v)};
+    if (!geometry.is_triangle()) return p;
+    const float excess = std::max(0.0f, p.u + p.v - (1 - u - v)) / 2;
+    return {std::max(p.u - excess, u / 2), std::max(p.v - excess, v / 2)};
+}
+
+/// Finds the irradiance of texels.
+class IrradianceSource {
+  public:
+    IrradianceSource(const Scene& scene, const Solution& solution, const ExportOptions& options)
+        : scene_(scene),
+          solution_(solution),
+          options_(options),
+          vertices_(scene, *solution.forest),
+          smooth_(*solution.forest, vertices_, solution.irradiance) {
+        if (options.lightmap->shading == LightmapShading::gather) ray_caster_.emplace(scene);
+    }
+
+    std::vector<Rgb> irradiance(std::span<const TexelPlace> places, float texel) const {
+        return ray_caster_ ? gathered(places, texel) : interpolated(places);
+    }
+
+  private:
+    std::vector<Rgb> interpolated(std::span<const TexelPlace> places) const {
+        std::vector<Rgb> values(places.size());
+        constexpr std::size_t texels_at_once = 1 << 12;
+        parallel_for_ranges(places.size(), texels_at_once, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) values[i] = smooth_.at(places[i].patch, places[i].at);
+        });
+        return values;
+    }
+
+    /// A little inside the patches: on a wall's foot rays would start in the plane of the wall.
+    std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
+        constexpr float distance = 0.05f;  // [texels]
+        std::vector<MeasuringPoint> points;
+        for (const TexelPlace& place : places) {
+            const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
+            const V3f x = geometry.point(inset(geometry, place.at, distance * texel));
+            points.push_back({scene_.origin + Imath::V3d(x), geometry.normal()});
+        }
+        PathOptions path;
+        path.samples = options_.lightmap->samples;
+        path.max_samples = std::max(path.max_samples, path.samples);
+        path.seed = options_.lightmap->seed;
+        std::vector<Rgb> values;
+        for (const MeasuredIrradiance& measured :
+             measure_irradiance(scene_, &solution_, *ray_caster_, points, path, options_.monitor))
+            values.push_back(measured.sum());
+        return values;
+    }
+
+    const Scene& scene_;
+    const Solution& solution_;
+    const ExportOptions& options_;
+    ElementVertices vertices_;
+    SmoothField smooth_;
+    std::optional<RayCaster> ray_caster_;
+};
+
+Rgb content_of(const Scene& scene, const TexelPlace& place, const Rgb& irradiance, LightmapContent content) {
+    if (content == LightmapContent::irradiance) return irradiance;
+    const Patch& patch = scene.patches[place.patch];
+    const Rgb radiosity = exitance_at(scene, patch, place.at) + reflectance_at(scene, patch, place.at) * irradiance;
+    return radiosity / std::numbers::pi_v<float>;
+}
+
+/// The place of every texel of a chart with its gutters, row by row.
+std::vector<TexelPlace> places_of(const LightmapChart& chart, const ElementForest& forest, int gutter) {
+    const NearestPatch nearest(forest, chart);
+    const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
+    const auto texel = static_cast<float>(std::max(chart.spacing().x, chart.spacing().y));
+    std::vector<TexelPlace> places(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    constexpr std::size_t texels_at_once = 1 << 10;
+    parallel_for_ranges(places.size(), texels_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto column = static_cast<int>(i % static_cast<std::size_t>(columns)) - gutter;
+            const auto row = static_cast<int>(i / static_cast<std::size_t>(columns)) - gutter;
+            places[i] = nearest.find(V3f(chart.point_at(column, row)), texel);
+        }
+    });
+    return places;
+}
+
+/// Texels of all charts, which are evaluated together.
+class LightmapTexels {
+  public:
+    LightmapTexels(Lightmap& lightmap, const Scene& scene, const ElementForest& forest, const ExportOptions& options)
+        : lightmap_(lightmap), scene_(scene), forest_(forest), options_(*options.lightmap) {}
+
+    void add(const LightmapChart& chart) {
+        const std::vector<TexelPlace> places = places_of(chart, forest_, options_.gutter);
+        const int columns = chart.columns + 2 * options_.gutter;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
+            const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
+            places_.push_back(places[i]);
+            targets_.push_back(&lightmap_.images[static_cast<std::size_t>(chart.page)].at(column, row));
+        }
+    }
+    void evaluate(const IrradianceSource& source) {
+        const std::vector<Rgb> irradiance = source.irradiance(places_, 1 / options_.texels_per_metre);
+        for (std::size_t i = 0; i < places_.size(); ++i)
+            *targets_[i] = content_of(scene_, places_[i], irradiance[i], options_.content);
+    }
+    std::size_t texels() const { return places_.size(); }
+    std::int64_t texels_inside() const {
+        return std::count_if(places_.begin(), places_.end(), [](const TexelPlace& place) { return place.is_inside; });
+    }
+
+  private:
+    Lightmap& lightmap_;
+    const Scene& scene_;
+    const ElementForest& forest_;
+    const LightmapOptions& options_;
+    std::vector<TexelPlace> places_;
+    std::vector<Rgb*> targets_;
+};
+
+}  // namespace
+
+V2f Lightmap::coordinate(std::uint32_t patch, const V3f& x) const {
+    const LightmapChart& chart = charts[chart_of_patch[patch]];
+    const Image& image = images[static_cast<std::size_t>(chart.page)];
+    const Imath::V2d texel = chart.texel_at(x);
+    return {static_cast<float>((chart.left + texel.x + 0.5) / image.width),
+            static_cast<float>((chart.top + texel.y + 0.5) / image.height)};
+}
+
+Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
+    const LightmapOptions& chosen = *options.lightmap;
+    Lightmap lightmap;
+    lightmap.charts = make_charts(scene, chosen.texels_per_metre, chosen.max_size - 2 * chosen.gutter);
+    lightmap.chart_of_patch.assign(scene.patches.size(), none);
+    double texels = 0;
+    for (const Imath::V2i& size : pack_charts(lightmap.charts, chosen.gutter, chosen.max_size)) {
+        lightmap.images.emplace_back(size.x, size.y);
+        texels += static_cast<double>(size.x) * size.y;
+    }
+    LightmapTexels evaluated(lightmap, scene, *solution.forest, options);
+    for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
+        for (const std::uint32_t patch : lightmap.charts[i].patches) lightmap.chart_of_patch[patch] = i;
+        evaluated.add(lightmap.charts[i]);
+    }
+    evaluated.evaluate(IrradianceSource(scene, solution, options));
+    lightmap.used = static_cast<double>(evaluated.texels()) / texels;
+    lightmap.covered = static_cast<double>(evaluated.texels_inside()) / texels;
+    return lightmap;
+}
+
+}  // namespace interflect::inline detail

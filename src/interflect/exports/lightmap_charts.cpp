@@ -1,0 +1,240 @@
+#include "interflect/exports/lightmap_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "interflect/geometry/box_tree.h"
+#include "interflect/geometry/flat_surfaces.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/render/smooth_surfaces.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// Two sides of a gap closer than this are kept apart [texels].
+constexpr double narrow_gap = 2;
+
+/// An edge of a patch across which no other one continues it.
+struct BorderEdge {
+    std::uint32_t patch;
+    V3f a, b;
+    V3f inwards;  // unit vector in the patch's plane
+};
+
+/// The patches on one side of each flat surface, and which of them continue which.
+class Neighbourhood {
+  public:
+    explicit Neighbourhood(const Scene& scene)
+        : scene_(scene), neighbours_(scene.patches.size()), surface_(flat_surfaces(scene)) {
+        const SmoothSurfaces smooth = find_smooth_surfaces(scene);
+        std::vector<std::uint32_t> first(smooth.edges.count, none);
+        std::vector<bool> is_inner(4 * scene.patches.size(), false);
+        const auto join = [&](std::uint32_t edge, std::uint32_t other) {
+            if (!in_one_plane(edge / 4, other / 4)) return;
+            neighbours_[edge / 4].push_back(other / 4);
+            neighbours_[other / 4].push_back(edge / 4);
+            is_inner[edge] = is_inner[other] = true;
+        };
+        for (std::uint32_t edge = 0; edge < smooth.edges.group.size(); ++edge) {
+            const std::uint32_t group = smooth.edges.group[edge];
+            if (group == none) continue;
+            if (first[group] == none)
+                first[group] = edge;
+            else
+                join(first[group], edge);
+        }
+        for (const auto& seam : smooth.seams) join(seam.edge[0], seam.edge[1]);
+        for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+            for (int c = 0; c < scene.patches[p].vertex_count(); ++c)
+                if (!is_inner[4 * p + static_cast<std::uint32_t>(c)]) add_border(p, c);
+    }
+
+    bool in_one_plane(std::uint32_t p, std::uint32_t q) const {
+        return surface_[p] == surface_[q] && is_back(p) == is_back(q);
+    }
+    const std::vector<std::uint32_t>& neighbours(std::uint32_t patch) const { return neighbours_[patch]; }
+    const std::vector<BorderEdge>& border() const { return border_; }
+
+  private:
+    bool is_back(std::uint32_t p) const { return scene_.patches[p].other_side < p; }
+
+    void add_border(std::uint32_t p, int corner) {
+        const Patch& patch = scene_.patches[p];
+        const V3f& a = scene_.vertices[patch.vertices[corner]];
+        const V3f& b = scene_.vertices[patch.vertices[(corner + 1) % patch.vertex_count()]];
+        border_.push_back({p, a, b, PatchGeometry(scene_, patch).normal().cross(b - a).normalized()});
+    }
+
+    const Scene& scene_;
+    std::vector<std::vector<std::uint32_t>> neighbours_;
+    std::vector<std::uint32_t> surface_;
+    std::vector<BorderEdge> border_;
+};
+
+float distance(const V3f& x, const BorderEdge& edge) {
+    const V3f along = edge.b - edge.a;
+    const float t = std::clamp((x - edge.a).dot(along) / along.length2(), 0.0f, 1.0f);
+    return (x - edge.a - t * along).length();
+}
+
+/// Whether a gap of at most `width` lies between two edges, with their patches beyond it on either side.
+bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
+    constexpr float opposite = -0.5f;
+    if (!(e.inwards.dot(f.inwards) < opposite)) return false;
+    const V3f middles = (f.a + f.b) / 2 - (e.a + e.b) / 2;
+    const float rounding = 1e-3f * width;
+    if (e.inwards.dot(middles) > rounding || f.inwards.dot(middles) < -rounding) return false;
+    // Edges that only touch at a corner have no gap between them.
+    const V3f along = (e.b - e.a).normalized();
+    const float length = (e.b - e.a).length(), s = along.dot(f.a - e.a), t = along.dot(f.b - e.a);
+    const float overlap = std::min(length, std::max(s, t)) - std::max(0.0f, std::min(s, t));
+    if (!(overlap > rounding)) return false;
+    return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
+}
+
+/// Of each patch those that must be in other charts.
+std::vector<std::vector<std::uint32_t>> find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood,
+                                                       double width) {
+    const std::vector<BorderEdge>& border = neighbourhood.border();
+    const auto box_of = [&](const BorderEdge& edge, float margin) {
+        Imath::Box3f box(edge.a);
+        box.extendBy(edge.b);
+        return Imath::Box3f(box.min - V3f(margin), box.max + V3f(margin));
+    };
+    std::vector<Boxed> tree;
+    for (std::uint32_t i = 0; i < border.size(); ++i) tree.push_back({box_of(border[i], 0), i});
+    arrange_box_tree(tree);
+    std::vector<std::vector<std::uint32_t>> conflicts(scene.patches.size());
+    const auto gap = static_cast<float>(width);
+    for (const BorderEdge& edge : border) {
+        const Imath::Box3f reach = box_of(edge, gap);
+        visit_box_tree(
+            std::span<const Boxed>(tree), [&](const Imath::Box3f& box) { return box.intersects(reach); },
+            [&](std::uint32_t j) {
+                const BorderEdge& other = border[j];
+                if (other.patch != edge.patch && neighbourhood.in_one_plane(edge.patch, other.patch) &&
+                    are_across_a_gap(edge, other, gap))
+                    conflicts[edge.patch].push_back(other.patch);
+            });
+    }
+    return conflicts;
+}
+
+/// Grows each chart from a patch across its neighbours, as far as there is no conflict.
+std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, double width) {
+    const Neighbourhood neighbourhood(scene);
+    const auto conflicts = find_conflicts(scene, neighbourhood, width);
+    std::vector<std::uint32_t> chart(scene.patches.size(), none);
+    std::vector<std::vector<std::uint32_t>> groups;
+    for (std::uint32_t seed = 0; seed < chart.size(); ++seed) {
+        if (chart[seed] != none) continue;
+        const auto number = static_cast<std::uint32_t>(groups.size());
+        std::vector<std::uint32_t> group{seed};
+        chart[seed] = number;
+        for (std::size_t i = 0; i < group.size(); ++i)
+            for (const std::uint32_t next : neighbourhood.neighbours(group[i])) {
+                const auto is_here = [&](std::uint32_t other) { return chart[other] == number; };
+                if (chart[next] != none || std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
+                    continue;
+                chart[next] = number;
+                group.push_back(next);
+            }
+        groups.push_back(std::move(group));
+    }
+    return groups;
+}
+
+using Points = std::vector<Imath::V2d>;
+
+/// Counter-clockwise (Andrew's monotone chain, 1979).
+Points convex_hull(Points points) {
+    std::sort(points.begin(), points.end(),
+              [](const auto& a, const auto& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+    Points hull;
+    const auto add_chain = [&](auto begin, auto end) {
+        const std::size_t first = hull.size();
+        for (auto p = begin; p != end; ++p) {
+            while (hull.size() >= first + 2 && (hull.back() - hull[hull.size() - 2]).cross(*p - hull.back()) <= 0)
+                hull.pop_back();
+            hull.push_back(*p);
+        }
+        hull.pop_back();
+    };
+    add_chain(points.begin(), points.end());
+    add_chain(points.rbegin(), points.rend());
+    return hull;
+}
+
+struct Rectangle {
+    Imath::V2d corner, across;  // across has unit length; `down` is it turned by 90 degrees
+    Imath::V2d size;
+};
+
+/// The smallest around a convex polygon: it shares a side with one of its edges (Freeman and Shapira 1975).
+Rectangle smallest_rectangle(const Points& hull) {
+    Rectangle best;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+        const Imath::V2d edge = hull[(i + 1) % hull.size()] - hull[i];
+        if (!(edge.length() > 0)) continue;
+        const Imath::V2d x = edge.normalized(), y(-x.y, x.x);
+        Imath::V2d low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+        for (const Imath::V2d& p : hull) {
+            const Imath::V2d q(p.dot(x), p.dot(y));
+            low = {std::min(low.x, q.x), std::min(low.y, q.y)};
+            high = {std::max(high.x, q.x), std::max(high.y, q.y)};
+        }
+        const Imath::V2d size = high - low;
+        constexpr double rounding = 1e-6;  // equal rectangles: the first edge's
+        if (size.x * size.y < least * (1 - rounding)) {
+            least = size.x * size.y;
+            best = {x * low.x + y * low.y, x, size};
+        }
+    }
+    return best;
+}
+
+int texels_along(double length, double texels_per_metre, int most) {
+    constexpr double rounding = 1e-6;
+    const double count = std::ceil(length * texels_per_metre - rounding) + 1;
+    return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
+}
+
+LightmapChart chart_of(const Scene& scene, std::vector<std::uint32_t> patches, double texels_per_metre, int most) {
+    const Patch& first = scene.patches[patches.front()];
+    const Imath::V3d origin(scene.vertices[first.vertices[0]]);
+    const Imath::V3d normal(PatchGeometry(scene, first).normal());
+    const Imath::V3d edge = Imath::V3d(scene.vertices[first.vertices[1]]) - origin;
+    const Imath::V3d x = (edge - normal * edge.dot(normal)).normalized(), y = normal.cross(x);
+    Points points;
+    for (const std::uint32_t p : patches)
+        for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
+            const Imath::V3d offset = Imath::V3d(scene.vertices[scene.patches[p].vertices[c]]) - origin;
+            points.emplace_back(offset.dot(x), offset.dot(y));
+        }
+    const Rectangle rectangle = smallest_rectangle(convex_hull(std::move(points)));
+    LightmapChart chart;
+    chart.patches = std::move(patches);
+    chart.origin = origin + x * rectangle.corner.x + y * rectangle.corner.y;
+    chart.across = x * rectangle.across.x + y * rectangle.across.y;
+    chart.down = normal.cross(chart.across);
+    chart.size = rectangle.size;
+    chart.columns = texels_along(chart.size.x, texels_per_metre, most);
+    chart.rows = texels_along(chart.size.y, texels_per_metre, most);
+    return chart;
+}
+
+}  // namespace
+
+std::vector<LightmapChart> make_charts(const Scene& scene, double texels_per_metre, int most_texels) {
+    std::vector<LightmapChart> charts;
+    for (auto& patches : group_patches(scene, narrow_gap / texels_per_metre))
+        charts.push_back(chart_of(scene, std::move(patches), texels_per_metre, most_texels));
+    return charts;
+}
+
+}  // namespace interflect::inline detail
