@@ -103,7 +103,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
     of_lightmap(command.add_option("--texels-per-metre", lightmap.texels_per_metre, "Of the images, at least"))
         ->capture_default_str()
         ->check(number_between(1e-6, 1e6));
-    of_lightmap(command.add_option("--lightmap-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
+    of_lightmap(
+        command.add_option("--lightmap-max-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
         ->capture_default_str()
         ->check(CLI::Range(64, 16384));
     of_lightmap(command.add_option("--gutter", lightmap.gutter, "Texels around each surface, filled from its edge"))
@@ -123,8 +124,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24));
     of_lightmap(add_parsed(command, "--seed", lightmap.seed, parse_seed, "Of gathering"))->default_str("1");
-    of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image_extension,
-                                        {{"exr", ".exr"}, {"hdr", ".hdr"}}, "Of the unclamped images beside the file"))
+    of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
+                                        "Of the unclamped images beside the file"))
         ->default_str("exr");
 }
 

@@ -34,7 +34,7 @@ struct LightmapOptions {
     LightmapContent content = LightmapContent::irradiance;
     int samples = 64;  ///< Gathered directions a texel, >= 2.
     std::uint64_t seed = 1;
-    std::string image_extension = ".exr";  ///< Of the images beside the file: .exr or .hdr.
+    std::string image = ".exr";  ///< Of the images beside the file: .exr or .hdr.
 };
 
 /// What is exported and how.

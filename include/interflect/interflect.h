@@ -22,3 +22,4 @@
 #include "interflect/solution_file.h"
 #include "interflect/solver.h"
 #include "interflect/tone_map.h"
+#include "interflect/validate.h"

@@ -40,7 +40,7 @@ void subdivide_at_random(ElementForest& forest) {
 
 class ElementMeshOf : public testing::TestWithParam<bool> {  // whether of triangles
   protected:
-    ElementMeshOf() : scene(closed_box(V3f(1.1f, 2.3f, 3.7f), 2, {grey})) {
+    ElementMeshOf() : scene(closed_box(V3f(1.1f, 2.3f, 3.7f), 3, {grey})) {
         if (GetParam()) scene = in_triangles(std::move(scene));
         forest.emplace(scene, 1 << 20);
         subdivide_at_random(*forest);

@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "interflect/base/random.h"
 #include "interflect/contacts.h"
 #include "interflect/elements/forest.h"
+#include "interflect/generators/two_rooms.h"
 #include "interflect/render/smooth_field.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -219,6 +222,42 @@ INSTANTIATE_TEST_SUITE_P(Walls, LightmapBesideWall,
                                          WallCase{"Free", 0.01f, 3, 20}, WallCase{"FreeCoarse", 0.01f, 3, 5},
                                          WallCase{"FreeThin", 0, 3, 20}, WallCase{"FreeThick", 0.12f, 3, 20}),
                          [](const auto& test) { return test.param.name; });
+
+class SealedRoomsLightmap : public testing::TestWithParam<TwoRoomsOptions> {};
+
+// Two solved rooms, one of them sealed and dark, on both sides of a wall 1 cm thick: what the lightmap has there more
+// than smooth shading leaked through texels.
+TEST_P(SealedRoomsLightmap, LeaksNoLight) {
+    const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
+    const Solution solution =
+        solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
+    const Lightmap lightmap = make_lightmap(scene, solution, at(10));
+    const ElementVertices vertices(scene, *solution.forest);
+    const SmoothField smooth(*solution.forest, vertices, solution.irradiance);
+    const float radians = GetParam().turn * std::numbers::pi_v<float> / 180;
+    const V3f across(std::cos(radians), std::sin(radians), 0);
+    double lit = 0, dark = 0, of_smooth_shading = 0;
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const PatchGeometry& geometry = solution.forest->geometry(p);
+        for (std::uint64_t i = 0; i < 200; ++i) {
+            const Parameters place = random_place(geometry, i);
+            const V3f x = geometry.point(place);
+            const float found = sample(lightmap, p, x).x;
+            if ((x - V3f(4, 2, 0)).dot(across) < 0) {
+                lit += found * geometry.area();
+            } else {
+                dark += found * geometry.area();
+                of_smooth_shading += smooth.at(p, place).x * geometry.area();
+            }
+        }
+    }
+    EXPECT_GT(lit, 0);
+    EXPECT_LT((dark - of_smooth_shading) / lit, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
+                         testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
+                                         TwoRoomsOptions{.turn = 30, .furniture = true}));
 
 // Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point, so every texel gathers that,
 // at the feet of walls and in corners too. Rays that started beyond a wall would escape: those texels would lose half.

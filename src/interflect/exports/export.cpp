@@ -41,8 +41,8 @@ void require_usable(const LightmapOptions& options) {
             fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
     require(options.samples >= 2, fmt::format("samples is {}, expected at least 2", options.samples));
-    require(options.image_extension == ".exr" || options.image_extension == ".hdr",
-            fmt::format("image_extension is '{}', expected .exr or .hdr", options.image_extension));
+    require(options.image == ".exr" || options.image == ".hdr",
+            fmt::format("image is '{}', expected .exr or .hdr", options.image));
 }
 
 void require_usable(const ExportFormat& format, const ExportOptions& options) {

@@ -14,9 +14,14 @@
 #include "interflect/formats/gltf.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
+#include "interflect/formats/obj.h"
+#include "interflect/formats/ply.h"
+#include "interflect/formats/rad.h"
+#include "interflect/formats/stl.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
+#include "interflect/scene/core.h"
 
 namespace interflect {
 
@@ -29,7 +34,8 @@ struct Format {
     Scene (*read)(const fs::path&, const ReadOptions&);
 };
 
-constexpr Format formats[] = {{".mgf", read_mgf}, {".gltf", read_gltf}, {".glb", read_gltf}};
+constexpr Format formats[] = {{".mgf", read_mgf}, {".glb", read_gltf}, {".gltf", read_gltf}, {".obj", read_obj},
+                              {".ply", read_ply}, {".rad", read_rad},  {".stl", read_stl}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);
@@ -48,6 +54,16 @@ bool emits(const Scene& scene) {
     return std::any_of(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
         return largest_channel(scene.materials[patch.material].exitance) > 0;
     });
+}
+
+/// Diagonals of scenes that are probably in another unit than was thought [m].
+constexpr float implausibly_large = 2000, implausibly_small = 0.05f;
+
+void warn_of_size(Scene& scene) {
+    const float size = core_bounds(scene).size().length();
+    if (size > implausibly_large || size < implausibly_small)
+        scene.warnings.add("implausible-size",
+                           fmt::format("the scene is {:.3g} m across: the file may be in another unit (unit)", size));
 }
 
 constexpr std::string_view maze_prefix = "maze:";
@@ -103,6 +119,8 @@ std::vector<std::uint32_t> checksums_of(const std::vector<std::string>& files) {
 Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires,
                  const Daylight& added) {
     if (path.string().starts_with(maze_prefix)) {
+        if (options.unit != 1 || options.up_axis != Axis::z)
+            throw InputError(path, 0, "a maze is made in metres, with z up: unit and up_axis are for files");
         Scene maze = load_maze(path.string(), options);
         add_luminaires(maze, luminaires, options);
         add_daylight(maze, added);
@@ -111,6 +129,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
     }
     require_regular_file(path);
     Scene scene = format_of(path).read(path, options);
+    warn_of_size(scene);
     add_luminaires(scene, luminaires, options);
     add_daylight(scene, added);
     const fs::path views = view_list_path(path);
