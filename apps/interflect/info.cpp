@@ -162,7 +162,7 @@ void add_info(CLI::App& app) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App& command = *app.add_subcommand("info", "Tell what is in a scene or a solution");
-    options->scene.add_to(command, "Scene file (.mgf), maze:ROOMS[:furniture], or solution file (.h5)");
+    options->scene.add_to(command, std::string(scene_formats) + ", maze:ROOMS[:furniture], or solution file (.h5)");
     command.add_flag("--json", options->json, "As JSON on stdout");
     command.callback([options] {
         if (is_solution_file(options->scene.path)) return print_solution_info(options->scene.path, options->json);

@@ -71,6 +71,19 @@ std::int64_t parse_iteration_size(const std::string& text) {
     return count;
 }
 
+double parse_unit(const std::string& text) {
+    constexpr std::pair<std::string_view, double> units[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
+                                                             {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
+    for (const auto& [name, metres] : units)
+        if (text == name) return metres;
+    double metres = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, metres);
+    if (error != std::errc() || stop != end || !(metres >= 1e-9 && metres <= 1e9))
+        refuse(text, "m, cm, mm, km, in, ft or a length in metres from 1e-9 to 1e9");
+    return metres;
+}
+
 double parse_duration(const std::string& text) {
     double number = 0;
     const char* const end = text.data() + text.size();

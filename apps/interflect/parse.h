@@ -27,6 +27,8 @@ std::int64_t parse_iteration_size(const std::string& text);
 std::size_t parse_memory(const std::string& text);
 /// "90", "90s", "1.5m", "2h" -> seconds, from 0.1 to 10^9.
 double parse_duration(const std::string& text);
+/// "cm" -> 0.01, "0.0254" -> 0.0254: a length [m], from 1e-9 to 1e9.
+double parse_unit(const std::string& text);
 /// "42" -> 42: a whole number of 64 bits, >= 0.
 std::uint64_t parse_seed(const std::string& text);
 /// "2%" or "0.02" -> 0.02, above 0 and below 1.

@@ -252,7 +252,7 @@ void add_quantity(CLI::App& command, ProbeArguments& options) {
 void add_probe(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<ProbeArguments>();
     CLI::App& command = *app.add_subcommand("probe", "Measure illuminance or glare at points and on grids");
-    options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
+    options->scene.add_to(command, std::string(scene_formats) + ", solved first, or solution file (.h5)");
     command.add_option("-o,--output", options->output, "Table of the points to write (.csv)")->type_name("FILE");
     command.add_flag("--json", options->json, "The summary as JSON on stdout");
     options->places.add_to(command);

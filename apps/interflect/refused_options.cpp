@@ -48,7 +48,8 @@ void refuse_path_options(const CLI::App& command) {
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {
-    constexpr std::array<std::string_view, 3> of_reading = {"--curve-divisions", "--max-patches", "--luminaire"};
+    constexpr std::array<std::string_view, 6> of_reading = {"--curve-divisions", "--unit",        "--up-axis",
+                                                            "--outside-files",   "--max-patches", "--luminaire"};
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (!is_given(option) ||

@@ -339,7 +339,7 @@ void add_render(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<RenderArguments>();
     CLI::App& command =
         *app.add_subcommand("render", "Draw a view of a solution, or of a scene after solving it or by path tracing");
-    options->scene.add_to(command, "Scene file (.mgf), solved first, or solution file (.h5)");
+    options->scene.add_to(command, std::string(scene_formats) + ", solved first, or solution file (.h5)");
     command.add_option("-o,--output", options->output, "Picture to write: .png .jpg .exr .hdr")
         ->required()
         ->type_name("FILE");

@@ -19,6 +19,21 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
     app.add_option("--curve-divisions", read.curve_divisions, "Flat pieces per quarter circle of curved surfaces")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
+    add_parsed(app, "--unit", read.unit, parse_unit,
+               "Unit of the lengths in the file: m, cm, mm, km, in, ft, or so many metres")
+        ->type_name("UNIT")
+        ->default_str("m");
+    add_choice<Axis>(app, "--up-axis", read.up_axis,
+                     {{"x", Axis::x},
+                      {"-x", Axis::minus_x},
+                      {"y", Axis::y},
+                      {"-y", Axis::minus_y},
+                      {"z", Axis::z},
+                      {"-z", Axis::minus_z}},
+                     "What is up in the file: the scene is turned so that this becomes z")
+        ->default_str("z");
+    app.add_flag("--outside-files", read.outside_files,
+                 "Read files that the scene names outside of its own folder, too");
     add_parsed(app, "--max-patches", read.max_patches, parse_count,
                "Refuse a scene of more patches (files can ask for any number)")
         ->type_name("COUNT")

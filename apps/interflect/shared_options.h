@@ -17,6 +17,9 @@ namespace interflect::command {
 /// Where the help lists skies and the sun.
 inline constexpr const char* daylight_group = "Daylight";
 
+/// For the help.
+inline constexpr const char* scene_formats = "Scene file (.gltf, .glb, .obj, .ply, .stl, .rad, .mgf)";
+
 /// Which scene, and how to read it.
 struct SceneOptions {
     std::filesystem::path path;
@@ -24,7 +27,7 @@ struct SceneOptions {
     std::vector<PlacedLuminaire> luminaires;
     Daylight daylight;
 
-    void add_to(CLI::App& app, const std::string& what = "Scene file (.mgf), or maze:ROOMS[:furniture]");
+    void add_to(CLI::App& app, const std::string& what = std::string(scene_formats) + ", or maze:ROOMS[:furniture]");
     /// Loads it and logs its warnings.
     Scene load() const;
 

@@ -3,6 +3,7 @@
 import json
 import math
 import unittest
+import zlib
 
 from command import BAD_INPUT, ROOT, VIEWS, CommandTest, room, vertices
 
@@ -59,6 +60,26 @@ class Info(CommandTest):
         self.assertEqual(result.stderr.count("warning: "), 2, result.stderr)
         self.assertIn("(2 times)", result.stderr)
 
+    def test_unit_and_up_are_those_of_the_file_whatever_its_format(self):
+        for name, text in {
+            "room.mgf": vertices((0, 0, 0), (200, 0, 0), (200, 300, 0)) + "m grey =\n\trd .5\nf v0 v1 v2\n",
+            "room.obj": "v 0 0 0\nv 200 0 0\nv 200 300 0\nf 1 2 3\n",
+            "room.rad": "void plastic a 0 0 5 .5 .5 .5 0 0\na polygon p 0 0 9 0 0 0 200 0 0 200 300 0\n",
+            "room.stl": "solid\nfacet\nvertex 0 0 0\nvertex 200 0 0\nvertex 200 300 0\n",
+        }.items():
+            with self.subTest(name):
+                self.write(name, text)
+                found = self.json("info", name, "--unit", "cm", "--up-axis", "y")["bounds"]
+                for corner, expected in {"min": (0, 0, 0), "max": (2, 0, 3)}.items():  # y of the file is z
+                    for a, b in zip(found[corner], expected, strict=True):
+                        self.assertAlmostEqual(a, b, places=5)
+
+    def test_an_implausible_size_is_told(self):
+        self.write("room.obj", "v 0 0 0\nv 2000 0 0\nv 2000 3000 0\nf 1 2 3\n")
+        for unit, expected in {"m": True, "mm": False, "0.00001": True}.items():
+            kinds = [warning["kind"] for warning in self.json("info", "room.obj", "--unit", unit)["warnings"]]
+            self.assertEqual("implausible-size" in kinds, expected, unit)
+
     def test_curves_are_divided_as_asked(self):
         self.write("ball.mgf", "v centre =\n\tp 0 0 0\nm paint =\n\trd .5\n\tsides 1\nsph centre 1\n")
         area = {n: self.json("info", "ball.mgf", "--curve-divisions", n)["area"] for n in (2, 16)}
@@ -99,18 +120,22 @@ class Solution(CommandTest):
         report = self.json("info", "room.h5")
         for key in ("scene", "method", "options", "seed", "version", "patches", "emitted_power"):
             self.assertEqual(report[key], self.header[key], key)
-        last = self.iterations[-1]
-        self.assertIsNotNone(last["error_estimate"])
-        del last["seconds"]
-        self.assertEqual(report["result"], last)
-        self.assertEqual((report["format_version"], report["interrupted"]), (4, False))
+        for iteration in self.iterations:
+            del iteration["seconds"]
+        self.assertIsNotNone(self.iterations[-1]["error_estimate"])
+        self.assertEqual(report["result"], self.iterations[-1])
+        self.assertEqual(report["history"], self.iterations)
+        self.assertGreater(len(self.iterations), 1)
+        self.assertEqual((report["format_version"], report["interrupted"]), (5, False))
+        checksums = [f"{zlib.crc32(self.bytes(name)):08x}" for name in report["files"]]
+        self.assertEqual(report["file_checksums"], checksums)
         self.assertEqual(report["files"], ["room.mgf", "room.views.json"])
         self.assertEqual([view["name"] for view in report["views"]], ["door", "door", "floor"])
 
     def test_text_tells_the_same(self):
         text = self.interflect("info", "room.h5").stdout
         result = self.json("info", "room.h5")["result"]
-        words = ("room.mgf", "version 4", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
+        words = ("room.mgf", "version 5", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
         for word in (*words, str(result["rays"]), str(result["elements"]), "noise ", "mesh "):
             self.assertIn(word, text)
         self.assertNotIn("alpha", text, "only what differs from the defaults")

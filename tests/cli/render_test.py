@@ -297,6 +297,8 @@ class OptionsWithoutEffect(RenderTest):
             "--epsilon": "1e-6",
             "--importance": "off",
             "--curve-divisions": "3",
+            "--unit": "cm",
+            "--up-axis": "y",
             "--max-patches": "1M",
             "--stats": "stats.json",
         }.items():

@@ -46,6 +46,7 @@ class WrongUsage(CommandTest):
             "--threads": ("-1", "x", "100000"),
             "--mesh-size": ("0", "-1", "nan", "inf", "fine"),
             "--curve-divisions": ("0", "x"),
+            "--unit": ("0", "-1", "nan", "inf", "1e10", "yard", "2m", ""),
             "--warm-up": ("-1",),
             "--epsilon": ("0", "-1", "nan", "small"),
             "--epsilon-decay": ("-1", "1.5", "nan"),
@@ -67,6 +68,7 @@ class WrongUsage(CommandTest):
         self.assert_wrong([*SOLVE, "--importance", "some"], "--importance", "off", "direct", "full")
         self.assert_wrong([*SOLVE, "--refinement-criterion", "taste"], "--refinement-criterion", "variance", "power")
         self.assert_wrong([*RENDER, "--show", "all"], "--show", "importance", "level", "mesh")
+        self.assert_wrong([*SOLVE, "--up-axis", "up"], "--up-axis", "-y")
         self.assert_wrong([*SOLVE, "--points", "grid"], "--points", "sobol", "random")
         self.assert_wrong([*RENDER, "--shading", "phong"], "--shading", "flat", "smooth")
         self.assert_wrong([*RENDER, "--false-colour", "candela"], "--false-colour", "lux", "cd/m2")

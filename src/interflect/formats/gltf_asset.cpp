@@ -59,10 +59,6 @@ bool has_scheme(std::string_view uri) {
     return colon != uri.npos && uri.find_first_of("/?#") > colon;
 }
 
-bool is_within(const fs::path& folder, const fs::path& path) {
-    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
 /// For messages.
 std::string cut(const std::string& uri) {
     constexpr std::size_t longest = 100;
@@ -133,9 +129,7 @@ std::string GltfAsset::read_file(const std::string& uri, const GltfValue& user) 
     const fs::path folder = path().parent_path().empty() ? fs::path(".") : path().parent_path();
     if (name.empty() || name.find('\0') != name.npos) user.fail(fmt::format("'{}' names no file", cut(uri)));
     const fs::path file = folder / name;
-    std::error_code unresolved;
-    const fs::path real = fs::weakly_canonical(file, unresolved), real_folder = fs::canonical(folder, unresolved);
-    const bool stays = !unresolved && !fs::path(name).is_absolute() && is_within(real_folder, real);
+    const bool stays = !fs::path(name).is_absolute() && is_within(file, folder);
     if (!stays && !options_.outside_files)
         user.fail(
             fmt::format("'{}' is outside the folder of this file, which is not allowed (outside_files)", cut(uri)));

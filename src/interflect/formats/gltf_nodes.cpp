@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/formats/file_to_world.h"
+
 namespace interflect::inline detail {
 
 namespace {
@@ -48,10 +50,11 @@ GltfNodes::GltfNodes(GltfAsset& asset)
     for (std::uint32_t i = 0; i < values_.size(); ++i)
         if (parents_[i] == none) roots.push_back(i);
     std::size_t reached = 0;
+    const M44d model_to_world = file_to_world(asset.options());
     traverse(roots, [&](std::uint32_t i) {
         ++reached;
         const M44d local = local_transform(values_[i]);
-        to_world_[i] = parents_[i] == none ? local : local * to_world_[parents_[i]];
+        to_world_[i] = local * (parents_[i] == none ? model_to_world : to_world_[parents_[i]]);
     });
     if (reached < values_.size()) throw GltfFault("nodes: some are their own ancestors");
 }

@@ -23,8 +23,14 @@ class LineReader {
     bool next();
 
     std::span<const std::string_view> words() const { return words_; }  ///< Valid until the next call of next().
-    std::int64_t line() const { return line_; }                         ///< Where the current line starts, from 1.
-    std::size_t length() const { return length_; }                      ///< Characters, continuations included.
+    /// The text from the second word to the end of the last one as it stands: a name that may have spaces.
+    /// Empty where there is one word only.
+    std::string_view rest() const {
+        if (words_.size() < 2) return {};
+        return {words_[1].data(), words_.back().data() + words_.back().size()};
+    }
+    std::int64_t line() const { return line_; }     ///< Where the current line starts, from 1.
+    std::size_t length() const { return length_; }  ///< Characters, continuations included.
 
     Position position() const { return next_; }
     void seek(const Position& position) { next_ = position; }

@@ -8,14 +8,20 @@
 #include <string>
 #include <utility>
 
+#include "interflect/base/crc32.h"
 #include "interflect/error.h"
 #include "interflect/formats/extension.h"
 #include "interflect/formats/gltf.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/number.h"
+#include "interflect/formats/obj.h"
+#include "interflect/formats/ply.h"
+#include "interflect/formats/rad.h"
+#include "interflect/formats/stl.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
+#include "interflect/scene/core.h"
 
 namespace interflect {
 
@@ -28,7 +34,8 @@ struct Format {
     Scene (*read)(const fs::path&, const ReadOptions&);
 };
 
-constexpr Format formats[] = {{".mgf", read_mgf}, {".gltf", read_gltf}, {".glb", read_gltf}};
+constexpr Format formats[] = {{".mgf", read_mgf}, {".glb", read_gltf}, {".gltf", read_gltf}, {".obj", read_obj},
+                              {".ply", read_ply}, {".rad", read_rad},  {".stl", read_stl}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);
@@ -47,6 +54,16 @@ bool emits(const Scene& scene) {
     return std::any_of(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
         return largest_channel(scene.materials[patch.material].exitance) > 0;
     });
+}
+
+/// Diagonals of scenes that are probably in another unit than was thought [m].
+constexpr float implausibly_large = 2000, implausibly_small = 0.05f;
+
+void warn_of_size(Scene& scene) {
+    const float size = core_bounds(scene).size().length();
+    if (size > implausibly_large || size < implausibly_small)
+        scene.warnings.add("implausible-size",
+                           fmt::format("the scene is {:.3g} m across: the file may be in another unit (unit)", size));
 }
 
 constexpr std::string_view maze_prefix = "maze:";
@@ -91,18 +108,28 @@ void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, c
     }
 }
 
+std::vector<std::uint32_t> checksums_of(const std::vector<std::string>& files) {
+    std::vector<std::uint32_t> checksums;
+    for (const std::string& file : files) checksums.push_back(crc32_of_file(file));
+    return checksums;
+}
+
 }  // namespace
 
 Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires,
                  const Daylight& added) {
     if (path.string().starts_with(maze_prefix)) {
+        if (options.unit != 1 || options.up_axis != Axis::z)
+            throw InputError(path, 0, "a maze is made in metres, with z up: unit and up_axis are for files");
         Scene maze = load_maze(path.string(), options);
         add_luminaires(maze, luminaires, options);
         add_daylight(maze, added);
+        maze.file_checksums = checksums_of(maze.files);
         return maze;
     }
     require_regular_file(path);
     Scene scene = format_of(path).read(path, options);
+    warn_of_size(scene);
     add_luminaires(scene, luminaires, options);
     add_daylight(scene, added);
     const fs::path views = view_list_path(path);
@@ -111,6 +138,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
         scene.views = read_view_list(views);
         scene.files.push_back(views.string());
     }
+    scene.file_checksums = checksums_of(scene.files);
     if (!emits(scene)) scene.warnings.add("no-light", "nothing in the scene emits light: all pictures will be black");
     return scene;
 }

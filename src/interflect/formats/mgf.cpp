@@ -1,8 +1,6 @@
 #include "interflect/formats/mgf.h"
 
-#include <fmt/format.h>
-
-#include "interflect/error.h"
+#include "interflect/formats/checked_options.h"
 #include "interflect/formats/mgf_reader.h"
 #include "interflect/formats/text_file.h"
 
@@ -12,14 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Imath::V3d;
-
-ReadOptions checked(const ReadOptions& options) {
-    if (options.curve_divisions < 1 || options.curve_divisions > 1000)
-        throw InputError(fmt::format("curve_divisions: expected 1 to 1000, not {}", options.curve_divisions));
-    if (options.max_patches > 4'000'000'000)
-        throw InputError(fmt::format("max_patches: expected at most 4 * 10^9, not {}", options.max_patches));
-    return options;
-}
 
 /// Reads a scene about the world's origin, and where that is far from it, once more about an origin of its own.
 Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "interflect/error.h"
+#include "interflect/formats/file_to_world.h"
 
 namespace interflect::inline detail {
 
@@ -50,6 +51,7 @@ const std::unordered_map<std::string_view, MgfReader::Entity>& MgfReader::entiti
 
 MgfReader::MgfReader(const std::filesystem::path& path, const ReadOptions& options, const V3d& origin)
     : options_(options),
+      file_to_world_(file_to_world(options)),
       repeated_(options.max_patches),
       colours_("colour", options.max_name_length),
       materials_("material", options.max_name_length),

@@ -11,16 +11,16 @@
 #include <unordered_map>
 #include <vector>
 
+#include "interflect/formats/curves.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/mgf_arguments.h"
 #include "interflect/formats/mgf_contexts.h"
-#include "interflect/formats/mgf_curves.h"
 #include "interflect/formats/mgf_faults.h"
 #include "interflect/formats/mgf_objects.h"
 #include "interflect/formats/mgf_scene_builder.h"
-#include "interflect/formats/mgf_sources.h"
-#include "interflect/formats/mgf_transform.h"
-#include "interflect/formats/mgf_work.h"
+#include "interflect/formats/repeated_work.h"
+#include "interflect/formats/source_files.h"
+#include "interflect/formats/transform_sequence.h"
 #include "interflect/read_options.h"
 
 namespace interflect::inline detail {
@@ -132,12 +132,13 @@ class MgfReader {
     void add_mesh(const PolygonMesh& mesh);
     void open_transform(MgfWords words, const LineReader::Position& body);
     bool close_transform();
-    Imath::M44d total_transform() const { return transforms_.empty() ? Imath::M44d() : transforms_.back().total; }
+    Imath::M44d total_transform() const { return transforms_.empty() ? file_to_world_ : transforms_.back().total; }
     void place_copy(OpenMgfTransform& transform);
     bool next_copy(OpenMgfTransform& transform);
 
     ReadOptions options_;
-    MgfSources sources_;
+    Imath::M44d file_to_world_;
+    SourceFiles sources_;
     OpenMgfFile* file_ = nullptr;
     int include_depth_ = 0, repeating_arrays_ = 0;
     RepeatedWork repeated_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "interflect/error.h"
+#include "interflect/formats/material_limits.h"
 #include "interflect/formats/mgf_arguments.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
@@ -24,12 +25,6 @@ std::string identity(const Material& m) {
     for (const Rgb& c : {m.reflectance, m.exitance, m.transmittance, m.specular_reflectance}) append(c);
     for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture}) append(texture);
     return key;
-}
-
-/// Smooth enough to show images.
-bool is_mirror(const MgfMaterial& m) {
-    constexpr double roughest = 0.02;
-    return m.rs > 0 && m.rs_roughness <= roughest;
 }
 
 }  // namespace
@@ -88,18 +83,6 @@ void MgfSceneBuilder::require_products(const Material& result, const MgfMaterial
         throw InputError(*where.file, where.line, "with the texture's largest texel, the " + fault);
 }
 
-/// Lets what is neither reflected diffusely nor lost go through or be mirrored.
-void MgfSceneBuilder::limit_sum(Material& result, const MgfMaterial& material) {
-    const float straight = largest_channel(Rgb(result.transmittance + result.specular_reflectance));
-    const float rest = 1 - largest_channel(result.reflectance);
-    if (straight <= rest) return;
-    constexpr float above_rounding = 1 - 0x1p-20f;
-    result.transmittance *= rest / straight * above_rounding;
-    result.specular_reflectance *= rest / straight * above_rounding;
-    warn("reflectance-clamped", "more light than arrives would leave this material: rs and ts are reduced",
-         material.defined);
-}
-
 Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Location& where) {
     constexpr double unbounded = std::numeric_limits<float>::max();
     return converted(colour, luminance, unbounded, where);
@@ -122,14 +105,17 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     const auto reflected = [&](const MgfColour& colour, double share) {
         return converted(colour, share, largest_reflectance, material.defined);
     };
-    Material result{std::string(name),
-                    reflected(material.rd_colour, material.rd),
-                    emitted(material.ed_colour, material.ed, material.defined),
-                    texture(material.rd_texture),
-                    texture(material.ed_texture),
-                    reflected(material.ts_colour, material.ts),
-                    is_mirror(material) ? reflected(material.rs_colour, material.rs) : Rgb(0)};
-    limit_sum(result, material);
+    Material result{
+        std::string(name),
+        reflected(material.rd_colour, material.rd),
+        emitted(material.ed_colour, material.ed, material.defined),
+        texture(material.rd_texture),
+        texture(material.ed_texture),
+        reflected(material.ts_colour, material.ts),
+        is_mirror(material.rs, material.rs_roughness) ? reflected(material.rs_colour, material.rs) : Rgb(0)};
+    if (limit_sum(result))
+        warn("reflectance-clamped", "more light than arrives would leave this material: rs and ts are reduced",
+             material.defined);
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
         throw InputError(*material.defined.file, material.defined.line, fault);
     require_products(result, material);

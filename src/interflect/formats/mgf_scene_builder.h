@@ -68,7 +68,6 @@ class MgfSceneBuilder {
     /// Index of the image, which is read where it is new; none where there is none.
     std::uint32_t texture(const MgfTexture& texture);
     /// That a material's reflectance and exitance keep within the limits where they are multiplied by its textures.
-    void limit_sum(Material& result, const MgfMaterial& material);
     void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 

@@ -33,7 +33,7 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
     for (const int size : transform.sequence.array_sizes()) transform.copies_together *= size;
     if (transform.copies_together > static_cast<double>(options_.max_patches))
         throw PatchLimit(fmt::format("an array of {:.0f} copies is beyond the limit of {} patches (max_patches)",
-                                        transform.copies_together, options_.max_patches));
+                                     transform.copies_together, options_.max_patches));
     transform.copy.assign(transform.sequence.array_sizes().size(), 0);
     transforms_.push_back(std::move(transform));
     place_copy(transforms_.back());
@@ -58,8 +58,8 @@ bool MgfReader::close_transform() {
 
 /// Puts the copy in its place, and opens the object that is named after it.
 void MgfReader::place_copy(OpenMgfTransform& transform) {
-    transform.total = transform.sequence.matrix(transform.copy);
-    if (transforms_.size() > 1) transform.total = transform.total * transforms_[transforms_.size() - 2].total;
+    const M44d& around = transforms_.size() > 1 ? transforms_[transforms_.size() - 2].total : file_to_world_;
+    transform.total = transform.sequence.matrix(transform.copy) * around;
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(transform.total[i / 4][i % 4])) throw MgfFault("the transform is not finite");
     if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());

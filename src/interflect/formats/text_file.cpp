@@ -40,6 +40,15 @@ void require_regular_file(const fs::path& path) {
     if (!fs::is_regular_file(status)) throw InputError(path, 0, "this is not a regular file");
 }
 
+bool is_within(const fs::path& path, const fs::path& folder) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(path, error);
+    const fs::path home = error ? fs::path() : fs::weakly_canonical(folder.empty() ? "." : folder, error);
+    if (error) return false;
+    const auto [end, ignored] = std::mismatch(home.begin(), home.end(), place.begin(), place.end());
+    return end == home.end();
+}
+
 std::string read_bytes(const fs::path& path, std::uintmax_t most) {
     require_regular_file(path);
     std::error_code error;

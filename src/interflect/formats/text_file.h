@@ -22,6 +22,9 @@ std::string read_bytes(const std::filesystem::path& path,
 /// The checks of the path alone.
 void require_regular_file(const std::filesystem::path& path);
 
+/// Whether a file lies in a folder or below it, links followed.
+bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 /// The check for control characters alone. @param path  Named in the error.
 void require_text(std::string_view text, const std::filesystem::path& path);
 

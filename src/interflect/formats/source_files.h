@@ -17,7 +17,7 @@ struct SourceFile {
 
 /// The files of a scene, each read once however often it is included. They stay where they are: contexts hold views of
 /// their texts, locations point to their paths.
-class MgfSources {
+class SourceFiles {
   public:
     /// @return the file, and whether it is new. A file of which another path is known already keeps that and its text.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);

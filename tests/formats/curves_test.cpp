@@ -1,4 +1,4 @@
-#include "interflect/formats/mgf_curves.h"
+#include "interflect/formats/curves.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ std::size_t triangles(const PolygonMesh& mesh) {
 
 const V3d centre(1, 2, 3), tilted = V3d(1, -2, 2) / 3;
 
-TEST(MgfCurves, SphereHasTrianglesAtThePolesAndQuadrilateralsElsewhere) {
+TEST(Curves, SphereHasTrianglesAtThePolesAndQuadrilateralsElsewhere) {
     const PolygonMesh sphere = make_sphere(centre, 0.5, 4);
     EXPECT_EQ(sphere.faces.size(), 16u * 8);
     EXPECT_EQ(triangles(sphere), 2u * 16);
@@ -62,21 +62,21 @@ TEST(MgfCurves, SphereHasTrianglesAtThePolesAndQuadrilateralsElsewhere) {
     for (const V3d& p : sphere.points) EXPECT_NEAR((p - centre).length(), 0.5, 1e-12);
 }
 
-TEST(MgfCurves, SphereComesCloseToTheTrueOneAsDivisionsGrow) {
+TEST(Curves, SphereComesCloseToTheTrueOneAsDivisionsGrow) {
     const double true_area = 4 * pi * 0.25, true_volume = 4.0 / 3 * pi * 0.125;
     EXPECT_NEAR(area(make_sphere(centre, 0.5, 4)) / true_area, 1, 0.04);
     EXPECT_NEAR(area(make_sphere(centre, 0.5, 40)) / true_area, 1, 0.0004);
     EXPECT_NEAR(volume(make_sphere(centre, 0.5, 40)) / true_volume, 1, 0.001);
 }
 
-TEST(MgfCurves, NegativeRadiusTurnsTheFrontInside) {
+TEST(Curves, NegativeRadiusTurnsTheFrontInside) {
     EXPECT_GT(volume(make_sphere(centre, 0.5, 4)), 0);
     EXPECT_LT(volume(make_sphere(centre, -0.5, 4)), 0);
     EXPECT_GT(volume(make_torus(centre, tilted, 0.2, 0.6, 4)), 0);
     EXPECT_LT(volume(make_torus(centre, tilted, -0.2, -0.6, 4)), 0);
 }
 
-TEST(MgfCurves, CylinderLooksAwayFromItsAxis) {
+TEST(Curves, CylinderLooksAwayFromItsAxis) {
     const V3d end = centre + 2.0 * tilted;
     for (const double radius : {0.5, -0.5}) {
         const PolygonMesh cylinder = make_cone(centre, radius, end, radius, 4);
@@ -90,7 +90,7 @@ TEST(MgfCurves, CylinderLooksAwayFromItsAxis) {
     }
 }
 
-TEST(MgfCurves, ConeWithATipIsMadeOfTriangles) {
+TEST(Curves, ConeWithATipIsMadeOfTriangles) {
     for (const auto& cone :
          {make_cone(centre, 1, centre + tilted, 0, 4), make_cone(centre + tilted, 0, centre, 1, 4)}) {
         EXPECT_EQ(cone.faces.size(), 16u);
@@ -100,7 +100,7 @@ TEST(MgfCurves, ConeWithATipIsMadeOfTriangles) {
     }
 }
 
-TEST(MgfCurves, RingLooksAlongItsNormal) {
+TEST(Curves, RingLooksAlongItsNormal) {
     const PolygonMesh ring = make_ring(centre, tilted, 0.5, 1, 4), disk = make_ring(centre, tilted, 0, 1, 4);
     const double polygon = 16 * 0.5 * std::sin(pi / 8);  // area of a regular 16-gon of radius 1
     EXPECT_NEAR(area(ring), 0.75 * polygon, 1e-12);
@@ -110,7 +110,7 @@ TEST(MgfCurves, RingLooksAlongItsNormal) {
     for (const auto& face : ring.faces) EXPECT_NEAR(area_vector(ring, face).normalized().dot(tilted), 1, 1e-12);
 }
 
-TEST(MgfCurves, Torus) {
+TEST(Curves, Torus) {
     const PolygonMesh torus = make_torus(centre, tilted, 0.2, 0.6, 40);
     EXPECT_TRUE(is_closed(torus));
     EXPECT_NEAR(area(torus) / (4 * pi * pi * 0.4 * 0.2), 1, 1e-3);
@@ -118,7 +118,7 @@ TEST(MgfCurves, Torus) {
     EXPECT_TRUE(is_closed(make_torus(centre, tilted, 0, 0.6, 4))) << "without a hole, it meets at its centre";
 }
 
-TEST(MgfCurves, PrismIsBehindItsOutlineAndClosed) {
+TEST(Curves, PrismIsBehindItsOutlineAndClosed) {
     const V3d outline[] = {{0, 0, 5}, {2, 0, 5}, {2, 3, 5}, {0, 3, 5}, {-1, 1, 5}};
     const PolygonMesh prism = make_prism(outline, 2);
     EXPECT_EQ(prism.faces.size(), 7u);
@@ -130,7 +130,7 @@ TEST(MgfCurves, PrismIsBehindItsOutlineAndClosed) {
     for (const V3d& p : inwards.points) EXPECT_TRUE(p.z == 5 || p.z == 7);
 }
 
-TEST(MgfCurves, IllegalArgumentsAreRefused) {
+TEST(Curves, IllegalArgumentsAreRefused) {
     EXPECT_THROW(make_sphere(centre, 0, 4), std::invalid_argument);
     EXPECT_THROW(make_cone(centre, 0, centre + tilted, 0, 4), std::invalid_argument);
     EXPECT_THROW(make_cone(centre, 1, centre + tilted, -1, 4), std::invalid_argument);

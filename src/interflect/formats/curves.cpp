@@ -1,4 +1,4 @@
-#include "interflect/formats/mgf_curves.h"
+#include "interflect/formats/curves.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,10 @@
-#include "interflect/formats/mgf_work.h"
+#include "interflect/formats/repeated_work.h"
 
 #include <fmt/format.h>
 
-#include "interflect/formats/mgf_arguments.h"
+#include <stdexcept>
+
+#include "interflect/formats/scene_faces.h"
 
 namespace interflect::inline detail {
 
@@ -20,7 +22,7 @@ void RepeatedWork::add(std::uint64_t words, std::uint64_t patches) {
         throw PatchLimit(
             fmt::format("arrays and includes repeat more than {} patches (max_patches) could need", max_patches_));
     if (words_ > free_of_made + words_per_made_patch * patches)
-        throw MgfFault(
+        throw std::invalid_argument(
             fmt::format("arrays and includes repeat {} million words, from which only {} patches were made: expected "
                         "files that include each other, or arrays in each other, fewer times",
                         words_ / 1'000'000, patches));

@@ -1,4 +1,4 @@
-#include "interflect/formats/mgf_transform.h"
+#include "interflect/formats/transform_sequence.h"
 
 #include <fmt/format.h>
 

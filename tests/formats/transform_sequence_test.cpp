@@ -1,4 +1,4 @@
-#include "interflect/formats/mgf_transform.h"
+#include "interflect/formats/transform_sequence.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ V3d apply(const std::string& text, const V3d& point, const std::vector<int>& cop
     return point * parse(text).matrix(copy);
 }
 
-TEST(MgfTransform, EachTransform) {
+TEST(TransformSequence, EachTransform) {
     EXPECT_EQ(apply("-t 1 2 3", {1, 1, 1}), V3d(2, 3, 4));
     EXPECT_EQ(apply("-s 2", {1, 2, 3}), V3d(2, 4, 6));
     EXPECT_EQ(apply("-mx", {1, 2, 3}), V3d(-1, 2, 3));
@@ -29,7 +29,7 @@ TEST(MgfTransform, EachTransform) {
     EXPECT_EQ(apply("-mz", {1, 2, 3}), V3d(1, 2, -3));
 }
 
-TEST(MgfTransform, QuarterTurnsAreCounterClockwiseAndExact) {
+TEST(TransformSequence, QuarterTurnsAreCounterClockwiseAndExact) {
     EXPECT_EQ(apply("-rx 90", {1, 2, 3}), V3d(1, -3, 2));
     EXPECT_EQ(apply("-ry 90", {1, 2, 3}), V3d(3, 2, -1));
     EXPECT_EQ(apply("-rz 90", {1, 2, 3}), V3d(-2, 1, 3));
@@ -37,22 +37,22 @@ TEST(MgfTransform, QuarterTurnsAreCounterClockwiseAndExact) {
     EXPECT_EQ(apply("-rz 540", {1, 2, 3}), V3d(-1, -2, 3));
 }
 
-TEST(MgfTransform, OtherAngles) {
+TEST(TransformSequence, OtherAngles) {
     EXPECT_LT((apply("-rz 30", {1, 0, 0}) - V3d(std::sqrt(0.75), 0.5, 0)).length(), 1e-15);
 }
 
-TEST(MgfTransform, ActFromLeftToRight) {
+TEST(TransformSequence, ActFromLeftToRight) {
     EXPECT_EQ(apply("-t 1 0 0 -rz 90", {0, 0, 0}), V3d(0, 1, 0));
     EXPECT_EQ(apply("-rz 90 -t 1 0 0", {0, 0, 0}), V3d(1, 0, 0));
 }
 
-TEST(MgfTransform, RepetitionCoversWhatFollowsIt) {
+TEST(TransformSequence, RepetitionCoversWhatFollowsIt) {
     EXPECT_EQ(apply("-t 0 5 0 -i 3 -t 1 0 0", {0, 0, 0}), V3d(3, 5, 0));
     EXPECT_EQ(apply("-i 0 -t 1 0 0 -i 2 -s 3", {1, 0, 0}), V3d(9, 0, 0));
     EXPECT_EQ(apply("-i 1000000000 -rz 90", {1, 0, 0}), V3d(1, 0, 0));
 }
 
-TEST(MgfTransform, ArrayRepeatsByTheCopysIndex) {
+TEST(TransformSequence, ArrayRepeatsByTheCopysIndex) {
     const TransformSequence grid = parse("-t 0 0 9 -a 2 -t 1 0 0 -a 3 -t 0 1 0");
     EXPECT_EQ(std::vector<int>(grid.array_sizes().begin(), grid.array_sizes().end()), (std::vector<int>{2, 3}));
     EXPECT_EQ(V3d(0) * grid.matrix(std::vector<int>{0, 0}), V3d(0, 0, 9));
@@ -60,7 +60,7 @@ TEST(MgfTransform, ArrayRepeatsByTheCopysIndex) {
     EXPECT_FALSE(parse("-t 1 0 0").is_array());
 }
 
-TEST(MgfTransform, WrongArgumentsAreRefused) {
+TEST(TransformSequence, WrongArgumentsAreRefused) {
     for (const char* text : {"-t 1 2", "-t 1 2 x", "-rx", "-ra 3", "-s 0", "-s nan", "-mw", "-i -1", "-i 1.5", "-a 0",
                              "-a", "5", "t 1 2 3", "-T 1 2 3", "-rxy 3"})
         EXPECT_THROW(parse(text), std::invalid_argument) << text;

@@ -1,4 +1,4 @@
-#include "interflect/formats/mgf_sources.h"
+#include "interflect/formats/source_files.h"
 
 #include <stdexcept>
 #include <system_error>
@@ -11,7 +11,7 @@ namespace interflect::inline detail {
 
 namespace fs = std::filesystem;
 
-std::pair<const SourceFile&, bool> MgfSources::add(const fs::path& path, std::string&& text) {
+std::pair<const SourceFile&, bool> SourceFiles::add(const fs::path& path, std::string&& text) {
     std::error_code ignored;  // what has no canonical path gets an empty one
     const auto [source, is_new] =
         sources_.try_emplace(fs::weakly_canonical(path, ignored), SourceFile{path, std::move(text)});
@@ -19,7 +19,7 @@ std::pair<const SourceFile&, bool> MgfSources::add(const fs::path& path, std::st
     return {source->second, is_new};
 }
 
-std::pair<const SourceFile&, bool> MgfSources::find(std::string_view name, const SourceFile& includer) {
+std::pair<const SourceFile&, bool> SourceFiles::find(std::string_view name, const SourceFile& includer) {
     const fs::path path = includer.path.parent_path() / name;
     const auto known = source_of_path_.find(path.string());
     if (known != source_of_path_.end()) return {*known->second, false};

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+
+namespace interflect {
+
+/// Something in a scene that spoils its light, or that should be known before it is solved.
+struct Finding {
+    /// One place where it is; what does not apply is empty.
+    struct Place {
+        std::string object{}, material{};
+        std::string where{};           ///< "file:line".
+        Imath::V3d position{0, 0, 0};  ///< In the world [m].
+        bool has_position = false;
+    };
+    std::string kind;           ///< Stable identifier, such as "duplicate-face".
+    bool is_problem = false;    ///< Whether it changes the light, or is nearly certainly a mistake; else a note.
+    std::string message;        ///< What it is, in one sentence.
+    std::string advice;         ///< What to do about it.
+    std::int64_t count = 0;     ///< How often.
+    std::vector<Place> places;  ///< The first of them.
+};
+
+struct ValidateOptions {
+    std::size_t places = 3;         ///< Most of each kind that are listed.
+    float high_reflectance = 0.9f;  ///< Paints, paper and snow have less; in (0, 1).
+};
+
+/// Looks for what would spoil a solve of the scene as it was read, before cut_at_contacts(). Problems:
+/// "degenerate-face" (without area, left out by the reader), "duplicate-face" (the same corners as another),
+/// "inverted-face" (one-sided, and the scene is behind it), "inverted-lamp" (its front is against a surface, its back
+/// is not), "hidden-lamp" (covered, or enclosed by surfaces close to it), "zero-power-lamp", "high-reflectance",
+/// "no-light", "implausible-size". Notes: "coincident-face" (another in its plane covers a part of it), "open-edge" (of
+/// one face alone) and "no-view". What faces and lamps see is found with rays: 64 a face, of at most 4096 of a kind.
+/// @param ray_caster  Of this scene.
+/// @return            In the order above. O(n log n) for n patches. @throws InputError where the ray caster is
+/// another's.
+std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, const ValidateOptions& options = {});
+
+}  // namespace interflect

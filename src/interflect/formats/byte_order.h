@@ -1,0 +1,20 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <string_view>
+
+namespace interflect::inline detail {
+
+/// The number that the first bytes of a file's part hold. @param bytes  sizeof(Number) or more.
+template <class Number>
+Number number_of(std::string_view bytes, std::endian order) {
+    std::array<char, sizeof(Number)> raw;
+    std::copy_n(bytes.begin(), raw.size(), raw.begin());
+    if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<Number>(raw);
+}
+
+}  // namespace interflect::inline detail

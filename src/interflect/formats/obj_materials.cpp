@@ -1,0 +1,184 @@
+#include "interflect/formats/obj_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <stdexcept>
+
+#include "interflect/error.h"
+#include "interflect/formats/extension.h"
+#include "interflect/formats/line_reader.h"
+#include "interflect/formats/material_limits.h"
+#include "interflect/formats/number.h"
+#include "interflect/formats/text_file.h"
+#include "interflect/formats/texture_files.h"
+#include "interflect/scene/limits.h"
+
+namespace interflect::inline detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+float mtl_number(std::string_view word) {
+    const auto value = parse_number(word);
+    if (!value) throw std::invalid_argument(fmt::format("expected a finite number, not '{}'", word));
+    return static_cast<float>(*value);
+}
+
+/// "r g b", or "r" for a grey.
+Rgb mtl_colour(std::span<const std::string_view> words) {
+    if (words.size() != 2 && words.size() != 4)
+        throw std::invalid_argument(
+            fmt::format("{} needs one number or three, as spectra and XYZ are not read", words[0]));
+    Rgb result;
+    for (int c = 0; c < 3; ++c) result[c] = mtl_number(words[words.size() == 2 ? 1 : 1 + c]);
+    if (std::min({result.x, result.y, result.z}) < 0)
+        throw std::invalid_argument(fmt::format("{} is negative", words[0]));
+    return result;
+}
+
+/// How many words follow an option of a texture map at most; those of -o, -s and -t are numbers.
+std::size_t option_words(std::string_view option) {
+    if (option == "-mm") return 2;
+    return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;
+}
+
+}  // namespace
+
+ObjMaterials::ObjMaterials(Model& model, const ReadOptions& options) : model_(model), options_(options) {
+    model_.materials.push_back(default_material());
+}
+
+void ObjMaterials::read(const fs::path& path, const Location& where) {
+    if (options_.max_include_depth < 1)
+        throw std::invalid_argument("no other file may be read (max_include_depth is 0)");
+    if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
+        throw std::invalid_argument(
+            fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", path.string()));
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) {
+        warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
+        return;
+    }
+    read_text(read_text_file(path), path);
+}
+
+void ObjMaterials::read_text(std::string_view text, const fs::path& path) {
+    libraries_.push_back(path);
+    model_.files.push_back(path.string());
+    Definition* current = nullptr;
+    for (LineReader lines(text); lines.next();) {
+        const auto words = lines.words();
+        const Location here{&libraries_.back(), lines.line()};
+        if (words[0] == "newmtl") {
+            std::string name(lines.rest());
+            if (name.size() > options_.max_name_length) throw here.error("the name of this material is too long");
+            current = &(definitions_[std::move(name)] = Definition());
+            current->where = here;
+        } else if (current && !words[0].starts_with('#')) {
+            try {
+                read_line(words, *current, here);
+            } catch (const std::invalid_argument& fault) {
+                throw here.error(fault.what());
+            }
+        }
+    }
+}
+
+void ObjMaterials::read_line(std::span<const std::string_view> words, Definition& definition, const Location& where) {
+    const std::string_view key = words[0];
+    if (key == "Kd") definition.diffuse = mtl_colour(words);
+    if (key == "Ke") definition.emitted = mtl_colour(words);
+    if (key == "Ks") definition.specular = mtl_colour(words);
+    if (key == "map_Kd" && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
+    if ((key == "d" || key == "Tr") && words.size() > 1) {
+        const float value = mtl_number(words.back());
+        if (!(value >= 0 && value <= 1))
+            throw std::invalid_argument(fmt::format("{} is {}; expected 0 to 1", key, value));
+        if (key == "d" || !definition.has_dissolve) definition.opacity = key == "d" ? value : 1 - value;
+        definition.has_dissolve |= key == "d";
+    }
+}
+
+/// The file name may have spaces.
+fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, const Location& where) {
+    while (words.size() > 1 && words[0].starts_with('-')) {
+        warn("texture-option", "option of a texture map is ignored", where);
+        std::size_t taken = 1;
+        const std::size_t most = std::min(1 + option_words(words[0]), words.size() - 1);
+        while (taken < most && (most == 2 || parse_number(words[taken]))) ++taken;
+        words = words.subspan(taken);
+    }
+    std::string name = fmt::format("{}", fmt::join(words, " "));
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const fs::path path = where.file->parent_path() / name;
+    if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
+        throw std::invalid_argument(fmt::format(
+            "the texture '{}' lies outside the scene's folder, which is not allowed (outside_files)", name));
+    return path;
+}
+
+std::uint32_t ObjMaterials::find(const std::string& name, const Location& where) {
+    const auto entry = definitions_.find(name);
+    if (entry == definitions_.end()) {
+        warn("missing-material", "material that no library has is taken as a grey of reflectance 0.5", where);
+        return 0;
+    }
+    Definition& definition = entry->second;
+    if (definition.material == none) definition.material = convert(name, definition);
+    return definition.material;
+}
+
+std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& definition) {
+    Material result;
+    result.name = name;
+    result.reflectance = definition.diffuse * definition.opacity;
+    result.reflectance_texture = texture(definition);
+    result.exitance = definition.emitted * static_cast<float>(std::numbers::pi);
+    bool limited = limit_reflectance(result.reflectance);
+    if (result.reflectance_texture != none) {
+        const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);
+        for (int c = 0; c < 3; ++c) {
+            const float most = static_cast<float>(largest_reflectance) / std::max(largest[c], 1e-6f);
+            result.reflectance[c] = std::min(result.reflectance[c], most);
+        }
+    }
+    result.transmittance = Rgb(1 - definition.opacity);
+    limited |= limit_sum(result);
+    if (limited) warn("reflectance-clamped", "diffuse reflectance (Kd) above 0.99 is reduced", definition.where);
+    if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
+        throw definition.where.error(fmt::format("of the material '{}' the {}", name, fault));
+    if (largest_channel(definition.specular) > 0)
+        warn("specular-reflection", "specular reflectance (Ks) is left out", definition.where);
+    model_.materials.push_back(std::move(result));
+    return static_cast<std::uint32_t>(model_.materials.size() - 1);
+}
+
+std::uint32_t ObjMaterials::texture(const Definition& definition) {
+    if (definition.texture.empty()) return none;
+    const auto [entry, is_new] = textures_.try_emplace(definition.texture.string(), none);
+    if (!is_new) return entry->second;
+    std::error_code ignored;
+    const std::string extension = lower_case_extension(definition.texture);
+    const std::array readable = {".png", ".exr", ".hdr"};
+    if (std::find(readable.begin(), readable.end(), extension) == readable.end() ||
+        !fs::exists(definition.texture, ignored)) {
+        warn("missing-texture", "texture (map_Kd) that is missing, or no PNG, EXR or HDR file, is left out",
+             definition.where);
+        return none;
+    }
+    try {
+        require_regular_file(definition.texture);
+        model_.textures.push_back(read_texture(definition.texture, most_texels - texels_));
+    } catch (const InputError& unreadable) {
+        throw definition.where.error(fmt::format("the texture {}", unreadable.what()));
+    }
+    texels_ += model_.textures.back().texels.size();
+    model_.files.push_back(definition.texture.string());
+    return entry->second = static_cast<std::uint32_t>(model_.textures.size() - 1);
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,173 @@
+#include "interflect/formats/obj_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+#include "interflect/error.h"
+#include "interflect/formats/file_to_world.h"
+#include "interflect/formats/number.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+using Words = std::span<const std::string_view>;
+
+double coordinate_value(std::string_view word) {
+    const auto value = parse_number(word);
+    if (!value) throw std::invalid_argument(fmt::format("expected a finite number, not '{}'", word));
+    return *value;
+}
+
+/// The index from 0 that a number from 1, or one from -1 backwards, stands for.
+std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number == 0)
+        throw std::invalid_argument(fmt::format("expected the number of a {}, not '{}'", of, text));
+    const std::int64_t index = number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
+    if (index < 0 || index >= static_cast<std::int64_t>(count))
+        throw std::invalid_argument(fmt::format("there is no {} {}: {} precede this line", of, number, count));
+    return static_cast<std::uint32_t>(index);
+}
+
+}  // namespace
+
+ObjReader::ObjReader(const std::filesystem::path& path, const ReadOptions& options)
+    : options_(options), materials_(model_, options_) {
+    model_.file = path;
+    model_.files.push_back(path.string());
+    object_index_.emplace("", 0);
+}
+
+void ObjReader::read(std::string_view text) {
+    for (LineReader lines(text); lines.next();) {
+        const Location where{&model_.file, lines.line()};
+        try {
+            const Words all = lines.words();
+            const auto comment = std::find_if(all.begin(), all.end(), [](auto word) { return word.starts_with('#'); });
+            if (comment != all.begin()) read_line(lines, {all.begin(), comment}, where);
+        } catch (const std::invalid_argument& fault) {
+            throw where.error(fault.what());
+        }
+    }
+}
+
+void ObjReader::read_line(const LineReader& line, Words words, const Location& where) {
+    const std::string_view key = words[0];
+    const auto name = [&] {
+        if (line.rest().size() > options_.max_name_length) throw std::invalid_argument("this name is too long");
+        mesh_ = none;
+        return std::string(line.rest());
+    };
+    if (key == "v") {
+        vertex(words);
+    } else if (key == "vt") {
+        coordinate(words);
+    } else if (key == "f") {
+        face(words.subspan(1), where);
+    } else if (key == "o") {
+        object_ = name();
+        group_.clear();
+    } else if (key == "g") {
+        group_ = name();
+    } else if (key == "usemtl") {
+        material_ = materials_.find(name(), where);
+    } else if (key == "mtllib") {
+        libraries(line, words, where);
+    } else if (key != "vn" && key != "s" && key != "vp") {
+        constexpr std::string_view known = "l p";  // lines and points, which have no area
+        model_.warnings.add("unsupported-entity",
+                            known.find(key) != known.npos ? "lines and points are left out"
+                                                          : fmt::format("'{}' is left out", key.substr(0, 20)),
+                            where.text());
+    }
+}
+
+void ObjReader::vertex(Words words) {
+    if (words.size() < 4) throw std::invalid_argument("a vertex needs three coordinates");
+    if (positions_.size() >= none) throw std::invalid_argument("there are more vertices than 32 bits can count");
+    positions_.emplace_back(coordinate_value(words[1]), coordinate_value(words[2]), coordinate_value(words[3]));
+    uses_.emplace_back();
+}
+
+void ObjReader::coordinate(Words words) {
+    if (words.size() < 2) throw std::invalid_argument("texture coordinates need a number");
+    if (coordinates_.size() >= none) throw std::invalid_argument("there are more coordinates than 32 bits can count");
+    const double v = words.size() > 2 ? coordinate_value(words[2]) : 0;
+    coordinates_.emplace_back(static_cast<float>(coordinate_value(words[1])), static_cast<float>(v));
+}
+
+void ObjReader::face(Words words, const Location& where) {
+    if (words.size() < 3 || words.size() > options_.max_face_vertices)
+        throw std::invalid_argument(
+            fmt::format("a face of {} vertices; expected 3 to {}", words.size(), options_.max_face_vertices));
+    if (mesh_ == none) mesh_ = mesh();
+    Mesh& target = model_.meshes[mesh_];
+    for (const std::string_view word : words) target.indices.push_back(corner(word, where));
+    target.face_sizes.push_back(static_cast<std::uint32_t>(words.size()));
+}
+
+/// Index in the present mesh of a corner such as "3", "3/1", "3//2" or "-1/-1/-1".
+std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
+    const std::size_t slash = word.find('/');
+    const std::uint32_t position = resolved(word.substr(0, slash), positions_.size(), "vertex");
+    std::uint32_t coordinate = none;
+    Mesh& target = model_.meshes[mesh_];
+    const bool is_textured = model_.materials[target.material].is_textured();
+    if (slash != word.npos && is_textured) {
+        const std::string_view rest = word.substr(slash + 1);
+        const std::string_view text = rest.substr(0, rest.find('/'));
+        if (!text.empty()) coordinate = resolved(text, coordinates_.size(), "texture coordinate");
+    }
+    Use& use = uses_[position];
+    if (use.mesh == mesh_ && use.coordinate == coordinate) return use.index;
+    use = {mesh_, static_cast<std::uint32_t>(target.positions.size()), coordinate};
+    target.positions.push_back(positions_[position]);
+    if (is_textured) {
+        if (coordinate == none)
+            model_.warnings.add("missing-coordinates",
+                                "vertex of a textured face without texture coordinates has (0, 0)", where.text());
+        const V2f uv = coordinate == none ? V2f(0) : coordinates_[coordinate];
+        if (const std::string fault = texture_coordinate_fault(uv); !fault.empty())
+            throw std::invalid_argument("this vertex " + fault);
+        target.texture_coordinates.push_back(uv);
+    }
+    return use.index;
+}
+
+std::uint32_t ObjReader::mesh() {
+    const auto [entry, is_new] =
+        meshes_.try_emplace({object(), material_}, static_cast<std::uint32_t>(model_.meshes.size()));
+    if (is_new) {
+        Mesh mesh;
+        mesh.name = fmt::format("object '{}', material '{}'", model_.objects[entry->first.first],
+                                model_.materials[material_].name);
+        mesh.material = material_;
+        mesh.back_emits = false;
+        model_.meshes.push_back(std::move(mesh));
+        model_.instances.push_back({entry->second, file_to_world(options_), entry->first.first});
+    }
+    return entry->second;
+}
+
+std::uint32_t ObjReader::object() {
+    const std::string name = object_.empty() || group_.empty() ? object_ + group_ : object_ + '.' + group_;
+    const auto [entry, is_new] = object_index_.try_emplace(name, static_cast<std::uint32_t>(model_.objects.size()));
+    if (is_new) model_.objects.push_back(name);
+    return entry->second;
+}
+
+/// One file, whose name may have spaces, or several.
+void ObjReader::libraries(const LineReader& line, Words words, const Location& where) {
+    const std::filesystem::path folder = model_.file.parent_path();
+    std::error_code ignored;
+    if (words.size() == 2 || std::filesystem::exists(folder / line.rest(), ignored))
+        return materials_.read(folder / line.rest(), where);
+    for (const std::string_view name : words.subspan(1)) materials_.read(folder / name, where);
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "interflect/formats/line_reader.h"
+#include "interflect/formats/model.h"
+#include "interflect/formats/obj_materials.h"
+
+namespace interflect::inline detail {
+
+/// Reads an OBJ file into a model: one mesh for each material of each object.
+///
+/// tinyobjloader, which reads the same files, is not used: it takes indices that are out of range (with a warning
+/// alone) or do not fit into 32 bits, numbers that are none as 0, and numbers that overflow as infinite.
+class ObjReader {
+  public:
+    ObjReader(const std::filesystem::path& path, const ReadOptions& options);
+    void read(std::string_view text);
+    Model finish() { return std::move(model_); }
+
+  private:
+    /// Where in the mesh that was last given this vertex it is, and with which texture coordinates.
+    struct Use {
+        std::uint32_t mesh = none, index = 0, coordinate = none;
+    };
+    void read_line(const LineReader& line, std::span<const std::string_view> words, const Location& where);
+    void vertex(std::span<const std::string_view> words);
+    void coordinate(std::span<const std::string_view> words);
+    void face(std::span<const std::string_view> words, const Location& where);
+    void libraries(const LineReader& line, std::span<const std::string_view> words, const Location& where);
+    std::uint32_t corner(std::string_view word, const Location& where);
+    std::uint32_t mesh();
+    std::uint32_t object();
+
+    ReadOptions options_;
+    Model model_;
+    ObjMaterials materials_;
+    std::vector<Imath::V3d> positions_;
+    std::vector<V2f> coordinates_;
+    std::vector<Use> uses_;  // of each position
+    std::string object_, group_;
+    std::uint32_t material_ = 0;
+    std::uint32_t mesh_ = none;  // of the object, group and material in force; none: not looked up yet
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
+    std::unordered_map<std::string, std::uint32_t> object_index_;
+};
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,191 @@
+#include "interflect/formats/ply.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "interflect/error.h"
+#include "interflect/formats/checked_options.h"
+#include "interflect/formats/file_to_world.h"
+#include "interflect/formats/material_limits.h"
+#include "interflect/formats/model.h"
+#include "interflect/formats/ply_header.h"
+#include "interflect/formats/scene_faces.h"
+#include "interflect/formats/text_file.h"
+#include "interflect/image/srgb.h"
+
+namespace interflect::inline detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Reads the elements of a file into a model of one mesh.
+class PlyReader {
+  public:
+    PlyReader(const PlyHeader& header, PlyValues values, Model& model, const ReadOptions& options)
+        : header_(header), values_(values), model_(model), mesh_(model.meshes.emplace_back()), options_(options) {
+        mesh_.name = "the mesh";
+    }
+
+    void read() {
+        for (const PlyElement& element : header_.elements) {
+            if (element.count > 0 && !values_.may_hold(1, 1)) throw std::invalid_argument(too_short(element));
+            if (!element.properties.empty() &&
+                (element.count > most_elements ||
+                 !values_.may_hold(element.count * element.fewest_values(), element.count * element.fewest_bytes())))
+                throw std::invalid_argument(too_short(element));
+            if (element.name == "vertex")
+                read_vertices(element);
+            else if (element.name == "face")
+                read_faces(element);
+            else
+                skip(element);
+        }
+        for (const std::uint32_t index : mesh_.indices)
+            if (index >= mesh_.positions.size())
+                throw std::invalid_argument(
+                    fmt::format("a face has vertex {}, but there are {}", index, mesh_.positions.size()));
+        model_.instances.push_back({0, file_to_world(options_), 0});
+        model_.materials.push_back(material());
+    }
+
+  private:
+    static constexpr std::uint64_t most_elements = std::uint64_t{1} << 40;  // of which no product overflows
+
+    static std::string too_short(const PlyElement& element) {
+        return fmt::format("the file is too short for {} of '{}'", element.count, element.name.substr(0, 40));
+    }
+
+    std::uint64_t list_length(const PlyProperty& property) {
+        const double length = values_.next(*property.count_type);
+        if (!(length >= 0) || length != std::floor(length))
+            throw std::invalid_argument(fmt::format("{} is no length of a list", length));
+        const auto count = static_cast<std::uint64_t>(length);
+        if (!values_.may_hold(count, count * size_of(property.type)))
+            throw std::invalid_argument(fmt::format("the file ends within a list of {}", count));
+        return count;
+    }
+
+    void skip(const PlyProperty& property) {
+        for (std::uint64_t n = property.count_type ? list_length(property) : 1; n > 0; --n) values_.next(property.type);
+    }
+
+    void skip(const PlyElement& element) {
+        for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
+            for (const PlyProperty& property : element.properties) skip(property);
+    }
+
+    void read_vertices(const PlyElement& element) {
+        if (!mesh_.positions.empty()) throw std::invalid_argument("there are two elements 'vertex'");
+        if (element.count >= none) throw std::invalid_argument("there are more vertices than 32 bits can count");
+        std::array<std::optional<std::size_t>, 3> place, tint;
+        for (std::size_t c = 0; c < 3; ++c) {
+            place[c] = element.find(std::array{"x", "y", "z"}[c]);
+            tint[c] = element.find(std::array{"red", "green", "blue"}[c]);
+            if (!place[c]) throw std::invalid_argument("a vertex needs the properties x, y and z");
+        }
+        const bool has_colour = tint[0] && tint[1] && tint[2];
+        mesh_.positions.reserve(element.count);
+        std::vector<double> row(element.properties.size());
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            for (std::size_t p = 0; p < row.size(); ++p) {
+                if (element.properties[p].count_type)
+                    skip(element.properties[p]);
+                else
+                    row[p] = values_.next(element.properties[p].type);
+            }
+            const Imath::V3d x(row[*place[0]], row[*place[1]], row[*place[2]]);
+            if (!std::isfinite(x.x + x.y + x.z)) throw std::invalid_argument(fmt::format("vertex {} is not finite", i));
+            mesh_.positions.push_back(x);
+            if (has_colour) add_colour({row[*tint[0]], row[*tint[1]], row[*tint[2]]});
+        }
+        has_bytes_ = has_colour && element.properties[*tint[0]].type == PlyType::uint8;
+    }
+
+    void add_colour(const RgbD& colour) {
+        if (!colour_) colour_ = colour;
+        varies_ |= colour != *colour_;
+    }
+
+    void read_faces(const PlyElement& element) {
+        const auto named = element.find("vertex_indices");
+        const auto list = named ? named : element.find("vertex_index");
+        if (!list || !element.properties[*list].count_type)
+            throw std::invalid_argument("a face needs the list vertex_indices");
+        if (element.count > options_.max_patches)
+            throw PatchLimit(fmt::format("{} faces would give more than {} patches (max_patches)", element.count,
+                                         options_.max_patches));
+        for (std::uint64_t i = 0; i < element.count; ++i)
+            for (std::size_t p = 0; p < element.properties.size(); ++p) {
+                if (p == *list)
+                    read_face(element.properties[p]);
+                else
+                    skip(element.properties[p]);
+            }
+    }
+
+    void read_face(const PlyProperty& property) {
+        const std::uint64_t size = list_length(property);
+        if (size < 3 || size > options_.max_face_vertices)
+            throw std::invalid_argument(
+                fmt::format("a face has {} vertices; expected 3 to {}", size, options_.max_face_vertices));
+        mesh_.face_sizes.push_back(static_cast<std::uint32_t>(size));
+        for (std::uint64_t i = 0; i < size; ++i) {
+            const double index = values_.next(property.type);
+            if (!(index >= 0 && index < none) || index != std::floor(index))
+                throw std::invalid_argument(fmt::format("{} is no number of a vertex", index));
+            mesh_.indices.push_back(static_cast<std::uint32_t>(index));
+        }
+    }
+
+    /// Of the one colour that all vertices have, which of bytes is sRGB; grey otherwise.
+    Material material() {
+        Material result = default_material();
+        if (!colour_) return result;
+        if (varies_ || !has_bytes_) {
+            model_.warnings.add("vertex-colours",
+                                "colours of vertices are left out: all faces are of a reflectance of 0.5",
+                                model_.file.string());
+            return result;
+        }
+        for (int c = 0; c < 3; ++c) result.reflectance[c] = srgb_decode(static_cast<float>((*colour_)[c] / 255));
+        limit_reflectance(result.reflectance);
+        return result;
+    }
+
+    const PlyHeader& header_;
+    PlyValues values_;
+    Model& model_;
+    Mesh& mesh_;
+    const ReadOptions& options_;
+    std::optional<RgbD> colour_;  // of the first vertex
+    bool varies_ = false, has_bytes_ = false;
+};
+
+}  // namespace
+
+Scene read_ply(const fs::path& path, const ReadOptions& options) {
+    return read_ply_bytes(read_bytes(path), path, options);
+}
+
+Scene read_ply_bytes(std::string_view bytes, const fs::path& path, const ReadOptions& options) {
+    checked(options);
+    Model model;
+    model.file = path;
+    model.files.push_back(path.string());
+    try {
+        const PlyHeader header = parse_ply_header(bytes);
+        PlyReader(header, {bytes.substr(header.size), header.form}, model, options).read();
+    } catch (const PatchLimit& fault) {
+        throw TooManyPatches(path, 0, fault.what());
+    } catch (const std::invalid_argument& fault) {
+        throw InputError(path, 0, fault.what());
+    }
+    return scene_of(std::move(model), options);
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,66 @@
+#include "interflect/formats/ply_values.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "interflect/formats/byte_order.h"
+#include "interflect/formats/number.h"
+
+namespace interflect::inline detail {
+
+std::size_t size_of(PlyType type) {
+    switch (type) {
+        case PlyType::int8:
+        case PlyType::uint8:
+            return 1;
+        case PlyType::int16:
+        case PlyType::uint16:
+            return 2;
+        case PlyType::float64:
+            return 8;
+        default:
+            return 4;
+    }
+}
+
+double PlyValues::next(PlyType type) {
+    if (form_ == Form::ascii) return next_word();
+    const std::size_t size = size_of(type);
+    if (rest_.size() < size) throw std::invalid_argument("the file ends before its last value");
+    const std::string_view bytes = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    const std::endian order = form_ == Form::little_endian ? std::endian::little : std::endian::big;
+    switch (type) {
+        case PlyType::int8:
+            return number_of<std::int8_t>(bytes, order);
+        case PlyType::uint8:
+            return number_of<std::uint8_t>(bytes, order);
+        case PlyType::int16:
+            return number_of<std::int16_t>(bytes, order);
+        case PlyType::uint16:
+            return number_of<std::uint16_t>(bytes, order);
+        case PlyType::int32:
+            return number_of<std::int32_t>(bytes, order);
+        case PlyType::uint32:
+            return number_of<std::uint32_t>(bytes, order);
+        case PlyType::float32:
+            return number_of<float>(bytes, order);
+        case PlyType::float64:
+            return number_of<double>(bytes, order);
+    }
+    return 0;
+}
+
+double PlyValues::next_word() {
+    constexpr std::string_view blanks = " \t\r\n\v\f";
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+    if (rest_.empty()) throw std::invalid_argument("the file ends before its last value");
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
+    rest_.remove_prefix(word.size());
+    const auto value = parse_number(word);
+    if (!value) throw std::invalid_argument(fmt::format("expected a finite number, not '{}'", word.substr(0, 40)));
+    return *value;
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,22 @@
+#include "interflect/formats/rad.h"
+
+#include <string>
+
+#include "interflect/formats/checked_options.h"
+#include "interflect/formats/rad_reader.h"
+#include "interflect/formats/text_file.h"
+
+namespace interflect::inline detail {
+
+Scene read_rad(const std::filesystem::path& path, const ReadOptions& options) {
+    return read_rad_text(read_text_file(path), path, options);
+}
+
+Scene read_rad_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options) {
+    require_text(text, path);
+    RadReader reader(path, checked(options));
+    reader.read(std::string(text));
+    return scene_of(reader.finish(), options);
+}
+
+}  // namespace interflect::inline detail

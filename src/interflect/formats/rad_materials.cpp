@@ -1,0 +1,266 @@
+#include "interflect/formats/rad_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+#include "interflect/formats/material_limits.h"
+#include "interflect/scene/limits.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// The first three numbers. @throws std::invalid_argument  for negative ones
+Rgb colour_of(const RadPrimitive& p) {
+    Rgb colour;
+    for (int c = 0; c < 3; ++c) {
+        if (p.numbers[c] < 0)
+            throw std::invalid_argument(fmt::format("its colour has the negative value {}", p.numbers[c]));
+        colour[c] = static_cast<float>(p.numbers[c]);
+    }
+    return colour;
+}
+
+float share(const RadPrimitive& p, std::size_t i, const char* what) {
+    if (!(p.numbers[i] >= 0 && p.numbers[i] <= 1))
+        throw std::invalid_argument(fmt::format("its {} is {}; expected 0 to 1", what, p.numbers[i]));
+    return static_cast<float>(p.numbers[i]);
+}
+
+/// Of plastic, metal and trans [5th number] and of their anisotropic kin, the larger of two; those with a reflectance
+/// distribution of their own show no images.
+double roughness_of(const RadPrimitive& p) {
+    if (p.type.ends_with("func") || p.type.ends_with("data")) return 1;
+    return p.type.ends_with('2') ? std::max(p.numbers[4], p.numbers[5]) : p.numbers[4];
+}
+
+}  // namespace
+
+GlassShares glass_shares(double transmissivity, double index) {
+    const double root = (index - 1) / (index + 1);
+    const double r = root * root, t = transmissivity;  // of one surface, of the way between the two
+    const double passed = (1 - r) * (1 - r) / (1 - r * r * t * t);
+    return {passed * t, r + r * passed * t * t};
+}
+
+const std::unordered_map<std::string_view, RadMaterials::Type>& RadMaterials::types() {
+    using enum Role;
+    constexpr Type pattern_type{pattern}, mixture_type{mixture}, unknown_type{material, 0, &RadMaterials::unknown};
+    static const std::unordered_map<std::string_view, Type> table = {
+        {"plastic", {material, 5, &RadMaterials::plastic}},
+        {"plastic2", {material, 6, &RadMaterials::plastic}},
+        {"plasfunc", {material, 4, &RadMaterials::plastic}},
+        {"plasdata", {material, 4, &RadMaterials::plastic}},
+        {"metal", {material, 5, &RadMaterials::metal}},
+        {"metal2", {material, 6, &RadMaterials::metal}},
+        {"metfunc", {material, 4, &RadMaterials::metal}},
+        {"metdata", {material, 4, &RadMaterials::metal}},
+        {"trans", {material, 7, &RadMaterials::trans}},
+        {"trans2", {material, 8, &RadMaterials::trans}},
+        {"transfunc", {material, 6, &RadMaterials::trans}},
+        {"transdata", {material, 6, &RadMaterials::trans}},
+        {"mirror", {material, 3, &RadMaterials::mirror}},
+        {"glass", {material, 3, &RadMaterials::glass}},
+        {"dielectric", {material, 5, &RadMaterials::dielectric}},
+        {"interface", {material, 8, &RadMaterials::dielectric}},
+        {"light", {material, 3, &RadMaterials::light}},
+        {"glow", {material, 4, &RadMaterials::light}},
+        {"illum", {material, 3, &RadMaterials::light}},
+        {"spotlight", {material, 7, &RadMaterials::light}},
+        {"mist", {nothing}},
+        {"antimatter", {nothing}},
+        {"prism1", unknown_type},
+        {"prism2", unknown_type},
+        {"ashik2", unknown_type},
+        {"BRTDfunc", unknown_type},
+        {"BSDF", unknown_type},
+        {"aBSDF", unknown_type},
+        {"WGMDfunc", unknown_type},
+        {"texfunc", pattern_type},
+        {"texdata", pattern_type},
+        {"brightfunc", pattern_type},
+        {"brightdata", pattern_type},
+        {"brighttext", pattern_type},
+        {"colorfunc", pattern_type},
+        {"colordata", pattern_type},
+        {"colorpict", pattern_type},
+        {"colortext", pattern_type},
+        {"spectrum", pattern_type},
+        {"specfile", pattern_type},
+        {"specfunc", pattern_type},
+        {"specdata", pattern_type},
+        {"specpict", pattern_type},
+        {"mixfunc", mixture_type},
+        {"mixdata", mixture_type},
+        {"mixpict", mixture_type},
+        {"mixtext", mixture_type},
+    };
+    return table;
+}
+
+bool RadMaterials::is_modifier(std::string_view type) { return type == "alias" || types().contains(type); }
+
+std::uint32_t RadMaterials::find(std::string_view name) const {
+    if (name == "void") return none;
+    const auto entry = index_.find(name);
+    if (entry == index_.end()) throw std::invalid_argument(fmt::format("modifier '{}' is not defined", name));
+    return entry->second;
+}
+
+void RadMaterials::define(const RadPrimitive& primitive, const Location& where) {
+    Modifier modifier{primitive, where};
+    if (primitive.type == "alias") {
+        const std::uint32_t original = find(primitive.original);
+        if (original == none) throw std::invalid_argument("an alias cannot stand for void");
+        modifier.primitive = modifiers_[original].primitive;
+        modifier.primitive.name = primitive.name;
+        if (primitive.modifier == "inherit") modifier.base = modifiers_[original].base;
+    }
+    if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier);
+    if (types().at(modifier.primitive.type).role == Role::mixture) {
+        // Its foreground, or its background where that is void.
+        const auto& strings = modifier.primitive.strings;
+        if (strings.size() < 2) throw std::invalid_argument("a mixture needs a foreground and a background");
+        modifier.base = find(strings[0]);
+        if (modifier.base == none) modifier.base = find(strings[1]);
+    }
+    index_[primitive.name] = static_cast<std::uint32_t>(modifiers_.size());
+    modifiers_.push_back(std::move(modifier));
+}
+
+std::uint32_t RadMaterials::material(std::uint32_t modifier) {
+    // A modifier is defined after its base, so that the chain ends.
+    for (; modifier != none; modifier = modifiers_[modifier].base) {
+        Modifier& m = modifiers_[modifier];
+        const Type& type = types().at(m.primitive.type);
+        if (type.role == Role::nothing) {
+            warn("unsupported-modifier", fmt::format("what has the material {} is left out", m.primitive.type), m);
+            return none;
+        }
+        if (type.role == Role::material) {
+            if (m.material != none) return m.material;
+            for (std::uint32_t i = m.base; i != none; i = modifiers_[i].base) warn_of_pattern(modifiers_[i]);
+            return m.material = convert(m, type);
+        }
+        warn_of_pattern(m);
+    }
+    return none;
+}
+
+void RadMaterials::warn_of_pattern(const Modifier& modifier) {
+    const std::string_view type = modifier.primitive.type;
+    const Role role = types().at(type).role;
+    if (role == Role::pattern)
+        warn("unsupported-modifier", fmt::format("{} is left out, and what it modifies is used as it is", type),
+             modifier);
+    if (role == Role::mixture)
+        warn("unsupported-modifier", fmt::format("of {} only the foreground is used", type), modifier);
+}
+
+std::uint32_t RadMaterials::convert(const Modifier& modifier, const Type& type) {
+    const RadPrimitive& p = modifier.primitive;
+    Material result;
+    result.name = p.name;
+    try {
+        if (p.numbers.size() < type.numbers)
+            throw std::invalid_argument(fmt::format("it has {} numbers; expected {}", p.numbers.size(), type.numbers));
+        (this->*type.convert)(modifier, result);
+        if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
+            throw std::invalid_argument(fault);
+    } catch (const std::invalid_argument& fault) {
+        throw modifier.where.error(fmt::format("{} '{}': {}", p.type, p.name, fault.what()));
+    }
+    const bool limited = limit_reflectance(result.reflectance);
+    if (limit_sum(result) || limited)
+        warn("reflectance-clamped", "more than 0.99 of the light would leave this material: it is reduced", modifier);
+    model_.materials.push_back(std::move(result));
+    return static_cast<std::uint32_t>(model_.materials.size() - 1);
+}
+
+/// Keeps what is mirrored, and tells of what is not kept.
+void RadMaterials::reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result) {
+    if (is_mirror(largest_channel(specular), roughness)) result.specular_reflectance = specular;
+    if (largest_channel(specular) > 0)
+        warn("specular-reflection", "specular reflection is left out, but for mirrors in view of the camera", modifier);
+}
+
+void RadMaterials::plastic(const Modifier& modifier, Material& result) {
+    const float specular = share(modifier.primitive, 3, "specularity");
+    result.reflectance = colour_of(modifier.primitive) * (1 - specular);
+    reflect(modifier, Rgb(specular), roughness_of(modifier.primitive), result);
+}
+
+void RadMaterials::metal(const Modifier& modifier, Material& result) {
+    const float specular = share(modifier.primitive, 3, "specularity");
+    const Rgb colour = colour_of(modifier.primitive);
+    result.reflectance = colour * (1 - specular);
+    reflect(modifier, colour * specular, roughness_of(modifier.primitive), result);
+}
+
+void RadMaterials::trans(const Modifier& modifier, Material& result) {
+    const RadPrimitive& p = modifier.primitive;
+    const float specular = share(p, 3, "specularity");
+    const float transmitted = share(p, p.numbers.size() - 2, "transmissivity");
+    const float straight = share(p, p.numbers.size() - 1, "transmitted specular component");
+    const Rgb rest = colour_of(p) * (1 - specular);
+    result.reflectance = rest * (1 - transmitted);
+    result.transmittance = rest * transmitted * straight;
+    const double roughness = roughness_of(p);
+    reflect(modifier, Rgb(specular), roughness, result);
+    if (transmitted > 0 && straight < 1) warn("diffuse-transmission", "diffuse transmission is left out", modifier);
+    if (transmitted * straight > 0 && roughness > 0)
+        warn("rough-transmission", "light goes through without being scattered, whatever the roughness", modifier);
+}
+
+void RadMaterials::mirror(const Modifier& modifier, Material& result) {
+    reflect(modifier, colour_of(modifier.primitive), 0, result);
+}
+
+void RadMaterials::glass(const Modifier& modifier, Material& result) {
+    const RadPrimitive& p = modifier.primitive;
+    constexpr double usual_index = 1.52;
+    const double index = p.numbers.size() > 3 ? p.numbers[3] : usual_index;
+    if (!(index > 0))
+        throw std::invalid_argument(fmt::format("its index of refraction is {}; expected above 0", index));
+    const Rgb transmissivity = colour_of(p);
+    for (int c = 0; c < 3; ++c) {
+        if (transmissivity[c] > 1)
+            throw std::invalid_argument(fmt::format("its transmissivity is {}; expected 0 to 1", transmissivity[c]));
+        const GlassShares shares = glass_shares(transmissivity[c], index);
+        result.transmittance[c] = static_cast<float>(shares.transmittance);
+        result.specular_reflectance[c] = static_cast<float>(shares.reflectance);
+    }
+}
+
+/// One side of a solid body: what passes its surface. The body neither absorbs nor refracts.
+void RadMaterials::dielectric(const Modifier& modifier, Material& result) {
+    const std::vector<double>& numbers = modifier.primitive.numbers;
+    const double inside = numbers[3], outside = modifier.primitive.type == "interface" ? numbers[7] : 1;
+    if (!(inside > 0 && outside > 0)) throw std::invalid_argument("its indices of refraction must be above 0");
+    const double root = (inside - outside) / (inside + outside);
+    result.specular_reflectance = Rgb(static_cast<float>(root * root));
+    result.transmittance = Rgb(static_cast<float>(1 - root * root));
+    warn("refraction", "light goes straight through dielectric and interface, which absorb nothing", modifier);
+}
+
+void RadMaterials::light(const Modifier& modifier, Material& result) {
+    result.exitance = colour_of(modifier.primitive) * static_cast<float>(std::numbers::pi * rad_efficacy);
+    if (modifier.primitive.type == "spotlight")
+        warn("spotlight", "spotlight shines diffusely, to all sides, with its radiance", modifier);
+}
+
+void RadMaterials::unknown(const Modifier& modifier, Material& result) {
+    result.reflectance = Rgb(0.5f);
+    warn("unsupported-material",
+         fmt::format("the material {} is taken as diffuse with a reflectance of 0.5", modifier.primitive.type),
+         modifier);
+}
+
+void RadMaterials::warn(const std::string& kind, const std::string& message, const Modifier& modifier) {
+    model_.warnings.add(kind, message, modifier.where.text());
+}
+
+}  // namespace interflect::inline detail

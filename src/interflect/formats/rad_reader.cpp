@@ -1,0 +1,275 @@
+#include "interflect/formats/rad_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "interflect/error.h"
+#include "interflect/formats/file_to_world.h"
+#include "interflect/formats/scene_faces.h"
+#include "interflect/formats/text_file.h"
+
+namespace interflect::inline detail {
+
+namespace fs = std::filesystem;
+using Imath::M44d;
+using Imath::V3d;
+
+namespace {
+
+/// Copies of one file at a time: each takes about 170 bytes.
+constexpr std::size_t most_copies = 1 << 20;
+
+V3d point(const std::vector<double>& numbers, std::size_t first) {
+    return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+bool is_finite(const M44d& m) {
+    return std::all_of(m.getValue(), m.getValue() + 16, [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+const std::unordered_map<std::string_view, RadReader::Surface>& RadReader::surfaces() {
+    static const std::unordered_map<std::string_view, Surface> table = {
+        {"polygon", {0, &RadReader::polygon}},
+        {"sphere", {4, &RadReader::sphere}},
+        {"bubble", {4, &RadReader::bubble}},
+        {"cylinder", {7, &RadReader::cylinder}},
+        {"tube", {7, &RadReader::tube}},
+        {"cone", {8, &RadReader::cone}},
+        {"cup", {8, &RadReader::cup}},
+        {"ring", {8, &RadReader::ring}},
+        {"source", {0, nullptr}},
+        {"instance", {0, nullptr}},
+        {"mesh", {0, nullptr}},
+    };
+    return table;
+}
+
+RadReader::RadReader(const fs::path& path, const ReadOptions& options)
+    : options_(options), materials_(model_), repeated_(options.max_patches) {
+    model_.file = path;
+    object_index_.emplace("", 0);
+}
+
+void RadReader::read(std::string text) {
+    main_ = &sources_.add(model_.file, std::move(text)).first;
+    model_.files.push_back(model_.file.string());
+    read_file({*main_, {{file_to_world(options_), ""}}, ""});
+}
+
+void RadReader::read_file(const OpenFile& file) {
+    RadStatements statements(file.source.text);
+    for (auto kind = statements.next(); kind != RadStatements::Kind::end; kind = statements.next()) {
+        const Location where{&file.source.path, statements.line()};
+        try {
+            read_statement(statements, kind, file);
+        } catch (const PatchLimit& fault) {
+            throw where.error<TooManyPatches>(fault.what());
+        } catch (const std::invalid_argument& fault) {
+            throw where.error(fault.what());
+        }
+    }
+}
+
+void RadReader::read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file) {
+    const Location where{&file.source.path, statements.line()};
+    if (kind == RadStatements::Kind::command) return run(statements.command(), file, where);
+    const RadPrimitive primitive = statements.primitive();
+    for (const std::string_view name : {primitive.modifier, primitive.type, primitive.name})
+        if (name.size() > options_.max_name_length)
+            throw std::invalid_argument(
+                fmt::format("a name of {} characters; at most {} are read", name.size(), options_.max_name_length));
+    if (file.depth > 0)
+        repeated_.add(5 + primitive.numbers.size() + primitive.strings.size(), static_cast<std::uint64_t>(patches_));
+    if (RadMaterials::is_modifier(primitive.type)) return materials_.define(primitive, where);
+    if (!surfaces().contains(primitive.type))
+        throw std::invalid_argument(fmt::format("there is no type '{}'", primitive.type));
+    add_surface(primitive, file, where);
+}
+
+// ---- Commands
+
+/// Carries out `xform`; other commands are left out, and none is run.
+void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
+    const std::optional<RadXform> xform = parse_xform(command);
+    if (!xform) {
+        const std::string program = command.substr(0, std::min(command.find_first_of(" \t"), options_.max_name_length));
+        model_.warnings.add("unsupported-command",
+                            fmt::format("what the command '{}' would make is left out: commands are not run, but for "
+                                        "xform of files; Radiance's 'xform -e' writes their results",
+                                        program),
+                            where.text());
+        return;
+    }
+    if (file.depth >= options_.max_include_depth)
+        throw std::invalid_argument(fmt::format("files are nested more than {} deep", options_.max_include_depth));
+    for (const std::string& name : xform->files) {
+        const SourceFile& source = included_file(name, file);
+        read_file({source, copies_of(*xform, file.copies), file.modifier.empty() ? xform->modifier : file.modifier,
+                   file.is_inverted != xform->inverts, &file, file.depth + 1});
+    }
+}
+
+/// Names are relative to the scene's folder, where Radiance's programs are usually run, else to the including file's.
+const SourceFile& RadReader::included_file(const std::string& name, const OpenFile& file) {
+    const SourceFile*& known = included_[{&file.source, name}];
+    if (!known) {
+        std::error_code ignored;
+        const SourceFile& beside = fs::exists(main_->path.parent_path() / name, ignored) ? *main_ : file.source;
+        if (!options_.outside_files && !is_within(beside.path.parent_path() / name, main_->path.parent_path()))
+            throw std::invalid_argument(
+                fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", name));
+        const auto& [source, is_new] = sources_.find(name, beside);
+        if (is_new) model_.files.push_back(source.path.string());
+        known = &source;
+    }
+    refuse_recursion(*known, file);
+    return *known;
+}
+
+void RadReader::refuse_recursion(const SourceFile& source, const OpenFile& file) const {
+    const OpenFile* outer = &file;
+    while (outer && &outer->source != &source) outer = outer->includer;
+    if (!outer) return;
+    std::string chain = source.path.string();
+    for (const OpenFile* open = &file; open != outer; open = open->includer)
+        chain = open->source.path.string() + " -> " + chain;
+    throw std::invalid_argument("a file includes itself: " + source.path.string() + " -> " + chain);
+}
+
+std::vector<RadReader::Copy> RadReader::copies_of(const RadXform& xform, const std::vector<Copy>& outer) {
+    double count = static_cast<double>(outer.size());
+    for (const int size : xform.transform.array_sizes()) count *= size;
+    if (count > static_cast<double>(std::min<std::uint64_t>(most_copies, options_.max_patches)))
+        throw PatchLimit(
+            fmt::format("an array of {:.0f} copies, of which at most {} are read and each counts as a patch "
+                        "at least (max_patches)",
+                        count, most_copies));
+    repeated_.add(RepeatedWork::words_per_include + RepeatedWork::words_per_copy * static_cast<std::uint64_t>(count),
+                  static_cast<std::uint64_t>(patches_));
+    std::vector<Copy> result;
+    std::vector<int> copy(xform.transform.array_sizes().size(), 0);
+    do {
+        const M44d inner = xform.transform.matrix(copy);
+        const std::string prefix = xform.prefix(copy);
+        for (const Copy& around : outer) {
+            result.push_back({inner * around.to_world, around.prefix});
+            if (!is_finite(result.back().to_world)) throw std::invalid_argument("the transform is not finite");
+            if (!prefix.empty()) result.back().prefix += prefix + '.';
+            if (result.back().prefix.size() > 4 * options_.max_name_length)
+                throw std::invalid_argument("the names that -n gives are too long");
+        }
+    } while (next_index(copy, xform.transform.array_sizes()));
+    return result;
+}
+
+// ---- Surfaces
+
+void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file, const Location& where) {
+    const Surface& surface = surfaces().at(primitive.type);
+    const std::string_view modifier = file.modifier.empty() ? primitive.modifier : std::string_view(file.modifier);
+    const std::uint32_t index = materials_.find(modifier);
+    if (!surface.read) {
+        model_.warnings.add("unsupported-entity", fmt::format("surface of type {} is left out", primitive.type),
+                            where.text());
+        return;
+    }
+    if (surface.numbers > 0 && primitive.numbers.size() != surface.numbers)
+        throw std::invalid_argument(
+            fmt::format("a {} needs {} numbers, not {}", primitive.type, surface.numbers, primitive.numbers.size()));
+    const std::uint32_t material = materials_.material(index);
+    if (material == none) {
+        model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
+        return;
+    }
+    // Of curved surfaces a sphere has most faces.
+    const double d = options_.curve_divisions;
+    if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
+    add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);
+}
+
+void RadReader::add_mesh(const PolygonMesh& polygons, const RadPrimitive& primitive, std::uint32_t material,
+                         const OpenFile& file, const Location& where) {
+    require_room(static_cast<double>(polygons.faces.size()), file.copies.size());
+    patches_ += 2.0 * static_cast<double>(polygons.faces.size() * file.copies.size());
+    Mesh mesh;
+    mesh.name = fmt::format("{} '{}', {}", primitive.type, primitive.name, where.text());
+    mesh.positions = polygons.points;
+    mesh.material = material;
+    mesh.back_emits = false;
+    for (const auto& face : polygons.faces) {
+        mesh.face_sizes.push_back(static_cast<std::uint32_t>(face.size()));
+        mesh.indices.insert(mesh.indices.end(), face.begin(), face.end());
+        if (file.is_inverted)
+            std::reverse(mesh.indices.end() - static_cast<std::ptrdiff_t>(face.size()), mesh.indices.end());
+    }
+    const auto index = static_cast<std::uint32_t>(model_.meshes.size());
+    model_.meshes.push_back(std::move(mesh));
+    for (const Copy& copy : file.copies)
+        model_.instances.push_back({index, copy.to_world, object(copy.prefix + std::string(primitive.name))});
+}
+
+std::uint32_t RadReader::object(const std::string& name) {
+    const auto [entry, is_new] = object_index_.try_emplace(name, static_cast<std::uint32_t>(model_.objects.size()));
+    if (is_new) model_.objects.push_back(name);
+    return entry->second;
+}
+
+/// For so many faces more, each of two patches, in so many copies.
+void RadReader::require_room(double faces, std::size_t copies) {
+    if (patches_ + 2 * faces * static_cast<double>(copies) > static_cast<double>(options_.max_patches))
+        throw PatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));
+}
+
+PolygonMesh RadReader::polygon(const std::vector<double>& numbers) {
+    const std::size_t vertices = numbers.size() / 3;
+    if (numbers.size() % 3 != 0 || vertices < 3 || vertices > options_.max_face_vertices)
+        throw std::invalid_argument(fmt::format("a polygon needs three numbers for each of 3 to {} vertices, not {}",
+                                                options_.max_face_vertices, numbers.size()));
+    PolygonMesh result;
+    result.faces.emplace_back();
+    for (std::size_t i = 0; i < vertices; ++i) {
+        result.points.push_back(point(numbers, 3 * i));
+        result.faces[0].push_back(static_cast<std::uint32_t>(i));
+    }
+    return result;
+}
+
+PolygonMesh RadReader::sphere(const std::vector<double>& numbers) {
+    return make_sphere(point(numbers, 0), numbers[3], options_.curve_divisions);
+}
+
+PolygonMesh RadReader::bubble(const std::vector<double>& numbers) {
+    return make_sphere(point(numbers, 0), -numbers[3], options_.curve_divisions);
+}
+
+PolygonMesh RadReader::cylinder(const std::vector<double>& numbers) {
+    return make_cone(point(numbers, 0), numbers[6], point(numbers, 3), numbers[6], options_.curve_divisions);
+}
+
+PolygonMesh RadReader::tube(const std::vector<double>& numbers) {
+    return make_cone(point(numbers, 0), -numbers[6], point(numbers, 3), -numbers[6], options_.curve_divisions);
+}
+
+PolygonMesh RadReader::cone(const std::vector<double>& numbers) {
+    return make_cone(point(numbers, 0), numbers[6], point(numbers, 3), numbers[7], options_.curve_divisions);
+}
+
+PolygonMesh RadReader::cup(const std::vector<double>& numbers) {
+    return make_cone(point(numbers, 0), -numbers[6], point(numbers, 3), -numbers[7], options_.curve_divisions);
+}
+
+PolygonMesh RadReader::ring(const std::vector<double>& numbers) {
+    const V3d normal = point(numbers, 3);
+    if (normal == V3d(0)) throw std::invalid_argument("a ring needs a normal");
+    const auto [inner, outer] = std::minmax(numbers[6], numbers[7]);
+    return make_ring(point(numbers, 0), normal.normalized(), inner, outer, options_.curve_divisions);
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "interflect/formats/curves.h"
+#include "interflect/formats/model.h"
+#include "interflect/formats/rad_materials.h"
+#include "interflect/formats/rad_statements.h"
+#include "interflect/formats/rad_xform.h"
+#include "interflect/formats/repeated_work.h"
+#include "interflect/formats/source_files.h"
+
+namespace interflect::inline detail {
+
+/// Reads a Radiance scene, with the files that its commands `!xform` name, into a model. A file is read once for all
+/// copies of an array: its surfaces become meshes, of which each copy shows an instance.
+class RadReader {
+  public:
+    RadReader(const std::filesystem::path& path, const ReadOptions& options);
+    void read(std::string text);
+    Model finish() { return std::move(model_); }
+
+  private:
+    /// One copy of a file.
+    struct Copy {
+        Imath::M44d to_world;
+        std::string prefix;  // of the names of surfaces
+    };
+    /// A file in the middle of being read, and how its surfaces are to be changed.
+    struct OpenFile {
+        const SourceFile& source;
+        std::vector<Copy> copies;
+        std::string modifier;  // that all surfaces get; empty: their own
+        bool is_inverted = false;
+        const OpenFile* includer = nullptr;
+        int depth = 0;
+    };
+    using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&);
+    struct Surface {
+        std::size_t numbers;  // that it has; 0: any
+        Reader read;          // none: it is left out
+    };
+    static const std::unordered_map<std::string_view, Surface>& surfaces();
+
+    void read_file(const OpenFile& file);
+    void read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file);
+    void run(const std::string& command, const OpenFile& file, const Location& where);
+    const SourceFile& included_file(const std::string& name, const OpenFile& file);
+    void refuse_recursion(const SourceFile& source, const OpenFile& file) const;
+    std::vector<Copy> copies_of(const RadXform& xform, const std::vector<Copy>& outer);
+    void add_surface(const RadPrimitive& primitive, const OpenFile& file, const Location& where);
+    void add_mesh(const PolygonMesh& polygons, const RadPrimitive& primitive, std::uint32_t material,
+                  const OpenFile& file, const Location& where);
+    std::uint32_t object(const std::string& name);
+    void require_room(double faces, std::size_t copies);
+
+    PolygonMesh polygon(const std::vector<double>& numbers);
+    PolygonMesh sphere(const std::vector<double>& numbers);
+    PolygonMesh bubble(const std::vector<double>& numbers);
+    PolygonMesh cylinder(const std::vector<double>& numbers);
+    PolygonMesh tube(const std::vector<double>& numbers);
+    PolygonMesh cone(const std::vector<double>& numbers);
+    PolygonMesh cup(const std::vector<double>& numbers);
+    PolygonMesh ring(const std::vector<double>& numbers);
+
+    ReadOptions options_;
+    SourceFiles sources_;
+    const SourceFile* main_ = nullptr;
+    std::map<std::pair<const SourceFile*, std::string>, const SourceFile*> included_;  // by includer and name
+    Model model_;
+    RadMaterials materials_;
+    RepeatedWork repeated_;
+    double patches_ = 0;  // asked for so far
+    std::unordered_map<std::string, std::uint32_t> object_index_;
+};
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,86 @@
+#include "interflect/formats/rad_xform.h"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <stdexcept>
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// The words of a command, quotes removed; nothing where it needs a shell.
+std::optional<std::vector<std::string>> shell_words(std::string_view command) {
+    constexpr std::string_view special = "|&;<>()$`\\*?[]{}#~!\n";
+    std::vector<std::string> words;
+    bool in_word = false;
+    char quote = '\0';
+    for (const char c : command) {
+        if (quote == '\'' ? false : quote ? c == '$' || c == '`' || c == '\\' : special.find(c) != special.npos)
+            return std::nullopt;
+        const bool is_blank = !quote && (c == ' ' || c == '\t' || c == '\r');
+        if (!is_blank && !in_word) words.emplace_back();
+        in_word = !is_blank;
+        if (quote ? c == quote : c == '"' || c == '\'')
+            quote = quote ? '\0' : c;
+        else if (!is_blank)
+            words.back() += c;
+    }
+    if (quote) return std::nullopt;
+    return words;
+}
+
+/// The numbers that a transform of xform takes; nothing where `option` is none.
+std::optional<std::size_t> number_count(std::string_view option) {
+    if (option == "-t") return 3;
+    if (option == "-mx" || option == "-my" || option == "-mz") return 0;
+    for (const std::string_view one : {"-rx", "-ry", "-rz", "-s", "-i", "-a"})
+        if (option == one) return 1;
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string RadXform::prefix(const std::vector<int>& copy) const {
+    if (copy.empty()) return name;
+    return fmt::format("{}{}", name.empty() ? "a" : name + '.', fmt::join(copy, "."));
+}
+
+std::optional<RadXform> parse_xform(std::string_view command) {
+    const auto words = shell_words(command);
+    if (!words || words->empty() || words->front() != "xform") return std::nullopt;
+    const std::vector<std::string_view> arguments(words->begin() + 1, words->end());
+    std::size_t i = 0;
+    std::string name, modifier;
+    bool inverts = false;
+    for (; i < arguments.size(); ++i) {
+        const std::string_view option = arguments[i];
+        if (option == "-I") {
+            inverts = !inverts;
+        } else if ((option == "-n" || option == "-m") && i + 1 < arguments.size()) {
+            const std::string value(arguments[++i]);
+            if (option == "-n") name += (name.empty() ? "" : ".") + value;
+            if (option == "-m" && modifier.empty()) modifier = value;
+        } else if (option != "-e" && option != "-c") {
+            break;
+        }
+    }
+    std::size_t end = i;
+    while (end < arguments.size() && arguments[end].starts_with('-')) {
+        const auto numbers = number_count(arguments[end]);
+        if (!numbers) {
+            if (arguments[end] == "-f" || arguments[end] == "-") return std::nullopt;  // more files of arguments, stdin
+            throw std::invalid_argument(fmt::format("'{}' is no option of xform", arguments[end]));
+        }
+        end += 1 + *numbers;
+    }
+    if (end > arguments.size()) throw std::invalid_argument("the transform of xform is cut off");
+    if (end == arguments.size()) return std::nullopt;  // from stdin
+    return RadXform{name,
+                    modifier,
+                    inverts,
+                    TransformSequence(std::span(arguments).subspan(i, end - i)),
+                    {arguments.begin() + static_cast<std::ptrdiff_t>(end), arguments.end()}};
+}
+
+}  // namespace interflect::inline detail

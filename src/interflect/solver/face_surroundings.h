@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+
+namespace interflect::inline detail {
+
+enum class Side { front, back };
+
+/// Shares of the rays that leave a side of a face.
+struct Surroundings {
+    float blocked = 0;  ///< Hit something closer than a tenth of the face's size.
+    float escaped = 0;  ///< Hit nothing.
+};
+
+/// What faces and lamps see, by rays in cosine-distributed directions.
+class FaceSurroundings {
+  public:
+    FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
+
+    /// 64 rays.
+    Surroundings look(std::uint32_t patch, Side side) const;
+    /// Whether light that starts there, and is reflected eight times whatever the reflectances, stays within a tenth of
+    /// the scene's size, and within five times the size of the lamp or half a metre: 64 paths. It goes through glass.
+    bool is_enclosed(std::uint32_t patch) const;
+    bool is_enclosed(const V3f& position) const;
+
+  private:
+    template <class Start>
+    bool stays_within(float extent, const Start& start) const;
+    V3f direction(const V3f& normal, std::uint64_t index) const;
+
+    const Scene& scene_;
+    const RayCaster& ray_caster_;
+    float scene_size_;  // [m]
+};
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/scene.h"
+
+namespace interflect::inline detail {
+
+/// An edge that one face alone has.
+struct OpenEdge {
+    V3f a, b;  ///< Relative to Scene::origin [m].
+    std::uint32_t patch = none;
+};
+
+/// In order of the patches. Vertices at one position count as one, whatever their texture coordinates. O(n log n).
+std::vector<OpenEdge> open_edges(const Scene& scene);
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,99 @@
+"""`validate`: a sound room has no problem, and each fault that is built into it is found, with its place."""
+
+import json
+import unittest
+
+from command import DONE, FAILED, LAMP, PAINT, VIEWS, CommandTest, room, vertices
+
+ONE_SIDED = PAINT.replace("rd .6", "sides 1\n\trd .6")
+
+
+def panel(z=1, size=1, corner=(0.5, 1), material=PAINT, reverse=False):
+    """A horizontal square whose front looks up."""
+    x, y = corner
+    outline = "v3 v2 v1 v0" if reverse else "v0 v1 v2 v3"
+    return vertices((x, y, z), (x + size, y, z), (x + size, y + size, z), (x, y + size, z)) + material + f"f {outline}\n"
+
+
+def box(low, high):
+    corners = [(x, y, z) for z in (low[2], high[2]) for y in (low[1], high[1]) for x in (low[0], high[0])]
+    walls = "f v0 v1 v3 v2\nf v4 v6 v7 v5\nf v0 v2 v6 v4\nf v1 v5 v7 v3\nf v0 v4 v5 v1\nf v2 v3 v7 v6\n"
+    return vertices(*corners) + PAINT + walls
+
+
+LIGHT = "v bulb =\n\tp 1 1 {z}\nlight point bulb {intensity}\n"
+FAULTS = {  # what is added to the room: kind, count and what its first place says
+    "degenerate-face": (vertices((0, 0, 1), (1, 0, 1), (2, 0, 1)) + PAINT + "f v0 v1 v2\n", 1, "room.mgf:"),
+    "duplicate-face": (panel() + panel(), 1, [1, 1.5, 1]),
+    "coincident-face": (panel() + panel(size=0.5), 1, [1, 1.5, 1]),
+    "inverted-lamp": (panel(z=2.49, material=LAMP), 1, [1, 1.5, 2.49]),
+    "hidden-lamp": (
+        panel(z=0.5, size=0.02, corner=(1, 1), material=LAMP) + box((0.97, 0.97, 0.48), (1.05, 1.05, 0.56)),
+        1,
+        [1.01, 1.01, 0.5],
+    ),
+    "zero-power-lamp": (LIGHT.format(z=1, intensity=0), 1, [1, 1, 1]),
+    "high-reflectance": (panel(material="m snow =\n\tc\n\trd .95\n"), 1, "snow"),
+}
+
+
+class Validate(CommandTest):
+    def findings(self, name, *options):
+        return {finding["kind"]: finding for finding in self.json("validate", name, *options)["findings"]}
+
+    def write_room(self, added="", base=None):
+        self.write("room.mgf", (base or room()) + added)
+        self.write("room.views.json", json.dumps(VIEWS))
+
+    def test_a_sound_room_has_no_problem(self):
+        self.write_room()
+        report = self.json("validate", "room.mgf", "--strict")
+        self.assertEqual(report["problems"], 0)
+        self.assertEqual([finding["kind"] for finding in report["findings"]], ["open-edge"])
+        self.assertEqual(report["findings"][0]["count"], 4)  # of the lamp
+        self.assertGreater(report["memory"], 1e6)
+        self.assertAlmostEqual(report["seconds"] * report["rays_per_second"], 20e6, delta=1e3)
+
+    def test_each_fault_is_found_where_it_is(self):
+        for kind, (added, count, place) in FAULTS.items():
+            with self.subTest(kind):
+                self.write_room(added)
+                found = self.findings("room.mgf")
+                self.assertLessEqual(set(found), {kind, "open-edge"})
+                self.assertEqual(found[kind]["count"], count)
+                first = found[kind]["places"][0]
+                if isinstance(place, str):
+                    self.assertIn(place, first["where"] + first["material"])
+                else:
+                    for a, b in zip(first["position"], place, strict=True):
+                        self.assertAlmostEqual(a, b, places=5)
+
+    def test_a_point_light_in_a_closed_box_is_hidden(self):
+        self.write_room(LIGHT.format(z=1, intensity=5) + box((0.9, 0.9, 0.9), (1.1, 1.1, 1.1)))
+        self.assertEqual(self.findings("room.mgf")["hidden-lamp"]["count"], 1)
+        self.write_room(LIGHT.format(z=1.5, intensity=5) + box((0.9, 0.9, 0.9), (1.1, 1.1, 1.1)))
+        self.assertNotIn("hidden-lamp", self.findings("room.mgf"))
+
+    def test_a_one_sided_wall_that_looks_out_is_inverted(self):
+        inwards = room().replace(PAINT, ONE_SIDED)
+        self.write_room(base=inwards)
+        self.assertNotIn("inverted-face", self.findings("room.mgf"))
+        self.write_room(base=inwards.replace("f v0 v1 v3 v2", "f v2 v3 v1 v0"))
+        self.assertEqual(self.findings("room.mgf")["inverted-face"]["count"], 1)
+
+    def test_a_mesh_alone_has_no_light_no_view_and_perhaps_another_unit(self):
+        self.write("part.stl", "solid\nfacet\nvertex 0 0 0\nvertex 4000 0 0\nvertex 0 3000 0\n")
+        self.assertEqual(set(self.findings("part.stl")), {"no-light", "implausible-size", "open-edge", "no-view"})
+        self.assertNotIn("implausible-size", self.findings("part.stl", "--unit", "mm"))
+        self.assertNotIn("no-light", self.findings("part.stl", "--unit", "mm", "--sky", "overcast"))
+
+    def test_strict_ends_with_one_where_there_is_a_problem(self):
+        self.write_room(panel() + panel())
+        self.assertIn("duplicate-face", self.interflect("validate", "room.mgf", exit_code=DONE).stdout)
+        result = self.interflect("validate", "room.mgf", "--strict", "--places", "0", exit_code=FAILED)
+        self.assertIn("problem duplicate-face", result.stdout)
+        self.assertNotIn("at (", result.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

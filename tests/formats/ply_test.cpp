@@ -1,0 +1,128 @@
+// PLY files, ASCII and binary.
+#include "interflect/formats/ply.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "interflect/geometry/patch_geometry.h"
+#include "tests/formats/read_faults.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+Scene read(const std::string& bytes, const ReadOptions& options = {}) {
+    return read_ply_bytes(bytes, "part.ply", options);
+}
+
+std::string header(const std::string& form, const std::string& vertex = "4", const std::string& face = "1") {
+    return "ply\nformat " + form + " 1.0\ncomment made by hand\nelement vertex " + vertex +
+           "\nproperty float x\nproperty double y\nproperty int z\nelement face " + face +
+           "\nproperty uchar flags\nproperty list uchar int vertex_indices\nend_header\n";
+}
+const std::string square = "0 0 0\n2 0 0\n2 1 0\n0 1 0\n", face = "7 4 0 1 2 3\n";
+
+template <class Number>
+void append(std::string& bytes, Number value, std::endian order) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    if (order != std::endian::native) std::reverse(raw, raw + sizeof value);
+    bytes.append(raw, sizeof value);
+}
+
+std::string binary(std::endian order) {
+    std::string bytes = header(order == std::endian::big ? "binary_big_endian" : "binary_little_endian");
+    for (const auto& [x, y] : {std::pair{0.f, 0.}, {2.f, 0.}, {2.f, 1.}, {0.f, 1.}}) {
+        append(bytes, x, order);
+        append(bytes, y, order);
+        append(bytes, std::int32_t{0}, order);
+    }
+    bytes += "\7\4";
+    for (std::int32_t i = 0; i < 4; ++i) append(bytes, i, order);
+    return bytes;
+}
+
+class PlyForm : public testing::TestWithParam<std::string> {};
+TEST_P(PlyForm, GivesTheSameFace) {
+    const Scene scene = read(GetParam());
+    ASSERT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(patch_area(scene, scene.patches[0]), 2);
+    EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));
+    EXPECT_EQ(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
+}
+INSTANTIATE_TEST_SUITE_P(, PlyForm,
+                         testing::Values(header("ascii") + square + face, binary(std::endian::little),
+                                         binary(std::endian::big)));
+
+TEST(Ply, EveryCutOfABinaryFileIsRefused) {
+    const std::string whole = binary(std::endian::little);
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        EXPECT_NE(message_of([&] { read(whole.substr(0, size)); }), "no error") << size;
+}
+
+std::string coloured(const std::string& colours) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty "
+           "uchar red\n"
+           "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar uint "
+           "vertex_index\nend_header\n" +
+           colours + "3 0 1 2\n";
+}
+
+TEST(Ply, OneColourOfAllVerticesIsTheReflectance) {
+    const Scene scene = read(coloured("0 0 0 188 0 255\n1 0 0 188 0 255\n0 1 0 188 0 255\n"));
+    const Rgb reflectance = scene.materials[scene.patches[0].material].reflectance;
+    EXPECT_NEAR(reflectance.x, 0.5029, 1e-3);  // of sRGB 188
+    EXPECT_EQ(reflectance.y, 0);
+    EXPECT_FLOAT_EQ(reflectance.z, 0.99f);
+    EXPECT_TRUE(scene.warnings.entries().empty());
+    const Scene mixed = read(coloured("0 0 0 188 0 255\n1 0 0 188 0 255\n0 1 0 188 0 0\n"));
+    EXPECT_EQ(mixed.materials[mixed.patches[0].material].reflectance, Rgb(0.5f));
+    EXPECT_EQ(mixed.warnings.entries().at(0).kind, "vertex-colours");
+}
+
+class PlyBadText : public testing::TestWithParam<BadText> {};
+TEST_P(PlyBadText, IsNamedWithItsFault) {
+    const std::string error = message_of([] { read(GetParam().text); });
+    expect_in(error, "part.ply");
+    expect_in(error, GetParam().expected);
+}
+const std::string binary_form = "binary_little_endian";
+INSTANTIATE_TEST_SUITE_P(
+    , PlyBadText,
+    testing::Values(
+        BadText{"Empty", "", "this is no PLY file"}, BadText{"Another", "solid a\n", "this is no PLY file"},
+        BadText{"NoEnd", "ply\nformat ascii 1.0\n", "the header has no end"},
+        BadText{"NoFormat", "ply\nend_header\n", "lacks a format"},
+        BadText{"AnotherFormat", header("middle_endian"), "expected 'format ascii|"},
+        BadText{"AnotherType", "ply\nelement a 1\nproperty quad x\n", "there is no type 'quad'"},
+        BadText{"EarlyProperty", "ply\nproperty float x\n", "before the first element"},
+        BadText{"FloatLength", "ply\nelement a 1\nproperty list float int x\n", "must be a whole number"},
+        BadText{"NegativeCount", header("ascii", "-4") + square + face, "'-4' is no count"},
+        BadText{"BillionVertices", header("ascii", "1000000000") + square + face,
+                "too short for 1000000000 of 'vertex'"},
+        BadText{"BinaryBillion", header(binary_form, "1000000000") + square, "too short for 1000000000"},
+        BadText{"Overflow", header(binary_form, "18446744073709551615") + square, "too short"},
+        BadText{"BillionFaces", header("ascii", "4", "1000000000") + square + face,
+                "too short for 1000000000 of 'face'"},
+        BadText{"NoY", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float z\nend_header\n0 0\n",
+                "needs the properties x, y and z"},
+        BadText{"NoFaces", header("ascii", "4", "0") + square, "the scene is empty"},
+        BadText{"OutOfRange", header("ascii") + square + "7 3 0 1 4", "a face has vertex 4, but there are 4"},
+        BadText{"NegativeIndex", header("ascii") + square + "7 3 0 1 -1", "-1 is no number of a vertex"},
+        BadText{"TwoVertices", header("ascii") + square + "7 2 0 1", "a face has 2 vertices"},
+        BadText{"LongList", header("ascii") + square + "7 255 0 1 2", "ends within a list of 255"},
+        BadText{"NaN", header("ascii") + "nan 0 0\n2 0 0\n2 1 0\n0 1 0\n" + face,
+                "expected a finite number, not 'nan'"},
+        BadText{"Cut", header("ascii") + square + "7 4 0 1", "ends within a list of 4"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(Ply, LimitOfPatchesIsNamed) {
+    expect_in(message_of([] { read(header("ascii") + square + face, {.max_patches = 0}); }), "max_patches");
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,328 @@
+// Radiance scenes: exact geometry, what becomes of each material, commands that are never run, and bad files.
+#include "interflect/formats/rad.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "interflect/formats/curves.h"
+#include "interflect/formats/rad_materials.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/load_scene.h"
+#include "tests/formats/read_faults.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+using namespace testing_support;
+
+const std::string grey = "void plastic grey\n0\n0\n5 .5 .5 .5 0 0\n";
+const std::string square = "grey polygon square\n0\n0\n12\n 0 0 0\n 1 0 0\n 1 1 0\n 0 1 0\n";
+
+Scene read(const std::string& text, const ReadOptions& options = {}) {
+    return read_rad_text(text, "room.rad", options);
+}
+
+/// The material of the first patch, which a surface of this material is.
+Material material_of(const std::string& definition, const std::string& name) {
+    const Scene scene = read(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
+    return scene.materials[scene.patches[0].material];
+}
+
+void expect_near(const Rgb& found, const Rgb& expected) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-5 * std::max(1.0f, expected[c])) << c;
+}
+
+double area(const Scene& scene) {
+    double sum = 0;
+    for (std::size_t i = 0; i < scene.patches.size(); i += 2) sum += patch_area(scene, scene.patches[i]);
+    return sum;
+}
+
+/// A third of the integral of x . n over the fronts: the volume between them and the origin.
+double volume(const Scene& scene) {
+    double sum = 0;
+    for (std::size_t i = 0; i < scene.patches.size(); i += 2) {
+        const Patch& patch = scene.patches[i];
+        const V3f &a = scene.vertices[patch.vertices[0]], n = PatchGeometry(scene, patch).normal();
+        sum += patch_area(scene, patch) * a.dot(n) / 3;
+    }
+    return sum;
+}
+
+double power(const Scene& scene) {
+    double sum = 0;
+    for (const Patch& patch : scene.patches)
+        sum += patch_area(scene, patch) * scene.materials[patch.material].exitance.x;
+    return sum;
+}
+
+TEST(Rad, PolygonIsATwoSidedFace) {
+    const Scene scene = read("# a room\n" + grey + square);
+    ASSERT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));
+    EXPECT_EQ(scene.objects[scene.patches[0].object], "square");
+    EXPECT_EQ(scene.materials[scene.patches[0].material].name, "grey");
+    EXPECT_TRUE(scene.warnings.entries().empty());
+}
+
+TEST(Rad, SeamLeadsToAHole) {
+    const Scene scene = read(grey +
+                             "grey polygon frame 0 0 30  0 0 0  4 0 0  4 4 0  0 4 0  0 0 0"
+                             "  1 1 0  1 3 0  3 3 0  3 1 0  1 1 0\n");
+    EXPECT_NEAR(area(scene), 16 - 4, 1e-5);
+}
+
+struct Curve {
+    const char* name;
+    const char* surface;
+    double area;    // [m^2] of the true surface
+    double volume;  // [m^3] of what lies between it and the origin, positive where its front looks away from there
+};
+class RadCurve : public testing::TestWithParam<Curve> {};
+
+TEST_P(RadCurve, ComesCloseToTheTrueSurface) {
+    const Scene scene = read(grey + "grey " + GetParam().surface, {.curve_divisions = 40});
+    EXPECT_NEAR(area(scene) / GetParam().area, 1, 1e-3);
+    EXPECT_NEAR(volume(scene) / GetParam().volume, 1, 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(, RadCurve,
+                         testing::Values(Curve{"Sphere", "sphere s 0 0 4 0 0 0 2", 16 * pi, 32 * pi / 3},
+                                         Curve{"Bubble", "bubble s 0 0 4 0 0 0 2", 16 * pi, -32 * pi / 3},
+                                         Curve{"Cylinder", "cylinder c 0 0 7 0 0 0 0 0 3 2", 12 * pi, 8 * pi},
+                                         Curve{"Tube", "tube c 0 0 7 0 0 0 0 0 3 2", 12 * pi, -8 * pi},
+                                         Curve{"Cone", "cone c 0 0 8 0 0 0 0 0 3 4 0", 20 * pi, 16 * pi},
+                                         Curve{"Cup", "cup c 0 0 8 0 0 0 0 0 3 4 0", 20 * pi, -16 * pi},
+                                         Curve{"Ring", "ring r 0 0 8 0 0 3 0 0 5 1 2", 3 * pi, 3 * pi},
+                                         Curve{"RingOfSwappedRadii", "ring r 0 0 8 0 0 3 0 0 -5 2 1", 3 * pi, -3 * pi}),
+                         [](const auto& curve) { return curve.param.name; });
+
+TEST(Rad, LightEmitsFromItsFrontAlone) {
+    const Scene scene = read("void light lamp 0 0 3 10 20 30\nlamp polygon p 0 0 9 0 0 0  2 0 0  0 1 0\n");
+    const double radiance = 10, efficacy = 179;  // [W/(m^2 sr)], [lm/W]
+    EXPECT_NEAR(power(scene), pi * radiance * efficacy * 1, 1e-2);
+    const Material& front = scene.materials[scene.patches[0].material];
+    expect_near(front.exitance / front.exitance.x, {1, 2, 3});
+    expect_near(scene.materials[scene.patches[1].material].exitance, {0, 0, 0});
+}
+
+TEST(Rad, PowerOfASphereIsThatOfItsArea) {
+    const Scene scene = read("void glow lamp 0 0 4 1 1 1 0\nlamp sphere s 0 0 4 0 0 0 2\n", {.curve_divisions = 40});
+    EXPECT_NEAR(power(scene) / (pi * 179 * 16 * pi), 1, 1e-3);
+}
+
+struct MaterialCase {
+    const char* name;
+    const char* definition;  // of the material m
+    Rgb reflectance, specular_reflectance, transmittance;
+};
+class RadMaterial : public testing::TestWithParam<MaterialCase> {};
+
+TEST_P(RadMaterial, IsMapped) {
+    const MaterialCase& expected = GetParam();
+    const Material found = material_of(expected.definition, "m");
+    expect_near(found.reflectance, expected.reflectance);
+    expect_near(found.specular_reflectance, expected.specular_reflectance);
+    expect_near(found.transmittance, expected.transmittance);
+}
+
+// Glass of the transmissivity 0.96 has a transmittance of 0.88 (Radiance's reference manual).
+INSTANTIATE_TEST_SUITE_P(
+    , RadMaterial,
+    testing::Values(
+        MaterialCase{"Plastic", "void plastic m 0 0 5 .2 .4 .6 .1 .1", Rgb(.18f, .36f, .54f), Rgb(0), Rgb(0)},
+        MaterialCase{"SmoothPlastic", "void plastic m 0 0 5 .2 .4 .6 .1 0", Rgb(.18f, .36f, .54f), Rgb(.1f), Rgb(0)},
+        MaterialCase{"Metal", "void metal m 0 0 5 .2 .4 .6 .9 0", Rgb(.02f, .04f, .06f), Rgb(.18f, .36f, .54f), Rgb(0)},
+        MaterialCase{"BrushedMetal", "void metal2 m 4 1 0 0 . 0 6 .2 .4 .6 .9 0 .1", Rgb(.02f, .04f, .06f), Rgb(0),
+                     Rgb(0)},
+        MaterialCase{"Trans", "void trans m 0 0 7 1 .5 .5 0 0 .6 .25", Rgb(.4f, .2f, .2f), Rgb(0),
+                     Rgb(.15f, .075f, .075f)},
+        MaterialCase{"Mirror", "void mirror m 0 0 3 .9 .8 .7", Rgb(0), Rgb(.9f, .8f, .7f), Rgb(0)},
+        MaterialCase{"Alias", "void plastic a 0 0 5 .2 .4 .6 0 0\nvoid alias m a", Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        MaterialCase{"Pattern", "void colorpict p 7 r g b x.hdr . u v 0 0\np plastic m 0 0 5 .2 .4 .6 0 0",
+                     Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        MaterialCase{"PatternAbove", "void plastic a 0 0 5 .2 .4 .6 0 0\na brightfunc m 2 f x.cal 0 0",
+                     Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        MaterialCase{
+            "Mixture",
+            "void plastic a 0 0 5 .2 .4 .6 0 0\nvoid plastic b 0 0 5 1 1 1 0 0\nvoid mixfunc m 4 a b f x.cal 0 0",
+            Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        MaterialCase{"LatestOfAName", "void plastic m 0 0 5 1 1 1 0 0\nvoid plastic m 0 0 5 .2 .4 .6 0 0",
+                     Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        MaterialCase{"QuotedName", "void plastic \"m\" 0 0 5 .2 .4 .6 0 0", Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        MaterialCase{"TooWhite", "void plastic m 0 0 5 1 1 1 0 0", Rgb(.99f), Rgb(0), Rgb(0)}),
+    [](const auto& material) { return material.param.name; });
+
+// t = (sqrt(.8402528435 + .0072522239 T^2) - .9166530661) / .0036261119 / T for n = 1.52: Radiance's reference manual.
+TEST(Rad, TransmissivityOfGlassIsRadiances) {
+    for (const double transmittance : {0.1, 0.5, 0.88}) {
+        const double t = (std::sqrt(.8402528435 + .0072522239 * transmittance * transmittance) - .9166530661) /
+                         .0036261119 / transmittance;
+        EXPECT_NEAR(glass_shares(t, 1.52).transmittance, transmittance, 1e-6);
+    }
+    const GlassShares clear = glass_shares(1, 1.52);
+    EXPECT_NEAR(clear.transmittance + clear.reflectance, 1, 1e-12);
+    const Material glass = material_of("void glass m 0 0 3 .96 .96 .5", "m");
+    EXPECT_NEAR(glass.transmittance.x, glass_shares(.96, 1.52).transmittance, 1e-6);
+    EXPECT_NEAR(glass.specular_reflectance.z, glass_shares(.5, 1.52).reflectance, 1e-6);
+}
+
+TEST(Rad, WhatIsLeftOutIsCounted) {
+    const Scene scene = read(grey + square + "!genbox grey box 1 1 1\n" + "grey source sky 0 0 4 0 0 1 180\n" +
+                             "void sphere nothing 0 0 4 0 0 0 1\nvoid BSDF x 6 0 a.xml 0 0 1 . 0 0\n" +
+                             "x polygon p 0 0 9 0 0 1  1 0 1  0 1 1\n");
+    std::vector<std::string> kinds;
+    for (const auto& warning : scene.warnings.entries()) kinds.push_back(warning.kind);
+    EXPECT_EQ(kinds, (std::vector<std::string>{"unsupported-command", "unsupported-entity", "void-surface",
+                                               "unsupported-material"}));
+    EXPECT_EQ(scene.warnings.entries()[0].where, "room.rad:13");
+}
+
+// ---- Files and transforms
+
+TEST(Rad, XformPlacesCopiesOfAFile) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "parts");
+    folder.write("parts/chair.rad", square);
+    const fs::path path =
+        folder.write("room.rad", grey +
+                                     "!xform -n row -a 2 -t 10 0 0 -i 1 -a 3 -t 0 5 0 -i 1 -s 2 -t 0 0 3 \\\n"
+                                     " parts/chair.rad\n"
+                                     "!xform -rx 90 parts/chair.rad\n");
+    const Scene scene = load_scene(path);
+    ASSERT_EQ(scene.patches.size(), 2u * 7);
+    EXPECT_NEAR(area(scene), 6 * 4 + 1, 1e-5);
+    EXPECT_EQ(scene.objects.back(), "square");
+    EXPECT_EQ(scene.objects[6], "row.1.2.square");
+    const Patch& last =
+        scene.patches[10];  // of copy 1.2: the square moved by (10, 10), then all twice as large and 3 m up
+    EXPECT_EQ(scene.objects[last.object], "row.1.2.square");
+    EXPECT_EQ(V3f(scene.origin) + scene.vertices[last.vertices[0]], V3f(20, 20, 3));
+    EXPECT_EQ(PatchGeometry(scene, scene.patches[12]).normal(), V3f(0, -1, 0));
+    EXPECT_EQ(scene.files.size(), 2u);
+}
+
+TEST(Rad, XformInvertsMirrorsAndReplacesModifiers) {
+    const TemporaryFolder folder;
+    folder.write("ball.rad", "grey sphere s 0 0 4 0 0 0 1\n");
+    const std::string lamp = "void light lamp 0 0 3 1 1 1\n";
+    EXPECT_GT(volume(load_scene(folder.write("a.rad", grey + "!xform ball.rad"))), 0);
+    EXPECT_GT(volume(load_scene(folder.write("b.rad", grey + "!xform -mx ball.rad"))), 0);
+    EXPECT_LT(volume(load_scene(folder.write("c.rad", grey + "!xform -I ball.rad"))), 0);
+    folder.write("inverted.rad", "!xform -I -m grey ball.rad\n");
+    const Scene twice = load_scene(folder.write("d.rad", grey + lamp + "!xform -m lamp -I inverted.rad"));
+    EXPECT_GT(volume(twice), 0);
+    EXPECT_GT(power(twice), 0);
+}
+
+TEST(Rad, NoCommandIsEverRun) {
+    const TemporaryFolder folder;
+    folder.write("part.rad", square);
+    const std::string target = (folder.path() / "made").string();
+    for (const std::string& command :
+         {"touch " + target, "xform part.rad; touch " + target, "xform part.rad | tee " + target,
+          "xform -n $(touch " + target + ") part.rad", "xform -n \"`touch " + target + "`\" part.rad",
+          "xform part.rad > " + target, "xform -f " + target + " part.rad", std::string("xform -t 1 0 0")}) {
+        const Scene scene = load_scene(folder.write("room.rad", grey + square + "!" + command + "\n"));
+        EXPECT_EQ(scene.patches.size(), 2u) << command;
+        ASSERT_EQ(scene.warnings.entries().size(), 2u) << command;  // with no-light
+        EXPECT_EQ(scene.warnings.entries()[0].kind, "unsupported-command");
+        EXPECT_FALSE(fs::exists(target)) << command;
+    }
+}
+
+TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "scene");
+    folder.write("secret.rad", square);
+    const auto message = [&](const std::string& text, const ReadOptions& options = {}) {
+        const fs::path path = folder.write("scene/room.rad", grey + text);
+        return message_of([&] { load_scene(path, options); });
+    };
+    folder.write("scene/a.rad", "!xform b.rad\n");
+    folder.write("scene/b.rad", "!xform a.rad\n");
+    folder.write("scene/part.rad", square);
+    fs::create_symlink("../secret.rad", folder.path() / "scene/link.rad");
+    expect_in(message("!xform a.rad\n"), "a file includes itself");
+    expect_in(message("!xform room.rad\n"), "a file includes itself");
+    expect_in(message("!xform ../secret.rad\n"), "room.rad:5: '../secret.rad' lies outside the scene's folder");
+    expect_in(message("!xform " + (folder.path() / "secret.rad").string()), "outside the scene's folder");
+    expect_in(message("!xform link.rad\n"), "outside the scene's folder");
+    expect_in(message("!xform missing.rad\n"), "there is no such file");
+    expect_in(message("!xform part.rad\n", {.max_include_depth = 0}), "nested more than 0 deep");
+    expect_in(message("!xform -a 1000000000 -t 1 0 0 part.rad\n"), "max_patches");
+    expect_in(message("!xform -a 100 -t 1 0 0 part.rad\n", {.max_patches = 100}), "max_patches");
+}
+
+TEST(Rad, FilesThatMultiplyEachOtherAreRefusedInTime) {
+    const TemporaryFolder folder;
+    std::string ten;
+    for (int i = 0; i < 10; ++i) ten += "!xform next.rad\n";
+    for (int i = 0; i < 30; ++i) {
+        std::string text = ten;
+        for (std::size_t at = 0; (at = text.find("next", at)) != text.npos;) text.replace(at, 4, std::to_string(i + 1));
+        folder.write(std::to_string(i) + ".rad", text);
+    }
+    folder.write("30.rad", "# empty\n");
+    expect_in(message_of([&] { load_scene(folder.path() / "0.rad"); }), "expected files that include each other");
+}
+
+// ---- Bad files
+
+// Each comes after the material, which has four lines.
+class RadBadText : public testing::TestWithParam<BadText> {};
+
+TEST_P(RadBadText, IsNamedWithItsFault) {
+    const std::string error = message_of([] { read(grey + GetParam().text); });
+    expect_in(error, "room.rad");
+    expect_in(error, GetParam().expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , RadBadText,
+    testing::Values(
+        BadText{"Empty", "", "the scene is empty"},
+        BadText{"NoModifier", "red sphere s 0 0 4 0 0 0 1", ":5: modifier 'red' is not defined"},
+        BadText{"NoType", "grey cube c 0 0 0", ":5: there is no type 'cube'"},
+        BadText{"CutName", "grey sphere", ":5: the file ends where a name is expected"},
+        BadText{"CutNumbers", "\n\ngrey sphere s 0 0 4 0 0",
+                ":7: the file ends where one of 2 more numbers is expected"},
+        BadText{"NegativeCount", "grey sphere s -1 0 4 0 0 0 1", "expected the number of strings, not '-1'"},
+        BadText{"HugeCount", "grey sphere s 2000000000 0 4 0 0 0 1", "the file ends"},
+        BadText{"NotANumber", "grey sphere s 0 0 4 0 nan 0 1", "expected a finite number, not 'nan'"},
+        BadText{"Infinity", "grey sphere s 0 0 4 0 1e40 0 1", "expected a finite number"},
+        BadText{"FewerNumbers", "grey sphere s 0 0 3 0 0 1", "a sphere needs 4 numbers, not 3"},
+        BadText{"NoRadius", "grey sphere s 0 0 4 0 0 0 0", "must not be 0"},
+        BadText{"NoLength", "grey cylinder c 0 0 7 0 0 0 0 0 0 1", "must not be at one place"},
+        BadText{"NoNormal", "grey ring r 0 0 8 0 0 0 0 0 0 1 2", "needs a normal"},
+        BadText{"NoWidth", "grey ring r 0 0 8 0 0 0 0 0 1 2 2", "inner < outer"},
+        BadText{"TwoVertices", "grey polygon p 0 0 6 0 0 0 1 1 1", "each of 3 to 1024 vertices, not 6"},
+        BadText{"CutVertex", "grey polygon p 0 0 10 0 0 0 1 0 0 1 1 0 0", "not 10"},
+        BadText{"FarAway", "grey polygon p 0 0 9 0 0 0 1e20 0 0 0 1e20 0", "polygon 'p', room.rad:5: "},
+        BadText{"NegativeColour", "void plastic m 0 0 5 -1 0 0 0 0\nm sphere s 0 0 4 0 0 0 1",
+                ":5: plastic 'm': its colour"},
+        BadText{"NotAShare", "void metal m 0 0 5 1 1 1 2 0\nm sphere s 0 0 4 0 0 0 1",
+                "specularity is 2; expected 0 to 1"},
+        BadText{"TooFewNumbers", "void metal m 0 0 4 1 1 1 0\nm sphere s 0 0 4 0 0 0 1",
+                "it has 4 numbers; expected 5"},
+        BadText{"TooBright", "void light m 0 0 3 1e20 0 0\nm sphere s 0 0 4 0 0 0 1", "light 'm': exitance"},
+        BadText{"MixtureOfNothing", "void mixfunc m 1 grey 0 0", "foreground and a background"},
+        BadText{"AliasOfNothing", "void alias a b", "modifier 'b' is not defined"},
+        BadText{"UnknownOption", "!xform -q 1 part.rad", ":5: '-q' is no option of xform"},
+        BadText{"CutTransform", "!xform -t 1 2", "is cut off"},
+        BadText{"BadAngle", "!xform -rx east part.rad", "-rx needs a finite number"},
+        BadText{"NoScale", "!xform -s 0 part.rad", "-s cannot scale by 0"},
+        BadText{"Binary", "\x01", "this is not a text file"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(Rad, WhatNoSurfaceUsesMayBeWrong) {
+    EXPECT_EQ(read(grey + "void plastic bad 0 0 3 -1 -1 -1\n" + square).patches.size(), 2u);
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "interflect/error.h"
+
+namespace interflect::testing_support {
+
+/// The message of the InputError that `read` throws; "no error" where it throws none.
+template <class Read>
+std::string message_of(const Read& read) {
+    try {
+        read();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+inline void expect_in(const std::string& message, const std::string& part) {
+    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
+}
+
+/// A file that is refused.
+struct BadText {
+    const char* name;
+    std::string text;
+    const char* expected;  // part of the message
+};
+
+}  // namespace interflect::testing_support

@@ -1,0 +1,85 @@
+// STL files, ASCII and binary.
+#include "interflect/formats/stl.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "interflect/geometry/patch_geometry.h"
+#include "tests/formats/read_faults.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+Scene read(const std::string& bytes, const ReadOptions& options = {}) {
+    return read_stl_bytes(bytes, "part.stl", options);
+}
+
+const std::string facet =
+    "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 2 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+
+/// A triangle of the corners (0, 0, 0), (2, 0, 0) and (0, y, 0).
+std::string binary(float y = 1, std::uint32_t count = 1) {
+    std::string bytes(80, '\0');
+    bytes.replace(0, 5, "solid");  // as some programs write, though it is binary
+    bytes.append(reinterpret_cast<const char*>(&count), 4);
+    const float numbers[12] = {0, 0, -1, 0, 0, 0, 2, 0, 0, 0, y, 0};
+    bytes.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
+    return bytes + std::string(2, '\x7f');
+}
+
+class StlForm : public testing::TestWithParam<std::string> {};
+TEST_P(StlForm, GivesTheSameTriangle) {
+    const Scene scene = read(GetParam());
+    ASSERT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(patch_area(scene, scene.patches[0]), 1);
+    EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));  // by its corners, whatever it says
+    EXPECT_EQ(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
+}
+INSTANTIATE_TEST_SUITE_P(, StlForm, testing::Values("solid part\n" + facet + "endsolid part\n", binary()));
+
+TEST(Stl, SolidsAreObjects) {
+    const Scene scene =
+        read("solid a lamp\n" + facet + "endsolid a lamp\nsolid\n" + facet + "endsolid\nsolid c\n" + facet);
+    ASSERT_EQ(scene.patches.size(), 6u);
+    EXPECT_EQ(scene.objects[scene.patches[0].object], "a lamp");
+    EXPECT_EQ(scene.objects[scene.patches[2].object], "");
+    EXPECT_EQ(scene.objects[scene.patches[4].object], "c");
+}
+
+TEST(Stl, EveryCutOfABinaryFileIsRefused) {
+    const std::string whole = binary();
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        EXPECT_NE(message_of([&] { read(whole.substr(0, size)); }), "no error") << size;
+}
+
+class StlBadText : public testing::TestWithParam<BadText> {};
+TEST_P(StlBadText, IsNamedWithItsFault) {
+    const std::string error = message_of([] { read(GetParam().text); });
+    expect_in(error, "part.stl");
+    expect_in(error, GetParam().expected);
+}
+INSTANTIATE_TEST_SUITE_P(
+    , StlBadText,
+    testing::Values(
+        BadText{"Empty", "", "this is no STL file"}, BadText{"NoFacet", "solid a\nendsolid a\n", "the scene is empty"},
+        BadText{"NoSolid", "solidity\nvertex 0 0 0\n", "is no word of an STL file"},
+        BadText{"MoreTrianglesThanThereAre", binary(1, 2), "this is not a text file"},
+        BadText{"BillionTriangles", "x" + binary(1, 1000000000).substr(1), "for each triangle that it counts"},
+        BadText{"NaN", binary(std::numeric_limits<float>::quiet_NaN()), "triangle 1 is not finite"},
+        BadText{"Word", "solid a\nfacet\nvertex 0 x 0\n", ":3: expected a finite number, not 'x'"},
+        BadText{"CutVertex", "solid a\nfacet\nvertex 0 0\n", ":3: a vertex has 2 coordinates"},
+        BadText{"TwoVertices", "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendloop\n", ":5: a facet must have three"},
+        BadText{"Cut", "solid a\nfacet\nvertex 0 0 0\n", "the file ends within a facet"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(Stl, LimitOfPatchesIsNamed) {
+    for (const std::string& bytes : {binary(), "solid\n" + facet})
+        expect_in(message_of([&] { read(bytes, {.max_patches = 1}); }), "max_patches");
+}
+
+}  // namespace
+}  // namespace interflect
