@@ -90,7 +90,7 @@ Scene turned_floor() {
 
 TEST(Lightmap, FlatSurfaceIsOneChart) {
     const Scene scene = turned_floor();
-    const auto charts = make_charts(scene, 10, 4096);
+    const auto charts = make_charts(scene, std::vector<bool>(scene.patches.size(), true), 10, 4096);
     ASSERT_EQ(charts.size(), 1);
     EXPECT_NEAR(charts[0].size.x, 4, 1e-5);  // not the 5.5 m of a rectangle along the axes
     EXPECT_NEAR(charts[0].size.y, 4, 1e-5);

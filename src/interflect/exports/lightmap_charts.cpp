@@ -137,20 +137,22 @@ std::vector<std::vector<std::uint32_t>> find_conflicts(const Scene& scene, const
 }
 
 /// Grows each chart from a patch across its neighbours, as far as there is no conflict.
-std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, double width) {
+std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, const std::vector<bool>& shown,
+                                                      double width) {
     const Neighbourhood neighbourhood(scene);
     const auto conflicts = find_conflicts(scene, neighbourhood, width);
     std::vector<std::uint32_t> chart(scene.patches.size(), none);
     std::vector<std::vector<std::uint32_t>> groups;
     for (std::uint32_t seed = 0; seed < chart.size(); ++seed) {
-        if (chart[seed] != none) continue;
+        if (chart[seed] != none || !shown[seed]) continue;
         const auto number = static_cast<std::uint32_t>(groups.size());
         std::vector<std::uint32_t> group{seed};
         chart[seed] = number;
         for (std::size_t i = 0; i < group.size(); ++i)
             for (const std::uint32_t next : neighbourhood.neighbours(group[i])) {
                 const auto is_here = [&](std::uint32_t other) { return chart[other] == number; };
-                if (chart[next] != none || std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
+                if (chart[next] != none || !shown[next] ||
+                    std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
                     continue;
                 chart[next] = number;
                 group.push_back(next);
@@ -242,9 +244,10 @@ LightmapChart chart_of(const Scene& scene, std::vector<std::uint32_t> patches, d
 
 }  // namespace
 
-std::vector<LightmapChart> make_charts(const Scene& scene, double texels_per_metre, int most_texels) {
+std::vector<LightmapChart> make_charts(const Scene& scene, const std::vector<bool>& shown, double texels_per_metre,
+                                       int most_texels) {
     std::vector<LightmapChart> charts;
-    for (auto& patches : group_patches(scene, narrow_gap / texels_per_metre))
+    for (auto& patches : group_patches(scene, shown, narrow_gap / texels_per_metre))
         charts.push_back(chart_of(scene, std::move(patches), texels_per_metre, most_texels));
     return charts;
 }
