@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "interflect/error.h"
+#include "interflect/formats/checked_options.h"
 #include "interflect/formats/extension.h"
 #include "interflect/formats/gltf.h"
 #include "interflect/formats/mgf.h"
@@ -120,7 +121,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
         return maze;
     }
     require_regular_file(path);
-    Scene scene = format_of(path).read(path, options);
+    Scene scene = format_of(path).read(path, checked(options));
     warn_of_size(scene);
     add_luminaires(scene, luminaires, options);
     add_daylight(scene, added);
