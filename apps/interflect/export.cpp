@@ -1,5 +1,7 @@
 #include "interflect/export.h"
 
+#include "interflect/export_scene.h"
+
 #include <spdlog/spdlog.h>
 
 #include <memory>
@@ -8,6 +10,7 @@
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
+#include "apps/interflect/shared_options.h"
 #include "apps/interflect/up_axis.h"
 #include "interflect/error.h"
 #include "interflect/render.h"
@@ -20,9 +23,13 @@ namespace interflect::command {
 namespace {
 
 struct ExportArguments {
-    std::filesystem::path input, output;
+    SceneOptions scene;
+    std::filesystem::path output;
+    Size size{1280, 720};
+    int samples = 256;
     Exposure exposure;
     std::optional<Imath::V3d> up;
+    ProbeOptions probes;
     bool has_lightmap = false;
     LightmapOptions lightmap;
 };
@@ -53,14 +60,25 @@ V3f up_of(const Scene& scene) {
     return up;
 }
 
+void run_scene(const ExportArguments& arguments) {
+    const bool is_solved = is_solution_file(arguments.scene.path);
+    const Scene scene = is_solved ? read_solution(arguments.scene.path).scene : arguments.scene.load();
+    const SceneExport exported =
+        export_scene(arguments.output, scene, {arguments.size.width, arguments.size.height, arguments.samples});
+    for (const auto& path : exported.files) spdlog::info("{}", path.string());
+    log_warnings(exported.warnings);
+}
+
 void run(const ExportArguments& arguments) {
+    const NamedFile output{"--output", arguments.output};
+    require_distinct_files(input_files(arguments.scene, {}), {&output, 1});
+    if (is_scene_export(arguments.output)) return run_scene(arguments);
     require_export_format(arguments.output);
-    const NamedFile input{"the solution", arguments.input}, output{"--output", arguments.output};
-    require_distinct_files({&input, 1}, {&output, 1});
-    const SolvedScene solved = read_solution(arguments.input);
+    const SolvedScene solved = read_solution(arguments.scene.path);
     ExportOptions options;
     options.exposure = arguments.exposure.stops + (arguments.exposure.relative ? automatic_exposure_of(solved) : 0);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
+    options.probes = arguments.probes;
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
     std::vector<std::filesystem::path> written;
     const auto write = [&] { written = export_solution(arguments.output, solved.scene, solved.solution, options); };
@@ -85,7 +103,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
     of_lightmap(command.add_option("--texels-per-metre", lightmap.texels_per_metre, "Of the images, at least"))
         ->capture_default_str()
         ->check(number_between(1e-6, 1e6));
-    of_lightmap(command.add_option("--lightmap-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
+    of_lightmap(
+        command.add_option("--lightmap-max-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
         ->capture_default_str()
         ->check(CLI::Range(64, 16384));
     of_lightmap(command.add_option("--gutter", lightmap.gutter, "Texels around each surface, filled from its edge"))
@@ -105,8 +124,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24));
     of_lightmap(add_parsed(command, "--seed", lightmap.seed, parse_seed, "Of gathering"))->default_str("1");
-    of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image_extension,
-                                        {{"exr", ".exr"}, {"hdr", ".hdr"}}, "Of the unclamped images beside the file"))
+    of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
+                                        "Of the unclamped images beside the file"))
         ->default_str("exr");
 }
 
@@ -114,10 +133,11 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
 
 void add_export(CLI::App& app) {
     const auto options = std::make_shared<ExportArguments>();
-    CLI::App& command = *app.add_subcommand("export", "Write a solved scene for other programs");
-    command.add_option("solution", options->input, "Solution file (.h5)")->required()->type_name("FILE");
+    CLI::App& command = *app.add_subcommand("export", "Write a solved scene, or a scene, for other programs");
+    options->scene.add_to(command, "Solution file (.h5); for another renderer also a scene (.mgf)");
     std::string extensions;
     for (const ExportFormat& format : export_formats) extensions += std::string(" ") + format.extension;
+    for (const char* extension : scene_export_extensions) extensions += std::string(" ") + extension;
     command.add_option("-o,--output", options->output, "File to write:" + extensions)->required()->type_name("FILE");
     add_parsed(command, "--exposure", options->exposure, parse_exposure,
                "Stops by which colours are brightened, or auto, as `render` does")
@@ -125,6 +145,18 @@ void add_export(CLI::App& app) {
         ->default_str("auto");
     add_parsed(command, "--up", options->up, parse_vector, "Which way is up (default: that of the views, or the light)")
         ->type_name("X,Y,Z");
+    command.add_option("--probe-spacing", options->probes.spacing, "Of irradiance probes (.json, .exr), at most [m]")
+        ->type_name("METRES")
+        ->capture_default_str();
+    command.add_option("--probe-rays", options->probes.rays, "Rays from each probe")
+        ->type_name("N")
+        ->capture_default_str();
+    add_parsed(command, "--size", options->size, parse_size, "Of the pictures of scenes for renderers [pixels]")
+        ->type_name("WxH")
+        ->default_str("1280x720");
+    command.add_option("--pixel-samples", options->samples, "Of scenes for renderers")
+        ->type_name("N")
+        ->capture_default_str();
     add_lightmap(command, *options);
     command.callback([options] { run(*options); });
 }

@@ -7,6 +7,7 @@
 
 #include "apps/interflect/messages.h"
 #include "apps/interflect/print_views.h"
+#include "interflect/base/crc32.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/solution_file.h"
 
@@ -22,8 +23,9 @@ bool knows_provenance(const SolvedScene& solved) { return !solved.interflect_ver
 Json to_json(const SolvedScene& solved) {
     const Scene& scene = solved.scene;
     const Solution& solution = solved.solution;
-    Json views = Json::array();
+    Json views = Json::array(), history = Json::array();
     for (const View& v : scene.views) views.push_back(json_of(v));
+    for (const IterationReport& report : solution.iterations) history.push_back(json_of(report));
     Json json{{"scene", scene.name},
               {"format_version", solved.format_version},
               {"method", solution.options.method.name},
@@ -32,9 +34,13 @@ Json to_json(const SolvedScene& solved) {
         json["version"] = solved.interflect_version;
         json["options"] = json_of(solution.options);
         json["files"] = scene.files;
+        json["file_checksums"] = Json::array();
+        for (const std::uint32_t checksum : scene.file_checksums)
+            json["file_checksums"].push_back(text_of_crc32(checksum));
     }
     json.update({{"patches", scene.patches.size()},
                  {"result", json_of(result_of(solved))},
+                 {"history", history},
                  {"emitted_power", json_of(solution.emitted_power)},
                  {"has_importance", !solution.view_importance.empty()},
                  {"interrupted", solution.interrupted},

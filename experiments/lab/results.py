@@ -12,7 +12,7 @@ from .store import COLUMNS
 
 Row = dict[str, str | float]
 
-TEXT = {"series", "scene", "view", "picture", "version", "command", "reference", "machine", "room", "camera", "channels"}
+TEXT = {"renderer", "series", "scene", "view", "picture", "version", "command", "reference", "machine", "room", "camera", "channels"}
 
 
 def write_csv(path: Path, rows: Iterable[dict], columns: Iterable[str] = COLUMNS) -> None:

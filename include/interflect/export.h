@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interflect/path_tracer.h"
+#include "interflect/probes.h"
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
@@ -33,7 +34,7 @@ struct LightmapOptions {
     LightmapContent content = LightmapContent::irradiance;
     int samples = 64;  ///< Gathered directions a texel, >= 2.
     std::uint64_t seed = 1;
-    std::string image_extension = ".exr";  ///< Of the images beside the file: .exr or .hdr.
+    std::string image = ".exr";  ///< Of the images beside the file: .exr or .hdr.
 };
 
 /// What is exported and how.
@@ -42,6 +43,7 @@ struct ExportOptions {
     float exposure = 0;
     V3f up{0, 0, 1};                          ///< Of the scene. Formats with an up axis of their own are turned.
     std::optional<LightmapOptions> lightmap;  ///< None: the light is at the vertices of the elements.
+    ProbeOptions probes;                      ///< Of formats that hold probes in place of surfaces.
     PathMonitor monitor;                      ///< Of gathering.
 };
 

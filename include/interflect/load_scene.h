@@ -10,8 +10,9 @@
 
 namespace interflect {
 
-/// Reads a scene, in the format that the file name's extension tells (.mgf), and its named views, where the file of
-/// view_list_path() is there. The result has no scene_faults(). A scene without any light gets the warning "no-light".
+/// Reads a scene, in the format that the file name's extension tells (.mgf, .gltf, .glb), and its named views, where
+/// the file of view_list_path() is there. The result has no scene_faults(). A scene without any light gets the warning
+/// "no-light".
 ///
 /// In place of a file, `maze:ROOMS` or `maze:ROOMS:furniture` makes that maze in memory (make_maze(), its other options
 /// at their defaults), with its views: `maze:9:furniture` is the size of the scene in Prikryl et al. 2000.

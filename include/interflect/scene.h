@@ -82,6 +82,8 @@ struct Scene {
     std::vector<std::string> objects;      ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
     std::vector<View> views;
     std::vector<std::string> files;  ///< Every file that was read, the scene's own first.
+    /// CRC-32 of each of `files`, as load_scene() found them; empty where they are not known.
+    std::vector<std::uint32_t> file_checksums;
     Warnings warnings;
 };
 

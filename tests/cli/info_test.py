@@ -3,6 +3,7 @@
 import json
 import math
 import unittest
+import zlib
 
 from command import BAD_INPUT, ROOT, VIEWS, CommandTest, room, vertices
 
@@ -119,18 +120,22 @@ class Solution(CommandTest):
         report = self.json("info", "room.h5")
         for key in ("scene", "method", "options", "seed", "version", "patches", "emitted_power"):
             self.assertEqual(report[key], self.header[key], key)
-        last = self.iterations[-1]
-        self.assertIsNotNone(last["error_estimate"])
-        del last["seconds"]
-        self.assertEqual(report["result"], last)
-        self.assertEqual((report["format_version"], report["interrupted"]), (4, False))
+        for iteration in self.iterations:
+            del iteration["seconds"]
+        self.assertIsNotNone(self.iterations[-1]["error_estimate"])
+        self.assertEqual(report["result"], self.iterations[-1])
+        self.assertEqual(report["history"], self.iterations)
+        self.assertGreater(len(self.iterations), 1)
+        self.assertEqual((report["format_version"], report["interrupted"]), (5, False))
+        checksums = [f"{zlib.crc32(self.bytes(name)):08x}" for name in report["files"]]
+        self.assertEqual(report["file_checksums"], checksums)
         self.assertEqual(report["files"], ["room.mgf", "room.views.json"])
         self.assertEqual([view["name"] for view in report["views"]], ["door", "door", "floor"])
 
     def test_text_tells_the_same(self):
         text = self.interflect("info", "room.h5").stdout
         result = self.json("info", "room.h5")["result"]
-        words = ("room.mgf", "version 4", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
+        words = ("room.mgf", "version 5", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
         for word in (*words, str(result["rays"]), str(result["elements"]), "noise ", "mesh "):
             self.assertIn(word, text)
         self.assertNotIn("alpha", text, "only what differs from the defaults")

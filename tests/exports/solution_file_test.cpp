@@ -225,7 +225,7 @@ void drop_surfaces_of_patches(const std::filesystem::path& path) {
 std::string as_version_3(std::string bytes) {
     bytes.erase(0, checksum_block_size);
     for (const auto& [now, before] :
-         {std::pair<std::string, std::string>{"\"format_version\": 4", "\"format_version\": 3"},
+         {std::pair<std::string, std::string>{"\"format_version\": 5", "\"format_version\": 3"},
           {"\"version\": ", "\"nothing\": "},
           {"\"files\": ", "\"nothi\": "},
           {"\"options\": ", "\"nothing\": "},
@@ -254,6 +254,20 @@ TEST_F(SolutionFile, OpensAFileOfItsTime) {
     EXPECT_STREQ(read.solution.options.method.name, "isrr");
     EXPECT_EQ(read.solution.view_importance.size(), 13u);
     EXPECT_EQ(read.solution.iterations.back().elements, 13u);
+}
+
+/// The same room with a light group, looked at and refined, solved by Interflect 0.1.0 when version 4 was the newest.
+TEST_F(SolutionFile, OpensVersion4) {
+    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/version-4.h5");
+    EXPECT_EQ(read.format_version, 4);
+    EXPECT_EQ(read.interflect_version, "0.1.0");
+    EXPECT_THAT(read.scene.files, testing::ElementsAre("room.mgf", "room.views.json"));
+    EXPECT_TRUE(read.scene.file_checksums.empty());
+    EXPECT_EQ(read.scene.patches.size(), 13u);
+    EXPECT_EQ(read.solution.forest->size(), 133u);
+    EXPECT_EQ(read.solution.groups.size(), 1u);
+    ASSERT_EQ(read.solution.iterations.size(), 1u) << "the last one alone";
+    EXPECT_EQ(read.solution.iterations[0].rays, 20'000);
 }
 
 TEST_F(SolutionFile, OpensVersion2) {

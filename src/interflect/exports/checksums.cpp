@@ -1,7 +1,6 @@
 #include "interflect/exports/checksums.h"
 
 #include <fmt/format.h>
-#include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+
+#include "interflect/base/crc32.h"
 
 namespace interflect::inline detail {
 
@@ -25,15 +26,9 @@ constexpr const char* structure = "structure";
 /// The block ends with its own checksum: eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
 
-std::string text_of(std::uint32_t checksum) { return fmt::format("{:08x}", checksum); }
-
-std::uint32_t checksum_of(std::string_view bytes, std::uint32_t so_far = 0) {
-    return libdeflate_crc32(so_far, bytes.data(), bytes.size());
-}
-
 /// What the block ends with: the checksum of the rest of it.
 std::string own_checksum(std::string_view block) {
-    return text_of(checksum_of(block.substr(0, checked_length))) + "\n";
+    return text_of_crc32(crc32(block.substr(0, checked_length))) + "\n";
 }
 
 /// The checksum of a range of the file; none where the file ends before.
@@ -45,15 +40,38 @@ std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& r
     for (std::uint64_t left = range.length; left > 0;) {
         const std::size_t size = std::min<std::uint64_t>(left, buffer.size());
         if (!file.read(buffer.data(), static_cast<std::streamsize>(size))) return std::nullopt;
-        checksum = checksum_of(std::string_view(buffer.data(), size), checksum);
+        checksum = crc32({buffer.data(), size}, checksum);
         left -= size;
     }
     return checksum;
 }
 
+/// Of "/scene/textures/12" the group "/scene/textures"; of names that do not end in a number, the names.
+std::string_view checked_name(std::string_view name) {
+    const std::size_t last = name.find_last_not_of("0123456789");
+    const bool is_numbered = last + 1 < name.size() && name[last] == '/';
+    return is_numbered ? name.substr(0, last) : name;
+}
+
+/// Neighbours in the file that are arrays of one group, named by their numbers, become one range with what lies between
+/// them: there may be more of them than the block has room for.
+/// @param ranges  In the order of the file.
+std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
+    std::vector<FileRange> joined;
+    for (const FileRange& range : ranges) {
+        const std::string name(checked_name(range.name));
+        if (!joined.empty() && joined.back().name == name)
+            joined.back().length = range.begin + range.length - joined.back().begin;
+        else
+            joined.push_back({name, range.begin, range.length});
+    }
+    return joined;
+}
+
 /// The ranges, and what lies around them, in the order of the file: every byte of [checksum_block_size, size) once.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
+    ranges = with_numbered_joined(ranges);
     std::vector<FileRange> all;
     std::uint64_t end = checksum_block_size;
     const auto fill_up_to = [&](std::uint64_t begin) {
@@ -121,7 +139,7 @@ void write_checksums(const fs::path& path, std::vector<FileRange> ranges) {
     for (const FileRange& range : partition(std::move(ranges), fs::file_size(path))) {
         const std::optional<std::uint32_t> checksum = checksum_of(written, range);
         if (!checksum) throw std::runtime_error("cannot read back what was written");
-        block += fmt::format("{} {} {} {}\n", text_of(*checksum), range.begin, range.length, range.name);
+        block += fmt::format("{} {} {} {}\n", text_of_crc32(*checksum), range.begin, range.length, range.name);
     }
     if (block.size() > checked_length) throw std::runtime_error("too many ranges for the block of checksums");
     block.resize(checked_length, '\n');
@@ -148,10 +166,10 @@ void verify_checksums(const fs::path& path) {
         end += range.length;
         const std::optional<std::uint32_t> found = checksum_of(file, range);
         if (!found) throw std::runtime_error(fmt::format("the file is damaged: it ends early, in {}", range.name));
-        if (text_of(*found) != checksum)
+        if (text_of_crc32(*found) != checksum)
             throw std::runtime_error(
                 fmt::format("the file is damaged: the checksum of {} differs, expected {}, found {}", range.name,
-                            checksum, text_of(*found)));
+                            checksum, text_of_crc32(*found)));
     }
     if (fs::file_size(path) != end)
         throw std::runtime_error(

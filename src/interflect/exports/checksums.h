@@ -17,8 +17,9 @@ struct FileRange {
 };
 
 /// Fills the first checksum_block_size bytes of a finished file with CRC-32 checksums of all others: one of each of the
-/// ranges, which neither overlap nor reach into the block, one of what lies before, between and after them, and one of
-/// the block itself. docs/solution-file.md has the layout. Cost: one pass over the file, several GB/s.
+/// ranges, which neither overlap nor reach into the block (of arrays that are numbered in their group, one of all), one
+/// of what lies before, between and after them, and one of the block itself. docs/solution-file.md has the layout.
+/// Cost: one pass over the file, several GB/s.
 /// @throws std::runtime_error where the file cannot be read or written.
 void write_checksums(const std::filesystem::path& path, std::vector<FileRange> ranges);
 

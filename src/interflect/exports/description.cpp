@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "interflect/base/crc32.h"
 #include "interflect/exports/luminaire_records.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/exports/texture_records.h"
@@ -15,6 +16,33 @@ namespace {
 
 /// Since this version names are escaped, and options, result, files and the version of Interflect are there.
 constexpr int first_with_options = 4;
+/// Since this version files have checksums, and every iteration is told.
+constexpr int first_with_history = 5;
+
+/// Every file that was read, with its checksum where that is known.
+Json json_of_files(const Scene& scene) {
+    Json files = Json::array();
+    for (std::size_t i = 0; i < scene.files.size(); ++i) {
+        Json& file = files.emplace_back(Json{{"name", scene.files[i]}});
+        if (!scene.file_checksums.empty()) file["crc32"] = text_of_crc32(scene.file_checksums.at(i));
+    }
+    return files;
+}
+
+void read_files(const Json& files, int format_version, Scene& scene) {
+    if (format_version < first_with_history) {
+        scene.files = files.get<std::vector<std::string>>();
+        return;
+    }
+    for (const Json& file : files) {
+        scene.files.push_back(file.at("name").get<std::string>());
+        if (file.contains("crc32"))
+            scene.file_checksums.push_back(
+                static_cast<std::uint32_t>(std::stoul(file.at("crc32").get<std::string>(), nullptr, 16)));
+    }
+    if (!scene.file_checksums.empty() && scene.file_checksums.size() != scene.files.size())
+        throw std::runtime_error("files and their checksums differ in number");
+}
 
 Json json_of_materials(const std::vector<Material>& materials) {
     Json json = Json::array();
@@ -27,7 +55,7 @@ Json json_of_materials(const std::vector<Material>& materials) {
     return json;
 }
 
-void read_scene(const Json& json, Scene& scene) {
+void read_scene(const Json& json, int format_version, Scene& scene) {
     scene.name = json.at("scene").get<std::string>();
     if (json.contains("origin")) scene.origin = vector_of<Imath::V3d>(json.at("origin"));
     for (const Json& v : json.at("views")) scene.views.push_back(view_of(v));
@@ -51,12 +79,14 @@ void read_scene(const Json& json, Scene& scene) {
         for (const Json& g : json.at("light_groups"))
             scene.light_groups.push_back({g.at("name").get<std::string>(), g.at("pattern").get<std::string>()});
     scene.objects = json.at("objects").get<std::vector<std::string>>();
-    if (json.contains("files")) scene.files = json.at("files").get<std::vector<std::string>>();
+    if (json.contains("files")) read_files(json.at("files"), format_version, scene);
 }
 
 /// Of old files only the number of rays is known.
 void read_result(const Json& json, int format_version, Solution& solution) {
     IterationReport& last = solution.iterations.emplace_back();
+    if (format_version >= first_with_history && json.at("history").get<std::vector<std::string>>() != report_columns())
+        throw std::runtime_error("it has other columns of its history than expected");
     if (format_version >= first_with_options) {
         read_options(json.at("options"), solution.options);
         last = report_of(json.at("result"));
@@ -82,12 +112,13 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
                      {"format_version", format_version},
                      {"version", INTERFLECT_VERSION},
                      {"scene", scene.name},
-                     {"files", scene.files},
+                     {"files", json_of_files(scene)},
                      {"method", solution.options.method.name},
                      {"seed", solution.options.seed},
                      {"rays", last.rays},
                      {"options", json_of(solution.options)},
                      {"result", json_of(last)},
+                     {"history", report_columns()},
                      {"emitted_power", json_of(solution.emitted_power)},
                      {"interrupted", solution.interrupted},
                      {"has_importance", !solution.view_importance.empty()},
@@ -116,7 +147,7 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
         throw std::runtime_error("it was written by another version of Interflect");
     if (solved.format_version >= first_with_options) json = parse_json_text(text);
     if (json.contains("version")) solved.interflect_version = json.at("version").get<std::string>();
-    read_scene(json, solved.scene);
+    read_scene(json, solved.format_version, solved.scene);
     Solution& solution = solved.solution;
     solution.options.method = find_method(json.at("method").get<std::string>());
     solution.options.seed = json.at("seed").get<std::uint64_t>();

@@ -34,13 +34,15 @@ class ElementMesh {
 
     /// Positions relative to Scene::origin [m]; triangulate() adds the centres of fans.
     const std::vector<V3f>& points() const { return points_; }
+    /// The corners of a leaf, and what other leaves have as corners on its edges, counter-clockwise seen from the lit
+    /// side; fewer than three where it has no area.
+    std::vector<MeshCorner> outline(std::uint32_t leaf) const;
     /// Adds the triangles of a leaf to `triangles`, counter-clockwise seen from the lit side.
     void triangulate(std::uint32_t leaf, std::vector<MeshTriangle>& triangles);
 
   private:
     void number_points();
     void join_near_points();
-    std::vector<MeshCorner> outline(std::uint32_t leaf) const;
     void add_points_on_edge(const MeshCorner& a, const MeshCorner& b, std::vector<MeshCorner>& outline) const;
 
     const ElementForest& forest_;

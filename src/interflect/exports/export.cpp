@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
 
 #include "interflect/base/pending_file.h"
 #include "interflect/elements/forest.h"
 #include "interflect/error.h"
 #include "interflect/exports/lit_gltf.h"
+#include "interflect/exports/mesh_files.h"
+#include "interflect/exports/probe_files.h"
+#include "interflect/exports/write_files.h"
 #include "interflect/formats/extension.h"
 #include "interflect/render/camera_samples.h"
 
@@ -25,6 +24,11 @@ namespace {
 constexpr std::array formats{
     ExportFormat{".glb", "binary glTF", true, make_glb},
     ExportFormat{".gltf", "glTF", true, make_gltf},
+    ExportFormat{".ply", "PLY", false, make_ply},
+    ExportFormat{".obj", "Wavefront OBJ", false, make_obj},
+    ExportFormat{".vtu", "VTK unstructured grid", false, make_vtu},
+    ExportFormat{".json", "irradiance probes", false, make_probes_json},
+    ExportFormat{".exr", "irradiance probes as an image", false, make_probes_exr},
 };
 
 void require_usable(const LightmapOptions& options) {
@@ -37,8 +41,8 @@ void require_usable(const LightmapOptions& options) {
             fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
     require(options.samples >= 2, fmt::format("samples is {}, expected at least 2", options.samples));
-    require(options.image_extension == ".exr" || options.image_extension == ".hdr",
-            fmt::format("image_extension is '{}', expected .exr or .hdr", options.image_extension));
+    require(options.image == ".exr" || options.image == ".hdr",
+            fmt::format("image is '{}', expected .exr or .hdr", options.image));
 }
 
 void require_usable(const ExportFormat& format, const ExportOptions& options) {
@@ -50,16 +54,6 @@ void require_usable(const ExportFormat& format, const ExportOptions& options) {
     if (!format.takes_lightmaps)
         throw InputError(fmt::format("{} ({}) takes no lightmaps", format.name, format.extension));
     require_usable(*options.lightmap);
-}
-
-void write(const ExportedFile& file, const PendingFile& pending) {
-    errno = 0;
-    std::ofstream stream(pending.temporary_path(), std::ios::binary);
-    stream.write(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
-    stream.close();
-    if (!stream)
-        throw std::runtime_error(
-            fmt::format("cannot write '{}': {}", file.path.string(), errno != 0 ? std::strerror(errno) : "it failed"));
 }
 
 }  // namespace
@@ -80,20 +74,12 @@ std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, 
                                       const ExportOptions& options) {
     const ExportFormat& format = require_export_format(path);
     require_usable(format, options);
+    require_no_faults(scene_faults(scene), "cannot export", scene);
     solution.forest->require_made_for(scene);
     require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
     const PendingFile can_be_written(path);
 
-    const std::vector<ExportedFile> files = format.make(path, scene, solution, options);
-    std::vector<PendingFile> pending;
-    for (const ExportedFile& file : files) pending.emplace_back(file.path);
-    for (std::size_t i = 0; i < files.size(); ++i) write(files[i], pending[i]);
-    std::vector<fs::path> written;
-    for (PendingFile& file : pending) {
-        file.commit();
-        written.push_back(file.final_path());
-    }
-    return written;
+    return write_files(format.make(path, scene, solution, options));
 }
 
 }  // namespace interflect

@@ -127,6 +127,9 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
         document.use_extension("KHR_materials_unlit");
     } else {
         json["pbrMetallicRoughness"] = textures.diffuse(material);
+        // Without it there is a specular layer, which takes light from the diffuse one.
+        json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+        document.use_extension("KHR_materials_specular");
         json["extensions"]["MOZ_lightmap"] = {
             {"index", lightmap_texture}, {"texCoord", 1}, {"intensity", encoding.intensity()}};
         document.use_extension("MOZ_lightmap");
@@ -165,8 +168,8 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesy
     for (std::size_t page = 0; page < lightmap.images.size(); ++page) {
         const std::string name = name_of_image(path, page);
         images.push_back(add_image(document, lightmap.images[page], name, encoding.scale));
-        files.push_back({path.parent_path() / (name + chosen.image_extension),
-                         encode_beside(lightmap.images[page], chosen.image_extension, quantity)});
+        files.push_back(
+            {path.parent_path() / (name + chosen.image), encode_beside(lightmap.images[page], chosen.image, quantity)});
     }
 
     const ElementForest patches(scene, scene.patches.size());

@@ -79,12 +79,12 @@ void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives&
     document.add("scenes", {{"name", name}, {"nodes", {root_index}}});
 }
 
-Json GltfTextures::reference(std::uint32_t texture) {
-    const auto [entry, is_new] = numbers_.try_emplace(texture, 0);
+Json GltfTextures::reference(std::uint32_t texture, const Rgb& peak) {
+    const auto [entry, is_new] = numbers_.try_emplace({texture, peak != Rgb(1)}, 0);
     if (is_new) {
         const Texture& image = scene_.textures[texture];
         Image pixels(static_cast<int>(image.width), static_cast<int>(image.height));
-        pixels.pixels = image.texels;
+        for (std::size_t i = 0; i < image.texels.size(); ++i) pixels.pixels[i] = image.texels[i] / peak;
         entry->second = document_.add_texture(pixels, image.name, true);
     }
     return {{"index", entry->second}};

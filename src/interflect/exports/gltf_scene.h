@@ -24,13 +24,13 @@ class GltfTextures {
 
     /// Diffuse reflection as pbrMetallicRoughness, with the image of the reflectance where there is one.
     GltfDocument::Json diffuse(const Material& material);
-    /// A reference to a texture of the scene.
-    GltfDocument::Json reference(std::uint32_t texture);
+    /// A reference to a texture of the scene, divided by `peak`.
+    GltfDocument::Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
 
   private:
     GltfDocument& document_;
     const Scene& scene_;
-    std::map<std::uint32_t, int> numbers_;
+    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // by texture, and whether it was divided
 };
 
 /// Texture coordinates from the upper left corner of an image, as glTF has them.

@@ -31,15 +31,38 @@ struct LitVertex {
     V2f coordinate;
 };
 
-LitVertex lit_vertex(const Scene& scene, const Patch& patch, const MeshCorner& corner, float exposure) {
-    const float scale = std::exp2(exposure) / std::numbers::pi_v<float>;
-    if (keeps_texture(scene.materials[patch.material]))
-        return {corner.point, corner.irradiance, clamped(scale * corner.irradiance),
-                gltf_coordinate(texture_coordinate(scene, patch, corner.at))};
-    const Rgb reflected = reflectance_at(scene, patch, corner.at) * corner.irradiance;
-    const Rgb radiosity = exitance_at(scene, patch, corner.at) + reflected;
-    return {corner.point, corner.irradiance, clamped(scale * radiosity), V2f(0, 0)};
+/// The largest of each channel of a material's image; 1 where it is 0. The file has the image divided by it, so that
+/// vertices, which hold at most 1, are no darker than they need be.
+Rgb peak_of(const Scene& scene, const Material& material) {
+    Rgb peak = largest_texel(scene.textures[material.reflectance_texture]);
+    for (int k = 0; k < 3; ++k)
+        if (!(peak[k] > 0)) peak[k] = 1;
+    return peak;
 }
+
+/// What the vertices of a scene show.
+class VertexLight {
+  public:
+    VertexLight(const Scene& scene, float exposure)
+        : scene_(scene), scale_(std::exp2(exposure) / std::numbers::pi_v<float>) {
+        for (const Material& material : scene.materials)
+            brightest_.push_back(keeps_texture(material) ? material.reflectance * peak_of(scene, material) : Rgb(0));
+    }
+
+    LitVertex vertex(const Patch& patch, const MeshCorner& corner) const {
+        if (keeps_texture(scene_.materials[patch.material]))
+            return {corner.point, corner.irradiance, clamped(scale_ * brightest_[patch.material] * corner.irradiance),
+                    gltf_coordinate(texture_coordinate(scene_, patch, corner.at))};
+        const Rgb reflected = reflectance_at(scene_, patch, corner.at) * corner.irradiance;
+        const Rgb radiosity = exitance_at(scene_, patch, corner.at) + reflected;
+        return {corner.point, corner.irradiance, clamped(scale_ * radiosity), V2f(0, 0)};
+    }
+
+  private:
+    const Scene& scene_;
+    float scale_;
+    std::vector<Rgb> brightest_;  // reflectance of each material that keeps its texture, at its brightest texel
+};
 
 /// The triangles of one object and material.
 using LitPrimitive = WeldedVertices<LitVertex>;
@@ -56,9 +79,10 @@ Json write_primitive(GltfDocument& document, const LitPrimitive& primitive, cons
     return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
 }
 
-int add_material(GltfDocument& document, GltfTextures& textures, const Material& material) {
+int add_material(GltfDocument& document, GltfTextures& textures, const Scene& scene, const Material& material) {
     Json colour{{"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (keeps_texture(material)) colour = textures.diffuse(material);
+    if (keeps_texture(material))
+        colour["baseColorTexture"] = textures.reference(material.reflectance_texture, peak_of(scene, material));
     return document.add("materials", {{"name", escaped(material.name)},
                                       {"pbrMetallicRoughness", colour},
                                       {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
@@ -68,6 +92,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
 using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
 
 LitPrimitives primitives_of(const Scene& scene, const ElementForest& forest, ElementMesh& mesh, float exposure) {
+    const VertexLight light(scene, exposure);
     LitPrimitives primitives;
     std::vector<MeshTriangle> triangles;
     for (const std::uint32_t leaf : forest.leaves()) {
@@ -76,7 +101,7 @@ LitPrimitives primitives_of(const Scene& scene, const ElementForest& forest, Ele
         const Patch& patch = scene.patches[forest.patch(leaf)];
         LitPrimitive& primitive = primitives[{patch.object, patch.material}];
         for (const MeshTriangle& triangle : triangles)
-            for (const MeshCorner& corner : triangle) primitive.add(lit_vertex(scene, patch, corner, exposure));
+            for (const MeshCorner& corner : triangle) primitive.add(light.vertex(patch, corner));
     }
     return primitives;
 }
@@ -92,7 +117,7 @@ void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution
     for (const auto& [key, primitive] : primitives_of(scene, *solution.forest, mesh, options.exposure)) {
         const auto& [object, material] = key;
         const auto [entry, is_new] = materials.try_emplace(material, 0);
-        if (is_new) entry->second = add_material(document, textures, scene.materials[material]);
+        if (is_new) entry->second = add_material(document, textures, scene, scene.materials[material]);
         Json json = write_primitive(document, primitive, mesh.points(), scene.materials[material]);
         json["material"] = entry->second;
         written[object].push_back(std::move(json));
@@ -101,8 +126,8 @@ void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution
     document.json["asset"]["extras"]["interflect"] = {
         {"exposure", options.exposure},
         {"COLOR_0",
-         "radiance [cd/m^2] * 2^exposure, clamped to [0, 1]; with a base colour texture what it multiplies: "
-         "irradiance / pi * 2^exposure"},
+         "radiance [cd/m^2] * 2^exposure, clamped to [0, 1]; that of the brightest "
+         "texel where there is a base colour texture"},
         {"_IRRADIANCE", "irradiance [lm/m^2] of each channel, linear Rec. 709"}};
     add_nodes(document, scene, written, options.up);
 }

@@ -41,6 +41,10 @@ hid_t native_type<float>() {
     return H5T_NATIVE_FLOAT;
 }
 template <>
+hid_t native_type<double>() {
+    return H5T_NATIVE_DOUBLE;
+}
+template <>
 hid_t native_type<std::uint32_t>() {
     return H5T_NATIVE_UINT32;
 }
@@ -107,6 +111,7 @@ std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) co
 }
 
 template std::vector<float> Hdf5Reader::read(const std::string&, std::size_t) const;
+template std::vector<double> Hdf5Reader::read(const std::string&, std::size_t) const;
 template std::vector<std::uint32_t> Hdf5Reader::read(const std::string&, std::size_t) const;
 template std::vector<char> Hdf5Reader::read(const std::string&, std::size_t) const;
 template std::vector<std::byte> Hdf5Reader::read(const std::string&, std::size_t) const;
@@ -127,6 +132,7 @@ FileRange Hdf5Writer::write(const std::string& name, std::span<const T> numbers,
 }
 
 template FileRange Hdf5Writer::write(const std::string&, std::span<const float>, std::size_t);
+template FileRange Hdf5Writer::write(const std::string&, std::span<const double>, std::size_t);
 template FileRange Hdf5Writer::write(const std::string&, std::span<const std::uint32_t>, std::size_t);
 template FileRange Hdf5Writer::write(const std::string&, std::span<const char>, std::size_t);
 

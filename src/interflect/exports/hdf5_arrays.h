@@ -28,7 +28,7 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
-/// The arrays of an HDF5 file, to be read. T is float, std::uint32_t, char or std::byte. All functions throw
+/// The arrays of an HDF5 file, to be read. T is float, double, std::uint32_t, char or std::byte. All functions throw
 /// std::runtime_error, and claim no more memory than the file has bytes.
 class Hdf5Reader {
   public:

@@ -80,8 +80,8 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
             area += static_cast<double>(r.w) * r.h;
             widest = std::max(widest, r.w);
         }
-        const double narrowest = std::max<double>(widest, std::sqrt(area) / 2);
-        const double broadest = std::max(narrowest, std::min<double>(max_size, 2 * std::sqrt(area)));
+        const double narrowest = std::max<double>(widest, std::sqrt(area / 2));  // at most about twice as high as wide
+        const double broadest = std::max(narrowest, std::min<double>(max_size, std::sqrt(2 * area)));
         for (int i = 0; i <= trials; ++i) {
             const double width = narrowest + (broadest - narrowest) * i / trials;
             Packing packing = pack(rectangles, std::min(to_multiple_of_4(static_cast<int>(width)), max_size), max_size);

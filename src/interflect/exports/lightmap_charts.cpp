@@ -18,7 +18,7 @@ namespace {
 /// Two sides of a gap closer than this are kept apart [texels].
 constexpr double narrow_gap = 2;
 
-/// An edge of a patch across which no other one continues it.
+/// An edge of a patch, or a part of one, across which no other patch continues it.
 struct BorderEdge {
     std::uint32_t patch;
     V3f a, b;
@@ -31,26 +31,26 @@ class Neighbourhood {
     explicit Neighbourhood(const Scene& scene)
         : scene_(scene), neighbours_(scene.patches.size()), surface_(flat_surfaces(scene)) {
         const SmoothSurfaces smooth = find_smooth_surfaces(scene);
-        std::vector<std::uint32_t> first(smooth.edges.count, none);
-        std::vector<bool> is_inner(4 * scene.patches.size(), false);
-        const auto join = [&](std::uint32_t edge, std::uint32_t other) {
-            if (!in_one_plane(edge / 4, other / 4)) return;
-            neighbours_[edge / 4].push_back(other / 4);
-            neighbours_[other / 4].push_back(edge / 4);
-            is_inner[edge] = is_inner[other] = true;
+        std::vector<Intervals> inner(4 * scene.patches.size());
+        const auto join = [&](const SmoothSurfaces::Seam& seam) {
+            const std::uint32_t p = seam.edge[0] / 4, q = seam.edge[1] / 4;
+            if (!in_one_plane(p, q)) return;
+            neighbours_[p].push_back(q);
+            neighbours_[q].push_back(p);
+            for (std::size_t k = 0; k < 2; ++k) inner[seam.edge[k]].emplace_back(seam.from[k], seam.to[k]);
         };
+        std::vector<std::uint32_t> first(smooth.edges.count, none);
         for (std::uint32_t edge = 0; edge < smooth.edges.group.size(); ++edge) {
             const std::uint32_t group = smooth.edges.group[edge];
             if (group == none) continue;
             if (first[group] == none)
                 first[group] = edge;
             else
-                join(first[group], edge);
+                join({{first[group], edge}, {0, 0}, {1, 1}});
         }
-        for (const auto& seam : smooth.seams) join(seam.edge[0], seam.edge[1]);
-        for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
-            for (int c = 0; c < scene.patches[p].vertex_count(); ++c)
-                if (!is_inner[4 * p + static_cast<std::uint32_t>(c)]) add_border(p, c);
+        for (const auto& seam : smooth.seams) join(seam);
+        for (std::uint32_t edge = 0; edge < inner.size(); ++edge)
+            if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
     }
 
     bool in_one_plane(std::uint32_t p, std::uint32_t q) const {
@@ -62,11 +62,23 @@ class Neighbourhood {
   private:
     bool is_back(std::uint32_t p) const { return scene_.patches[p].other_side < p; }
 
-    void add_border(std::uint32_t p, int corner) {
-        const Patch& patch = scene_.patches[p];
-        const V3f& a = scene_.vertices[patch.vertices[corner]];
-        const V3f& b = scene_.vertices[patch.vertices[(corner + 1) % patch.vertex_count()]];
-        border_.push_back({p, a, b, PatchGeometry(scene_, patch).normal().cross(b - a).normalized()});
+    using Intervals = std::vector<std::pair<float, float>>;
+
+    /// @param inner  The parts of the edge across which others continue it, in parameters along it.
+    void add_border(std::uint32_t edge, Intervals inner) {
+        constexpr float rounding = 1e-5f;
+        const Patch& patch = scene_.patches[edge / 4];
+        const int corner = static_cast<int>(edge % 4);
+        const V3f& start = scene_.vertices[patch.vertices[corner]];
+        const V3f along = scene_.vertices[patch.vertices[(corner + 1) % patch.vertex_count()]] - start;
+        const V3f inwards = PatchGeometry(scene_, patch).normal().cross(along).normalized();
+        std::sort(inner.begin(), inner.end());
+        inner.emplace_back(1.0f, 1.0f);
+        float end = 0;  // of what is done
+        for (const auto& [low, high] : inner) {
+            if (low > end + rounding) border_.push_back({edge / 4, start + end * along, start + low * along, inwards});
+            end = std::max(end, high);
+        }
     }
 
     const Scene& scene_;
@@ -199,7 +211,7 @@ Rectangle smallest_rectangle(const Points& hull) {
 }
 
 int texels_along(double length, double texels_per_metre, int most) {
-    constexpr double rounding = 1e-6;
+    constexpr double rounding = 1e-3;  // [texels]
     const double count = std::ceil(length * texels_per_metre - rounding) + 1;
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }

@@ -19,6 +19,7 @@
 #include "interflect/exports/description.h"
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
+#include "interflect/exports/solve_report.h"
 #include "interflect/exports/texture_records.h"
 #include "interflect/solver/state_archive.h"
 
@@ -26,9 +27,10 @@ namespace interflect {
 
 namespace {
 
-/// Version 4 has checksums, options and result. Version 3 has an origin, contacts, and the surfaces of patches; before,
-/// the origin was 0.
-constexpr int format_version = 4, oldest_format_version = 2, first_with_checksums = 4, first_with_contacts = 3;
+/// Version 5 has every iteration, and checksums of the files that were read. Version 4 has checksums, options and
+/// result. Version 3 has an origin, contacts, and the surfaces of patches; before, the origin was 0.
+constexpr int format_version = 5, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
+              first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
 template <class Vector>
@@ -164,6 +166,27 @@ void read_scene_arrays(const Hdf5Reader& file, int version, Scene& scene) {
     read_textures(file, scene);
 }
 
+constexpr const char* history_dataset = "/history";
+
+std::vector<double> history_numbers(const Solution& solution) {
+    std::vector<double> numbers;
+    for (const IterationReport& report : solution.iterations) {
+        const std::vector<double> row = report_row(report);
+        numbers.insert(numbers.end(), row.begin(), row.end());
+    }
+    return numbers;
+}
+
+/// @param solution  Its iterations are those of the description: the last one, or a first that is empty.
+void read_history(const Hdf5Reader& file, Solution& solution) {
+    const std::size_t columns = report_columns().size();
+    const std::vector<double> numbers = file.read<double>(history_dataset, columns);
+    if (numbers.empty()) return;
+    solution.iterations.clear();
+    for (std::span<const double> left = numbers; !left.empty(); left = left.subspan(columns))
+        solution.iterations.push_back(report_of_row(left.first(columns)));
+}
+
 std::string group_dataset(std::size_t group) { return fmt::format("/solution/groups/{}", group); }
 
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
@@ -198,6 +221,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
             solution.*n.values = file.read<float>(n.dataset);
     }
     read_groups(file, solved);
+    if (version >= first_with_history) read_history(file, solution);
     IterationReport& last = solution.iterations.back();
     last.elements = solution.forest->size();
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
@@ -245,6 +269,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             ranges.push_back(write(n.dataset, solution.*n.values, 1));
+    ranges.push_back(write(history_dataset, history_numbers(solution), report_columns().size()));
     for (FileRange& range : write_textures(file, scene)) ranges.push_back(std::move(range));
     for (std::size_t g = 0; g < solution.groups.size(); ++g)
         ranges.push_back(write(group_dataset(g).c_str(), flattened(solution.groups[g]), 3));

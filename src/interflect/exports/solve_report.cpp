@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "interflect/error.h"
@@ -64,6 +66,49 @@ struct Reader {
                 return;
             }
         throw InputError(fmt::format("option '{}' has an unknown value '{}'", name, found));
+    }
+};
+
+/// Writes fields to a row of numbers, and their names.
+struct RowWriter {
+    std::vector<std::string>& names;
+    std::vector<double>& row;
+
+    template <class Value>
+    void field(const std::string& name, const Value& value) const {
+        names.push_back(name);
+        row.push_back(static_cast<double>(value));
+    }
+    void field_or_null(const char* name, double value, double) const { field(name, value); }
+    void vector(const std::string& name, const RgbD& value) const {
+        field(name + "_red", value.x), field(name + "_green", value.y), field(name + "_blue", value.z);
+    }
+};
+
+/// Sets fields from a row of numbers.
+struct RowReader {
+    std::span<const double>& left;
+
+    double next(const char* name) const {
+        const double number = left.front();
+        left = left.subspan(1);
+        if (std::isnan(number)) throw std::runtime_error(fmt::format("'{}' of an iteration is not a number", name));
+        return number;
+    }
+    template <class Value>
+    void field(const char* name, Value& value) const {
+        const double number = next(name);
+        constexpr double most_exact = 9007199254740992;  // 2^53
+        const double most = std::min(most_exact, static_cast<double>(std::numeric_limits<Value>::max()));
+        if (!(number >= 0 && number <= most))
+            throw std::runtime_error(fmt::format("'{}' of an iteration is out of range", name));
+        value = static_cast<Value>(number);
+    }
+    void field_or_null(const char* name, double& value, double) const { value = next(name); }
+    void vector(const char* name, RgbD& value) const {
+        for (int c = 0; c < 3; ++c)
+            if (!std::isfinite(value[c] = next(name)))
+                throw std::runtime_error(fmt::format("'{}' of an iteration is not finite", name));
     }
 };
 
@@ -167,6 +212,27 @@ Json json_of(const IterationReport& report) {
 IterationReport report_of(const Json& json) {
     IterationReport report;
     for_each_number(report, Reader{json});
+    return report;
+}
+
+std::vector<std::string> report_columns() {
+    std::vector<std::string> names;
+    std::vector<double> row;
+    const IterationReport report;
+    for_each_number(report, RowWriter{names, row});
+    return names;
+}
+
+std::vector<double> report_row(const IterationReport& report) {
+    std::vector<std::string> names;
+    std::vector<double> row;
+    for_each_number(report, RowWriter{names, row});
+    return row;
+}
+
+IterationReport report_of_row(std::span<const double> row) {
+    IterationReport report;
+    for_each_number(report, RowReader{row});
     return report;
 }
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "interflect/exports/json_text.h"
 #include "interflect/solve.h"
 
@@ -19,6 +23,13 @@ Json json_of(const IterationReport& report);
 
 /// What json_of() told. @throws nlohmann::json::exception
 IterationReport report_of(const Json& json);
+
+/// The same of every iteration as a table of numbers, for programs that plot it; an error that is not known is
+/// infinite.
+std::vector<std::string> report_columns();
+std::vector<double> report_row(const IterationReport& report);
+/// The inverse. @param row  As many numbers as there are columns. @throws std::runtime_error for one that cannot be.
+IterationReport report_of_row(std::span<const double> row);
 
 /// A view, with world coordinates in double precision.
 Json json_of(const View& view);

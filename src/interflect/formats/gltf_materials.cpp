@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "interflect/formats/mgf_colour.h"
+#include "interflect/scene/limits.h"
 
 namespace interflect::inline detail {
 
@@ -214,6 +215,7 @@ GltfSurface GltfMaterials::make(std::uint32_t index, bool textured) {
     reflect(owner, parts, material);
     transmit(owner, parts, material);
     material.exitance = parts.emissive * (parts.coverage * std::numbers::pi_v<float>);
+    if (const std::string fault = exitance_fault(material.exitance); !fault.empty()) owner.fail("its " + fault);
     if (parts.emissive_texture.image != none)
         material.exitance_texture = images_.texture({.colour = parts.emissive_texture.image}).first;
     surface.material = static_cast<std::uint32_t>(asset_.model.materials.size());
@@ -224,6 +226,7 @@ GltfSurface GltfMaterials::make(std::uint32_t index, bool textured) {
 const GltfSurface& GltfMaterials::surface(std::uint32_t index, bool textured) {
     const auto found = surfaces_.find({index, textured});
     if (found != surfaces_.end()) return found->second;
+    if (!textured && !surface(index, true).mapping) return surface(index, true);
     return surfaces_.emplace(std::pair(index, textured), make(index, textured)).first->second;
 }
 

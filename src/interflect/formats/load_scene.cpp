@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "interflect/base/crc32.h"
 #include "interflect/error.h"
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/extension.h"
@@ -108,6 +109,12 @@ void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, c
     }
 }
 
+std::vector<std::uint32_t> checksums_of(const std::vector<std::string>& files) {
+    std::vector<std::uint32_t> checksums;
+    for (const std::string& file : files) checksums.push_back(crc32_of_file(file));
+    return checksums;
+}
+
 }  // namespace
 
 Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires,
@@ -118,6 +125,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
         Scene maze = load_maze(path.string(), options);
         add_luminaires(maze, luminaires, options);
         add_daylight(maze, added);
+        maze.file_checksums = checksums_of(maze.files);
         return maze;
     }
     require_regular_file(path);
@@ -131,6 +139,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
         scene.views = read_view_list(views);
         scene.files.push_back(views.string());
     }
+    scene.file_checksums = checksums_of(scene.files);
     if (!emits(scene)) scene.warnings.add("no-light", "nothing in the scene emits light: all pictures will be black");
     return scene;
 }

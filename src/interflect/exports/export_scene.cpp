@@ -1,0 +1,53 @@
+#include "interflect/export_scene.h"
+
+#include <array>
+
+#include "interflect/error.h"
+#include "interflect/exports/foreign_scene.h"
+#include "interflect/exports/write_files.h"
+#include "interflect/formats/extension.h"
+
+namespace interflect {
+
+namespace {
+
+struct SceneFormat {
+    const char* extension;
+    std::string (*describe)(ForeignScene& scene);
+};
+constexpr std::array<SceneFormat, 4> scene_formats{{{".rad", radiance_description},
+                                                    {".xml", mitsuba_description},
+                                                    {".pbrt", pbrt_description},
+                                                    {".py", blender_description}}};
+constexpr auto extensions = [] {
+    std::array<const char*, scene_formats.size()> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = scene_formats[i].extension;
+    return all;
+}();
+
+const SceneFormat* find_scene_format(const std::filesystem::path& path) {
+    const std::string extension = lower_case_extension(path);
+    for (const SceneFormat& format : scene_formats)
+        if (extension == format.extension) return &format;
+    return nullptr;
+}
+
+}  // namespace
+
+const std::span<const char* const> scene_export_extensions(extensions);
+
+bool is_scene_export(const std::filesystem::path& path) { return find_scene_format(path); }
+
+SceneExport export_scene(const std::filesystem::path& path, const Scene& scene, const SceneExportOptions& options) {
+    const SceneFormat* format = find_scene_format(path);
+    if (!format) throw InputError(path, 0, "expected one of the extensions .rad, .xml, .pbrt, .py");
+    if (options.width < 1 || options.height < 1 || options.samples < 1)
+        throw InputError("scene export: width, height and samples must be at least 1");
+    require_no_faults(scene_faults(scene), "cannot export", scene);
+    ForeignScene foreign(scene, path, options);
+    std::string description = format->describe(foreign);
+    foreign.files.push_back({path, std::move(description)});
+    return {write_files(foreign.files), foreign.warnings};
+}
+
+}  // namespace interflect

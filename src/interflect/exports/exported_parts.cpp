@@ -1,0 +1,73 @@
+#include "interflect/exports/exported_parts.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "interflect/formats/texture_files.h"
+#include "interflect/image/image_codecs.h"
+#include "interflect/image_files.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_plain(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.'; }
+
+std::string plain_name(std::string name, const char* kind) {
+    for (char& c : name)
+        if (!is_plain(c)) c = '_';
+    if (name.empty()) name = kind;
+    if (!is_letter(name.front())) name.insert(0, "_");
+    return name;
+}
+
+Image image_of(const Texture& texture) {
+    Image image(static_cast<int>(texture.width), static_cast<int>(texture.height));
+    image.pixels = texture.texels;
+    return image;
+}
+
+}  // namespace
+
+std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind) {
+    std::set<std::string> taken;
+    std::vector<std::string> plain;
+    for (const std::string& name : names) {
+        const std::string base = plain_name(name, kind);
+        std::string free = base;
+        for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}_{}", base, number);
+        plain.push_back(std::move(free));
+    }
+    return plain;
+}
+
+std::vector<std::string> material_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Material& material : scene.materials) names.push_back(material.name);
+    return plain_names(names, "material");
+}
+
+std::vector<std::string> object_names(const Scene& scene) { return plain_names(scene.objects, "scene"); }
+
+std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const Scene& scene) {
+    std::vector<ExportedFile> files;
+    for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+        const Texture& texture = scene.textures[i];
+        const std::string extension = texture_extension(texture);
+        const std::string name = fmt::format("{}-texture-{}{}", path.stem().string(), i, extension);
+        files.push_back({path.parent_path() / name,
+                         extension == ".png" ? codecs::encode_png(image_of(texture)) : exr_bytes(texture)});
+    }
+    return files;
+}
+
+std::string exr_bytes(const Texture& texture) {
+    ImageMetadata metadata;
+    metadata.quantity = "texels, linear Rec. 709";
+    metadata.version = INTERFLECT_VERSION;
+    return codecs::encode_exr(image_of(texture), metadata, {});
+}
+
+}  // namespace interflect::inline detail

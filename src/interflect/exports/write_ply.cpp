@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include "interflect/exports/lit_polygons.h"
+#include "interflect/exports/mesh_files.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+std::size_t most_corners(const LitPolygons& polygons) {
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < polygons.size(); ++i)
+        most = std::max<std::size_t>(most, polygons.ends[i] - polygons.begin(i));
+    return most;
+}
+
+/// Single precision where the scene lies at the world's origin, else double.
+void append_position(std::string& bytes, const Scene& scene, const V3f& point) {
+    for (int k = 0; k < 3; ++k)
+        if (scene.origin == Imath::V3d(0))
+            append_bytes(bytes, point[k]);
+        else
+            append_bytes(bytes, scene.origin[k] + static_cast<double>(point[k]));
+}
+
+}  // namespace
+
+std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
+                                   const ExportOptions& options) {
+    const LitPolygons polygons = lit_polygons(scene, solution);
+    const bool has_many_corners = most_corners(polygons) > 255;
+    const char* coordinate = scene.origin == Imath::V3d(0) ? "float" : "double";
+    std::string bytes = fmt::format(
+        "ply\nformat binary_little_endian 1.0\n"
+        "comment made by Interflect {}\n"
+        "comment red, green, blue: radiance [cd/m^2] * 2^{}, clamped, as sRGB\n"
+        "comment irradiance: [lm/m^2] of each channel, linear Rec. 709\n"
+        "element vertex {}\nproperty {} x\nproperty {} y\nproperty {} z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+        "property float irradiance_red\nproperty float irradiance_green\nproperty float irradiance_blue\n"
+        "element face {}\nproperty list {} uint vertex_indices\nend_header\n",
+        INTERFLECT_VERSION, options.exposure, polygons.vertices.size(), coordinate, coordinate, coordinate,
+        polygons.size(), has_many_corners ? "uint" : "uchar");
+    for (const LitPolygons::Vertex& vertex : polygons.vertices) {
+        append_position(bytes, scene, polygons.points[vertex.point]);
+        for (const std::uint8_t c : display_colour(vertex.radiosity, options.exposure)) append_bytes(bytes, c);
+        for (int c = 0; c < 3; ++c) append_bytes(bytes, vertex.irradiance[c]);
+    }
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+        const std::uint32_t count = polygons.ends[i] - polygons.begin(i);
+        if (has_many_corners)
+            append_bytes(bytes, count);
+        else
+            append_bytes(bytes, static_cast<std::uint8_t>(count));
+        for (std::uint32_t c = polygons.begin(i); c < polygons.ends[i]; ++c) append_bytes(bytes, polygons.corners[c]);
+    }
+    return {{path, std::move(bytes)}};
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,229 @@
+"""What `export` writes, read back by others: meshes with their light, probes, scenes for other renderers."""
+
+import ast
+import json
+import math
+import struct
+import subprocess
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from command import BAD_INPUT, VIEWS, CommandTest, room
+
+AREA = 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1  # of room(): walls with two sides, and a lamp with one [m^2]
+FACES = AREA / 2 + 0.5  # of the faces alone
+
+
+def area(points):
+    """Of a planar polygon: half the length of the sum of the cross products."""
+    sums = [0, 0, 0]
+    for p, q in zip(points, points[1:] + points[:1]):
+        for k in range(3):
+            sums[k] += p[k - 2] * q[k - 1] - p[k - 1] * q[k - 2]
+    return math.hypot(*sums) / 2
+
+
+class Ply:
+    """A binary PLY file of one list a face."""
+
+    TYPES = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
+
+    def __init__(self, content):
+        header, body = content.split(b"end_header\n", 1)
+        lines = [line.split() for line in header.decode().splitlines()]
+        counts = {words[1]: int(words[2]) for words in lines if words[0] == "element"}
+        columns = [words[1:] for words in lines if words[0] == "property" and words[1] != "list"]
+        (size, index) = next(words[2:4] for words in lines if words[:2] == ["property", "list"])
+        row = struct.Struct("<" + "".join(self.TYPES[kind] for kind, _ in columns))
+        names = [name for _, name in columns]
+        self.vertices = [dict(zip(names, row.unpack_from(body, i * row.size))) for i in range(counts["vertex"])]
+        at, self.faces = counts["vertex"] * row.size, []
+        for _ in range(counts["face"]):
+            (count,) = struct.unpack_from("<" + self.TYPES[size], body, at)
+            at += struct.calcsize(self.TYPES[size])
+            self.faces.append(struct.unpack_from(f"<{count}{self.TYPES[index]}", body, at))
+            at += 4 * count
+        assert at == len(body)
+
+    def area(self):
+        points = [(v["x"], v["y"], v["z"]) for v in self.vertices]
+        return sum(area([points[i] for i in face]) for face in self.faces)
+
+
+class Exported(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+
+
+class Meshes(Exported):
+    def setUp(self):
+        super().setUp()
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "50k", "--view", "door")
+        self.leaves = self.json("info", "room.h5")["result"]["leaves"]
+
+    def export(self, name, *options):
+        self.interflect("export", "room.h5", "-o", name, "--exposure", "-6", *options)
+        return self.bytes(name)
+
+    def test_ply_has_every_leaf(self):
+        content = self.export("room.ply")
+        ply = Ply(content)
+        self.assertEqual(len(ply.faces), self.leaves)
+        self.assertAlmostEqual(ply.area(), AREA, places=3)
+        self.assertGreater(max(len(face) for face in ply.faces), 4, "no T-junctions")
+        lamp = [v for v in ply.vertices if abs(v["z"] - 2.4) < 1e-6 and v["red"] == 255]
+        self.assertGreaterEqual(len(lamp), 4)  # 1000 / pi / 64 is above 1
+        self.assertEqual(self.export("again.ply"), content)
+
+    def test_obj_has_geometry_and_materials(self):
+        text = self.export("room.obj").decode().splitlines()
+        points = [tuple(map(float, line.split()[1:4])) for line in text if line.startswith("v ")]
+        faces = [[points[int(i) - 1] for i in line.split()[1:]] for line in text if line.startswith("f ")]
+        self.assertEqual(len(faces), self.leaves)
+        self.assertAlmostEqual(sum(map(area, faces)), AREA, places=3)
+        self.assertEqual([line for line in text if line.startswith("usemtl")], ["usemtl paint", "usemtl lamp"])
+        emission = [line.split()[1:] for line in self.bytes("room.mtl").decode().splitlines() if line.startswith("Ke")]
+        self.assertEqual(len(emission), 1)
+        for channel in emission[0]:
+            self.assertAlmostEqual(float(channel), 1000 / math.pi, places=3)
+
+    def test_vtu_opens_in_vtk_with_the_numbers_of_the_solution(self):
+        self.export("room.vtu")
+        script = """if True:
+            import h5py, numpy
+            from vtkmodules.util.numpy_support import vtk_to_numpy
+            from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+            reader = vtkXMLUnstructuredGridReader()
+            reader.SetFileName("room.vtu")
+            reader.Update()
+            grid = reader.GetOutput()
+            cells = grid.GetCellData()
+            element = vtk_to_numpy(cells.GetArray("element"))
+            with h5py.File("room.h5") as file:
+                names = ("irradiance", "standard_error", "discretisation_error", "rays", "view_importance",
+                         "indirect_importance")
+                for name in names:
+                    stored = file["solution"][name][:][element]
+                    assert numpy.array_equal(vtk_to_numpy(cells.GetArray(name)), stored), name
+                patches = file["scene/patches"][:]
+            patch = vtk_to_numpy(cells.GetArray("patch"))
+            assert numpy.array_equal(vtk_to_numpy(cells.GetArray("material")), patches[patch, 4])
+            level = vtk_to_numpy(cells.GetArray("level"))
+            assert ((level == 0) == (element < len(patches))).all()
+            illuminance = vtk_to_numpy(grid.GetPointData().GetArray("illuminance"))
+            assert (illuminance >= 0).all() and illuminance.max() > 0
+            print(grid.GetNumberOfCells(), *grid.GetBounds())
+            """
+        command = ["/usr/bin/python3", "-c", script]
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(list(map(float, result.stdout.split())), [self.leaves, 0, 2, 0, 3, 0, 2.5])
+
+    def test_probes_fill_the_room(self):
+        probes = json.loads(self.export("probes.json", "--probe-spacing", "1", "--probe-rays", "200"))
+        self.assertEqual(probes["count"], [2, 3, 3])
+        self.assertEqual(probes["inside"], 18 * [0])
+        self.assertEqual(len(probes["coefficients"]), 18)
+        self.assertEqual(probes["first"][:2], [0.5, 0.5])
+        self.assertAlmostEqual(probes["first"][2] + 2 * probes["step"][2], 2.5 - 2.5 / 6)
+        for coefficients in probes["coefficients"]:
+            self.assertEqual([len(c) for c in coefficients], 9 * [3])
+            self.assertGreater(min(coefficients[0]), 0)
+        below = probes["coefficients"][probes["count"][0] + 1]  # on the floor, about below the lamp
+        self.assertGreater(below[2][1], 0, "the light comes from above")
+
+    def test_probes_in_an_image_are_described_beside_it(self):
+        self.export("probes.exr", "--probe-spacing", "1", "--probe-rays", "200")
+        beside = json.loads(self.bytes("probes.json"))
+        self.assertNotIn("coefficients", beside)
+        self.assertEqual(beside["count"], [2, 3, 3])
+        for layer in beside["harmonics"][1:]:
+            self.assertIn(f"{layer}.G".encode(), self.bytes("probes.exr"))
+
+    def test_refuses_what_it_cannot_write(self):
+        for arguments, words in (
+            (("room.h5", "-o", "room.stl"), ".ply"),
+            (("room.mgf", "-o", "room.ply"), "not a solution file"),
+            (("room.h5", "-o", "p.json", "--probe-spacing", "0"), "spacing"),
+            (("room.h5", "-o", "missing/room.ply"), "missing"),
+        ):
+            before = self.files()
+            result = self.interflect("export", *arguments, exit_code=BAD_INPUT)
+            self.assertIn(words, result.stderr)
+            self.assertEqual(self.files(), before)
+
+
+class Scenes(Exported):
+    def export(self, name, *options):
+        result = self.interflect("export", "room.mgf", "-o", name, *options)
+        return self.bytes(name).decode(), result.stderr
+
+    def test_mitsuba_has_views_surfaces_and_units(self):
+        text, stderr = self.export("room.xml", "--size", "64x48", "--pixel-samples", "16")
+        scene = ElementTree.fromstring(text)
+        self.assertEqual(scene.get("version"), "3.0.0")
+        sensors = scene.findall("sensor")
+        self.assertEqual([s.find("float[@name='fov']").get("value") for s in sensors], ["45", "60"])
+        self.assertEqual(sensors[0].find("string[@name='fov_axis']").get("value"), "y")
+        self.assertEqual(sensors[0].find("transform/lookat").attrib, {"origin": "0.3, 0.2, 1.6", "target": "1.2, 3, 1", "up": "0, 0, 1"})
+        self.assertEqual(sensors[0].find("film/integer[@name='height']").get("value"), "48")
+        radiance = scene.find("shape/emitter[@type='area']/rgb[@name='radiance']").get("value")
+        for channel in radiance.split(", "):
+            self.assertAlmostEqual(float(channel), 1000 / math.pi, places=3)
+        areas = [Ply(self.bytes(shape.find("string").get("value"))).area() for shape in scene.findall("shape")]
+        self.assertAlmostEqual(sum(areas), FACES, places=4)
+        self.assertIn("one-sided faces", stderr)
+
+    def test_pbrt_asks_for_the_field_of_view_of_the_shorter_side(self):
+        text, _ = self.export("wide.pbrt", "--size", "64x48")
+        self.assertIn('Scale -1 1 1\nLookAt 0.3 0.2 1.6  1.2 3 1  0 0 1\nCamera "perspective" "float fov" [ 45 ]', text)
+        text, _ = self.export("high.pbrt", "--size", "48x64")
+        fov = float(text.split('"float fov" [ ')[1].split()[0])
+        self.assertAlmostEqual(fov, 2 * math.degrees(math.atan(0.75 * math.tan(math.radians(22.5)))), places=3)
+        self.assertAlmostEqual(float(text.split('"rgb L" [ ')[1].split()[0]), 1000 / math.pi, places=3)
+        areas = [Ply(self.bytes(name)).area() for name in self.files() if name.endswith(".ply")]
+        self.assertAlmostEqual(sum(areas), 2 * FACES, places=4)  # of two exports
+
+    def test_radiance_has_watts_and_view_files_that_are_read_again(self):
+        text, _ = self.export("room.rad", "--size", "64x48")
+        words = text.split()
+        light = words.index("light")
+        self.assertAlmostEqual(float(words[light + 5]), 1000 / math.pi / 179, places=5)
+        polygons = [line for line in text.splitlines() if " polygon " in line]
+        self.assertEqual(len(polygons), 7)
+        view = (self.folder / "room-view-1.vf").read_text()
+        self.assertIn("-vv 60", view)
+        self.assertAlmostEqual(float(view.split("-vh ")[1].split()[0]), 2 * math.degrees(math.atan(4 / 3 * math.tan(math.radians(30)))), places=3)
+        self.interflect("render", "room.mgf", "--view-file", "room-view-1.vf", "-o", "x.hdr", "--shading", "path", "--samples", "2", "--size", "8x6")
+
+    def test_blender_script_has_the_scene(self):
+        text, stderr = self.export("room.py", "--size", "64x48")
+        calls = [node.value for node in ast.parse(text).body if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)]
+        named = {call.func.id: call for call in calls if isinstance(call.func, ast.Name)}
+        self.assertEqual(ast.literal_eval(named["camera"].args[0]), "view-1")
+        lamp = named["mesh"].args[1]
+        self.assertEqual([ast.literal_eval(a) for a in (lamp.args[0], lamp.args[1], lamp.args[4])], ["lamp-one-sided", (0, 0, 0), "pass"])
+        self.assertNotIn("warning", stderr, "Cycles can have one-sided faces")
+
+    def test_tells_what_it_leaves_out(self):
+        self.write("room.mgf", room().replace("sides 1", "sides 2") + "v bulb =\n\tp 1 1 1\nlight sky 5\nlight point bulb 3\n")
+        _, stderr = self.export("room.xml")
+        self.assertIn("left out: emission of the backs", stderr)
+        text, stderr = self.export("room.pbrt")
+        self.assertIn('"bool twosided" true', text)
+        self.assertIn('LightSource "point" "rgb I" [ 3 3 3 ] "point3 from" [ 1 1 1 ]', text)
+        self.assertIn('LightSource "infinite" "string filename" "room-sky.exr"', text)
+        self.bytes("room-sky.exr")
+        self.assertNotIn("left out: emission", stderr)
+
+    def test_takes_solutions(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
+        text, _ = self.export("room.pbrt")
+        self.interflect("export", "room.h5", "-o", "solved.pbrt")
+        self.assertEqual(self.bytes("solved.pbrt").decode().count("Shape"), text.count("Shape"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,283 @@
+#include "interflect/exports/lightmap.h"
+
+#include <ImathEuler.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "interflect/base/random.h"
+#include "interflect/contacts.h"
+#include "interflect/elements/forest.h"
+#include "interflect/generators/two_rooms.h"
+#include "interflect/render/smooth_field.h"
+#include "interflect/solve.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using testing_support::add_material;
+using testing_support::add_rectangle;
+using testing_support::closed_box;
+
+const Material grey{"grey", Rgb(0.5f), Rgb(0)};
+
+/// Irradiance `field(x)` at the centre x of each element of a forest whose patches are subdivided `levels` times.
+template <class Field>
+Solution solution_of(const Scene& scene, int levels, const Field& field) {
+    const auto forest = std::make_shared<ElementForest>(scene, scene.patches.size() << (2 * levels + 1));
+    for (std::uint32_t e = 0; e < forest->size(); ++e)
+        if (forest->level(e) < levels) forest->subdivide(e);
+    forest->put_in_order(forest->patch_count());
+    Solution solution;
+    for (std::uint32_t e = 0; e < forest->size(); ++e) {
+        const PatchGeometry& geometry = forest->geometry(forest->patch(e));
+        solution.irradiance.push_back(field(geometry.point(forest->cell(e).centre(geometry.is_triangle()))));
+    }
+    solution.forest = forest;
+    return solution;
+}
+
+Solution uniform(const Scene& scene, float irradiance) {
+    return solution_of(scene, 0, [&](const V3f&) { return Rgb(irradiance); });
+}
+
+ExportOptions at(float texels_per_metre) {
+    ExportOptions options;
+    options.lightmap.emplace();
+    options.lightmap->texels_per_metre = texels_per_metre;
+    return options;
+}
+
+/// As a graphics card interpolates, from the centres of the four nearest texels.
+Rgb sample(const Lightmap& lightmap, std::uint32_t patch, const V3f& x) {
+    const Image& image = lightmap.images[static_cast<std::size_t>(lightmap.page(patch))];
+    const V2f at = lightmap.coordinate(patch, x);
+    const float column = at.x * static_cast<float>(image.width) - 0.5f;
+    const float row = at.y * static_cast<float>(image.height) - 0.5f;
+    const int i = static_cast<int>(std::floor(column)), j = static_cast<int>(std::floor(row));
+    const float s = column - static_cast<float>(i), t = row - static_cast<float>(j);
+    return (image.at(i, j) * (1 - s) + image.at(i + 1, j) * s) * (1 - t) +
+           (image.at(i, j + 1) * (1 - s) + image.at(i + 1, j + 1) * s) * t;
+}
+
+/// Parameters of random points of a patch, every other one on its border.
+Parameters random_place(const PatchGeometry& geometry, std::uint64_t index) {
+    Parameters p = geometry.uniform_parameters(static_cast<float>(random_double(1, index)),
+                                               static_cast<float>(random_double(2, index)));
+    if (index % 4 == 1) p.u = 0;
+    if (index % 4 == 3) p.v = 0;
+    return p;
+}
+
+/// A floor of 4 x 4 m, turned by 30 degrees, as triangles and quadrilaterals of one surface, with a hole.
+Scene turned_floor() {
+    Scene scene;
+    const float c = std::cos(0.52f), s = std::sin(0.52f);
+    add_rectangle(scene, V3f(1, 2, 0.5f), V3f(4 * c, 4 * s, 0), V3f(-4 * s, 4 * c, 0),
+                  add_material(scene, Rgb(0.5f), Rgb(0)), 4, 4);
+    scene.patches.erase(scene.patches.begin() + 5);
+    Patch& quadrilateral = scene.patches[9];
+    Patch half = quadrilateral;
+    half.vertices = {quadrilateral.vertices[0], quadrilateral.vertices[2], quadrilateral.vertices[3], none};
+    quadrilateral.vertices[3] = none;
+    scene.patches.push_back(half);
+    return scene;
+}
+
+TEST(Lightmap, FlatSurfaceIsOneChart) {
+    const Scene scene = turned_floor();
+    const auto charts = make_charts(scene, 10, 4096);
+    ASSERT_EQ(charts.size(), 1);
+    EXPECT_NEAR(charts[0].size.x, 4, 1e-5);  // not the 5.5 m of a rectangle along the axes
+    EXPECT_NEAR(charts[0].size.y, 4, 1e-5);
+    EXPECT_EQ(charts[0].columns, 41);
+}
+
+TEST(Lightmap, ChartsWithTheirGuttersAreApart) {
+    const Scene scene = closed_box(V3f(3, 4, 2.5f), 1, std::vector<Material>(6, grey));
+    ExportOptions options = at(33);
+    options.lightmap->max_size = 256;  // several images
+    const Lightmap lightmap = make_lightmap(scene, uniform(scene, 1), options);
+    EXPECT_GT(lightmap.images.size(), 1);
+    const int gutter = options.lightmap->gutter;
+    for (const LightmapChart& a : lightmap.charts) {
+        const Image& image = lightmap.images[static_cast<std::size_t>(a.page)];
+        EXPECT_TRUE(a.left >= gutter && a.left + a.columns + gutter <= image.width);
+        EXPECT_TRUE(a.top >= gutter && a.top + a.rows + gutter <= image.height);
+        EXPECT_TRUE(image.width % 4 == 0 && image.height % 4 == 0);
+        for (const LightmapChart& b : lightmap.charts) {
+            if (&a == &b || a.page != b.page) continue;
+            EXPECT_TRUE(a.left + a.columns + 2 * gutter <= b.left || b.left + b.columns + 2 * gutter <= a.left ||
+                        a.top + a.rows + 2 * gutter <= b.top || b.top + b.rows + 2 * gutter <= a.top);
+        }
+    }
+}
+
+class RoomLightmap : public testing::TestWithParam<V3f> {};  // size of the room [m]
+
+TEST_P(RoomLightmap, UsesFourFifthsOfTheTexels) {
+    const Scene scene = closed_box(GetParam(), 1, std::vector<Material>(6, grey));
+    const Lightmap lightmap = make_lightmap(scene, uniform(scene, 1), at(20));
+    EXPECT_GT(lightmap.covered, 0.8);
+    EXPECT_GE(lightmap.used, lightmap.covered);
+}
+
+// Exact: a border that took in what is beside the chart would be darker. Fails with gutters that are not filled.
+TEST_P(RoomLightmap, HasNoDarkOrBrightBorders) {
+    const Scene scene = closed_box(GetParam(), 1, std::vector<Material>(6, grey));
+    const Solution solution = uniform(scene, 3);
+    const Lightmap lightmap = make_lightmap(scene, solution, at(20));
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+        for (std::uint64_t i = 0; i < 1000; ++i) {
+            const PatchGeometry& geometry = solution.forest->geometry(p);
+            ASSERT_NEAR(sample(lightmap, p, geometry.point(random_place(geometry, i))).x, 3, 1e-5);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, RoomLightmap,
+                         testing::Values(V3f(3, 4, 2.5f), V3f(6, 8, 2.7f), V3f(12, 5, 3), V3f(2, 2, 2)));
+
+// A lightmap whose texels are smaller than the elements is what smooth shading has, at borders too. The difference is
+// that of bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that
+// are shifted by half a texel, mirrored or stretched.
+TEST(Lightmap, IsWhatSmoothShadingHas) {
+    const Scene scene = turned_floor();
+    const Solution solution = solution_of(
+        scene, 2, [](const V3f& x) { return Rgb(100 + 40 * std::sin(x.x), 100 + 40 * std::cos(x.y), 100); });
+    const Lightmap lightmap = make_lightmap(scene, solution, at(50));
+    const ElementVertices vertices(scene, *solution.forest);
+    const SmoothField smooth(*solution.forest, vertices, solution.irradiance);
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+        for (std::uint64_t i = 0; i < 1000; ++i) {
+            const PatchGeometry& geometry = solution.forest->geometry(p);
+            const Parameters place = random_place(geometry, i);
+            const Rgb expected = smooth.at(p, place), found = sample(lightmap, p, geometry.point(place));
+            for (int k = 0; k < 3; ++k)
+                ASSERT_NEAR(found[k], expected[k], 0.2) << p << " " << place.u << " " << place.v;
+        }
+}
+
+// Two coplanar faces of one material and two objects: two charts, turned and spaced differently, of one smooth field.
+TEST(Lightmap, SeamsBetweenCoplanarFacesAreBelowOnePercent) {
+    Scene scene;
+    const std::uint32_t material = add_material(scene, Rgb(0.5f), Rgb(0));
+    scene.objects = {"", "other"};
+    const std::uint32_t left = add_rectangle(scene, V3f(0), V3f(2.03f, 0, 0), V3f(0, 3, 0), material);
+    const std::uint32_t right = add_rectangle(scene, V3f(2.03f, 0, 0), V3f(0.71f, 0, 0), V3f(0, 3, 0), material);
+    scene.patches[right].object = 1;
+    const Solution solution =
+        solution_of(scene, 4, [](const V3f& x) { return Rgb(100 + 80 * std::sin(3 * x.y) * std::cos(2 * x.x)); });
+    const Lightmap lightmap = make_lightmap(scene, solution, at(20));
+    EXPECT_NE(lightmap.chart_of_patch[left], lightmap.chart_of_patch[right]);
+    for (int i = 0; i <= 1000; ++i) {
+        const V3f x(2.03f, 0.003f * static_cast<float>(i), 0);
+        const float a = sample(lightmap, left, x).x, b = sample(lightmap, right, x).x;
+        ASSERT_NEAR(a / b, 1, 0.01) << x.y;
+    }
+}
+
+/// A floor of 4 x 4 m with a wall along x = 2 m, from y = 0 to `end`. @param thickness  0: a two-sided face.
+Scene floor_with_wall(float thickness, float end) {
+    Scene scene;
+    const std::uint32_t material = add_material(scene, Rgb(0.5f), Rgb(0));
+    add_rectangle(scene, V3f(0), V3f(4, 0, 0), V3f(0, 4, 0), material);
+    if (thickness > 0)
+        testing_support::add_box(scene, V3f(2 - thickness / 2, 0, 0), V3f(2 + thickness / 2, end, 2), material);
+    else
+        add_rectangle(scene, V3f(2, 0, 0), V3f(0, end, 0), V3f(0, 0, 2), material, 1, 1, true);
+    return cut_at_contacts(scene);
+}
+
+struct WallCase {
+    const char* name;
+    float thickness, end, texels_per_metre;
+};
+
+class LightmapBesideWall : public testing::TestWithParam<WallCase> {};
+
+// 1000 lx on one side of a wall, 1 lx on the other. A texel that mixed the sides would show hundreds beside the wall.
+// Fails without find_conflicts(), and with SmoothField across contacts.
+TEST_P(LightmapBesideWall, LeaksNoLight) {
+    const auto& [name, thickness, end, texels_per_metre] = GetParam();
+    const Scene scene = floor_with_wall(thickness, end);
+    const Solution solution = solution_of(scene, 5, [](const V3f& x) { return Rgb(x.x < 2 ? 1000.0f : 1.0f); });
+    const Lightmap lightmap = make_lightmap(scene, solution, at(texels_per_metre));
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const PatchGeometry& geometry = solution.forest->geometry(p);
+        if (geometry.normal().z < 0.9f || geometry.centre().z > 0.1f) continue;  // not of the floor
+        for (std::uint64_t i = 0; i < 2000; ++i) {
+            const V3f x = geometry.point(random_place(geometry, i));
+            if (x.y > end - 0.5f || std::abs(geometry.centre().x - 2) < thickness) continue;
+            const float expected = geometry.centre().x < 2 ? 1000 : 1;
+            ASSERT_NEAR(sample(lightmap, p, x).x / expected, 1, 1e-3) << x;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Walls, LightmapBesideWall,
+                         testing::Values(WallCase{"Through", 0.01f, 4, 20}, WallCase{"ThroughCoarse", 0.01f, 4, 5},
+                                         WallCase{"Free", 0.01f, 3, 20}, WallCase{"FreeCoarse", 0.01f, 3, 5},
+                                         WallCase{"FreeThin", 0, 3, 20}, WallCase{"FreeThick", 0.12f, 3, 20}),
+                         [](const auto& test) { return test.param.name; });
+
+class SealedRoomsLightmap : public testing::TestWithParam<TwoRoomsOptions> {};
+
+// Two solved rooms, one of them sealed and dark, on both sides of a wall 1 cm thick: what the lightmap has there more
+// than smooth shading leaked through texels.
+TEST_P(SealedRoomsLightmap, LeaksNoLight) {
+    const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
+    const Solution solution =
+        solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
+    const Lightmap lightmap = make_lightmap(scene, solution, at(10));
+    const ElementVertices vertices(scene, *solution.forest);
+    const SmoothField smooth(*solution.forest, vertices, solution.irradiance);
+    const float radians = GetParam().turn * std::numbers::pi_v<float> / 180;
+    const V3f across(std::cos(radians), std::sin(radians), 0);
+    double lit = 0, dark = 0, of_smooth_shading = 0;
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const PatchGeometry& geometry = solution.forest->geometry(p);
+        for (std::uint64_t i = 0; i < 200; ++i) {
+            const Parameters place = random_place(geometry, i);
+            const V3f x = geometry.point(place);
+            const float found = sample(lightmap, p, x).x;
+            if ((x - V3f(4, 2, 0)).dot(across) < 0) {
+                lit += found * geometry.area();
+            } else {
+                dark += found * geometry.area();
+                of_smooth_shading += smooth.at(p, place).x * geometry.area();
+            }
+        }
+    }
+    EXPECT_GT(lit, 0);
+    EXPECT_LT((dark - of_smooth_shading) / lit, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
+                         testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
+                                         TwoRoomsOptions{.turn = 30, .furniture = true}));
+
+// Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point, so every texel gathers that,
+// at the feet of walls and in corners too. Rays that started beyond a wall would escape: those texels would lose half.
+TEST(Lightmap, GathersAtBordersAsAnywhere) {
+    constexpr float exitance = 2, reflectance = 0.5f, expected = exitance / (1 - reflectance);
+    Scene scene = closed_box(V3f(1, 1.5f, 2), 1, {{"lamp", Rgb(reflectance), Rgb(exitance)}});
+    const Imath::Eulerf turn(0.3f, 0.5f, 0.7f);  // rounds vertices to either side of the walls' planes
+    for (V3f& vertex : scene.vertices) vertex = vertex * turn.toMatrix33();
+    ExportOptions options = at(6);
+    options.lightmap->shading = LightmapShading::gather;
+    options.lightmap->samples = 256;
+    const Lightmap lightmap = make_lightmap(scene, uniform(scene, expected), options);
+    for (const LightmapChart& chart : lightmap.charts)
+        for (int row = -2; row < chart.rows + 2; ++row)
+            for (int column = -2; column < chart.columns + 2; ++column) {
+                const Image& image = lightmap.images[static_cast<std::size_t>(chart.page)];
+                ASSERT_NEAR(image.at(chart.left + column, chart.top + row).x, expected, 0.1f * expected);
+            }
+}
+
+}  // namespace
+}  // namespace interflect

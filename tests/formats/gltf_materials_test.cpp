@@ -1,0 +1,271 @@
+// What surfaces of a glTF file do with light: factors, textures, metals, glass and masks.
+//
+// Seen to fail when metals reflect, when colours are not decoded from sRGB, when v is not flipped, and when a texture
+// transform turns the wrong way.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "interflect/image/srgb.h"
+#include "interflect/image_files.h"
+#include "tests/formats/gltf_builder.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using namespace testing_support;
+
+/// The bytes of an image file. @param pixels  Linear; 8 bit values.
+std::string encoded(const std::vector<Rgb>& pixels, int width, const char* extension = ".png") {
+    Image image(width, static_cast<int>(pixels.size()) / width);
+    image.pixels = pixels;
+    const TemporaryFolder folder;
+    const auto path = folder.path() / (std::string("image") + extension);
+    write_image(path, image);
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+Rgb srgb(int r, int g, int b) {
+    const auto linear = [](int value) { return srgb_decode(static_cast<float>(value) / 255); };
+    return {linear(r), linear(g), linear(b)};
+}
+
+json diffuse(const json& more = json::object()) {
+    json material = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
+    material["pbrMetallicRoughness"].update(more);
+    return material;
+}
+
+Material material_of(const json& material, std::vector<std::string>* kinds = nullptr) {
+    GltfBuilder file;
+    file.add_triangle(material);
+    const Scene scene = file.read();
+    if (kinds) *kinds = warning_kinds(scene);
+    return scene.materials[scene.patches.at(0).material];
+}
+
+void expect_close(const Rgb& found, const Rgb& expected) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-5f) << "channel " << c;
+}
+
+TEST(GltfMaterials, BaseColourIsReflectance) {
+    std::vector<std::string> kinds;
+    const Material material = material_of(diffuse({{"baseColorFactor", {0.5, 0.25, 0.125, 1}}}), &kinds);
+    expect_close(material.reflectance, {0.5f, 0.25f, 0.125f});
+    EXPECT_EQ(material.exitance, Rgb(0));
+    EXPECT_THAT(kinds, Not(Contains("specular-reflection")));
+}
+
+TEST(GltfMaterials, WhiteIsReducedTo99Percent) {
+    std::vector<std::string> kinds;
+    EXPECT_EQ(material_of(diffuse(), &kinds).reflectance, Rgb(0.99f));
+    EXPECT_THAT(kinds, Contains("reflectance-clamped"));
+}
+
+TEST(GltfMaterials, MetalsLoseTheirReflection) {
+    GltfBuilder file;
+    file.add_triangle({{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.8, 0.8, 1}}, {"metallicFactor", 0.75}}}});
+    const Scene scene = file.read();
+    expect_close(scene.materials[0].reflectance, Rgb(0.2f));
+    ASSERT_THAT(warning_kinds(scene), Contains("specular-reflection"));
+    EXPECT_THAT(scene.warnings.entries()[0].message, HasSubstr("75.0% of all"));
+}
+
+TEST(GltfMaterials, FacesWithoutOneAreGrey) {
+    GltfBuilder file;
+    file.add_triangle();
+    file.file["meshes"][0]["primitives"][0].erase("material");
+    const Scene scene = file.read();
+    EXPECT_EQ(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
+    EXPECT_THAT(warning_kinds(scene), Contains("no-material"));
+}
+
+TEST(GltfMaterials, UnlitOnesReflectAndDoNotEmit) {
+    json unlit = {{"emissiveFactor", {1, 1, 1}},
+                  {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}}},
+                  {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+    std::vector<std::string> kinds;
+    const Material material = material_of(unlit, &kinds);
+    expect_close(material.reflectance, Rgb(0.5f));
+    EXPECT_EQ(material.exitance, Rgb(0));
+    EXPECT_THAT(kinds, Contains("unlit"));
+}
+
+TEST(GltfMaterials, TransmissionIsThinGlass) {
+    json glass = diffuse({{"baseColorFactor", {0.8, 0.4, 0.2, 1}}});
+    glass["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.75;
+    const Material material = material_of(glass);
+    expect_close(material.reflectance, {0.2f, 0.1f, 0.05f});
+    expect_close(material.transmittance, {0.6f, 0.3f, 0.15f});
+}
+
+TEST(GltfMaterials, ClearGlassLetsAllThrough) {
+    json glass = diffuse();
+    glass["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+    expect_close(material_of(glass).transmittance, Rgb(1));
+}
+
+TEST(GltfMaterials, BlendedOnesCoverTheShareOfTheirAlpha) {
+    json veil = diffuse({{"baseColorFactor", {0.5, 0.5, 0.5, 0.25}}});
+    EXPECT_EQ(material_of(veil).transmittance, Rgb(0)) << "opaque, whatever its alpha";
+    veil["alphaMode"] = "BLEND";
+    expect_close(material_of(veil).reflectance, Rgb(0.125f));
+    expect_close(material_of(veil).transmittance, Rgb(0.75f));
+}
+
+TEST(GltfMaterials, MasksBelowTheirCutoffLeaveNothing) {
+    GltfBuilder file;
+    file.add_triangle();
+    file.add_triangle(diffuse({{"baseColorFactor", {1, 1, 1, 0.4}}}))["name"] = "masked";
+    file.file["materials"][1]["alphaMode"] = "MASK";
+    EXPECT_EQ(file.read().patches.size(), 2u);
+    file.file["materials"][1]["alphaCutoff"] = 0.3;
+    EXPECT_EQ(file.read().patches.size(), 4u);
+}
+
+/// Reflectance of the first patch at a texel of its texture.
+Rgb reflectance_at(const Scene& scene, std::size_t texel) {
+    const Material& material = scene.materials[scene.patches.at(0).material];
+    return material.reflectance * scene.textures.at(material.reflectance_texture).texels.at(texel);
+}
+
+/// A triangle with a texture of 2 x 2 pixels: (0, 0) of the file is its upper left one.
+class GltfTextures : public testing::Test {
+  protected:
+    const std::vector<Rgb> pixels = {srgb(10, 20, 30), srgb(40, 50, 60), srgb(70, 80, 90), srgb(100, 110, 120)};
+    GltfBuilder file;
+
+    void add_textured(json extra = json::object()) {
+        extra["index"] = file.add_image(encoded(pixels, 2));
+        file.add_triangle(diffuse({{"baseColorTexture", extra}}));
+    }
+};
+
+TEST_F(GltfTextures, AreDecodedFromSrgbWithTheUpperRowFirst) {
+    add_textured();
+    const Scene scene = file.read();
+    ASSERT_EQ(scene.textures.size(), 1u);
+    for (std::size_t i = 0; i < 4; ++i) expect_close(reflectance_at(scene, i), pixels[i]);
+    std::vector<V2f> found;
+    for (std::size_t k = 0; k < 3; ++k) found.push_back(scene.texture_coordinates[scene.patches[0].vertices[k]]);
+    EXPECT_THAT(found, ElementsAre(V2f(0, 1), V2f(1, 1), V2f(0, 0))) << "v goes up in a Scene";
+}
+
+TEST_F(GltfTextures, SharedByMaterialsAreOne) {
+    add_textured();
+    json& basis = file.file["materials"][0]["pbrMetallicRoughness"];
+    basis["baseColorFactor"] = {0.8, 0.8, 0.8, 1};
+    json other = file.file["materials"][0];
+    other["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 1};
+    file.add_triangle(other);
+    const Scene scene = file.read();
+    EXPECT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.materials.at(1).reflectance, Rgb(0.5f));
+}
+
+TEST_F(GltfTextures, JpegIsReadToo) {
+    const std::vector<Rgb> grey(64, srgb(128, 128, 128));
+    file.add_triangle(diffuse({{"baseColorTexture", {{"index", file.add_image(encoded(grey, 8, ".jpg"))}}}}));
+    const Scene scene = file.read();
+    for (std::size_t i = 0; i < grey.size(); ++i)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(reflectance_at(scene, i)[c], grey[0][c], 0.01f);
+}
+
+/// The specification's own example: the image's lower left quadrant, turned.
+TEST_F(GltfTextures, TransformScalesTurnsAndMoves) {
+    add_textured({{"extensions",
+                   {{"KHR_texture_transform",
+                     {{"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}}}}}});
+    const Scene scene = file.read();
+    std::vector<V2f> found;
+    for (std::size_t k = 0; k < 3; ++k) found.push_back(scene.texture_coordinates[scene.patches[0].vertices[k]]);
+    const std::vector<V2f> expected = {{0, 0}, {0, 0.5f}, {0.5f, 0}};
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((found[k] - expected[k]).length(), 1e-6f) << k << ": " << found[k];
+}
+
+TEST_F(GltfTextures, OfMetalReduceTheReflectance) {
+    add_textured();
+    const std::string metallic = encoded({Rgb(0), Rgb(0, 0, 1), Rgb(0), Rgb(1, 1, 0)}, 2);
+    json& rough = file.file["materials"][0]["pbrMetallicRoughness"];
+    rough["metallicFactor"] = 0.5;
+    rough["metallicRoughnessTexture"]["index"] = file.add_image(metallic);
+    const Scene scene = file.read();
+    expect_close(reflectance_at(scene, 1), pixels[1] * 0.5f);
+    expect_close(reflectance_at(scene, 3), pixels[3]);
+}
+
+TEST_F(GltfTextures, OfEmissionMultiplyTheExitance) {
+    json glow = diffuse();
+    glow["emissiveFactor"] = {1, 1, 1};
+    glow["emissiveTexture"]["index"] = file.add_image(encoded(pixels, 2));
+    file.add_triangle(glow);
+    const Scene scene = file.read();
+    const Material& material = scene.materials[scene.patches[0].material];
+    expect_close(material.exitance, Rgb(std::numbers::pi_v<float>));
+    ASSERT_EQ(material.exitance_texture, 0u);
+    expect_close(scene.textures[0].texels[2], pixels[2]);
+}
+
+TEST_F(GltfTextures, WithoutCoordinatesAreReplacedByTheirMean) {
+    add_textured();
+    file.file["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+    const Scene scene = file.read();
+    const Material& material = scene.materials[scene.patches[0].material];
+    EXPECT_FALSE(material.is_textured());
+    expect_close(material.reflectance, Rgb(pixels[0] + pixels[1] + pixels[2] + pixels[3]) * 0.25f);
+    EXPECT_THAT(warning_kinds(scene), Contains("texture-coordinates"));
+}
+
+TEST_F(GltfTextures, OfOtherCoordinatesThanTheEmissionAreReplacedByTheirMean) {
+    add_textured();
+    json& material = file.file["materials"][0];
+    material["emissiveFactor"] = {1, 1, 1};
+    material["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+    file.file["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+        file.add_coordinates({{0, 0.5f}, {0, 0}, {1, 1}});
+    const Scene scene = file.read();
+    const Material& found = scene.materials[scene.patches[0].material];
+    EXPECT_EQ(found.reflectance_texture, none);
+    EXPECT_EQ(found.exitance_texture, 0u);
+    EXPECT_EQ(scene.texture_coordinates[scene.patches[0].vertices[0]], V2f(0, 0.5f));
+    EXPECT_THAT(warning_kinds(scene), Contains("texture-coordinates"));
+}
+
+TEST_F(GltfTextures, ThatReflectAllAreReducedTo99Percent) {
+    file.add_triangle(diffuse({{"baseColorTexture", {{"index", file.add_image(encoded({Rgb(1), Rgb(0.5f)}, 2))}}}}));
+    const Scene scene = file.read();
+    EXPECT_NEAR(reflectance_at(scene, 0).x, 0.99f, 1e-5f);
+    EXPECT_NEAR(reflectance_at(scene, 1).x, 0.5f, 0.01f) << "only what is too much is reduced";
+    EXPECT_THAT(warning_kinds(scene), Contains("reflectance-clamped"));
+}
+
+TEST_F(GltfTextures, OfKtx2AreReplacedByTheirFallbackOrRefused) {
+    add_textured();
+    file.file["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
+    EXPECT_THAT(warning_kinds(file.read()), Contains("texture-format"));
+    file.file["textures"][0].erase("source");
+    EXPECT_THAT(file.fault(), HasSubstr("KHR_texture_basisu, which is not read"));
+}
+
+TEST_F(GltfTextures, ClampedBeyondTheirEdgesAreWarnedOf) {
+    add_textured();
+    file.file["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33071}}};
+    file.file["textures"][0]["sampler"] = 0;
+    EXPECT_THAT(warning_kinds(file.read()), IsEmpty()) << "within the image";
+    file.file["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        file.add_coordinates({{0, 0}, {2, 0}, {0, 1}});
+    EXPECT_THAT(warning_kinds(file.read()), ElementsAre("texture-wrap"));
+}
+
+}  // namespace
+}  // namespace interflect

@@ -1,0 +1,128 @@
+// Irradiance probes against light whose harmonics are known exactly.
+//
+// Seen to fail without the factors of the convolution, with unweighted quadrature, with x and y swapped, and when lamps
+// behind walls are not hidden.
+#include "interflect/probes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "interflect/error.h"
+#include "interflect/render/sphere_quadrature.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+constexpr float pi = std::numbers::pi_v<float>;
+
+ProbeGrid probes(const Scene& scene, const ProbeOptions& options = {}) {
+    SolveOptions solve_options;
+    solve_options.limits.rays = 200'000;
+    const RayCaster ray_caster(scene);
+    return irradiance_probes(scene, solve(scene, ray_caster, solve_options), ray_caster, options);
+}
+
+/// Nothing but a small black square, far below.
+Scene open_space() {
+    Scene scene;
+    scene.objects = {""};
+    add_rectangle(scene, {0, 0, -1000}, {0.01f, 0, 0}, {0, 0.01f, 0}, add_material(scene, Rgb(0), Rgb(0)));
+    add_rectangle(scene, {0, 0, 1}, {0, 0.001f, 0}, {0.001f, 0, 0}, 0);
+    return scene;
+}
+
+TEST(SphereQuadrature, IntegratesProductsOfHarmonicsExactly) {
+    for (int i = 0; i < 9; ++i)
+        for (int j = 0; j < 9; ++j) {
+            double sum = 0;
+            for (const auto& [direction, weight] : sphere_quadrature(4)) {
+                const auto basis = spherical_harmonics(direction);
+                sum += weight * basis[static_cast<std::size_t>(i)] * basis[static_cast<std::size_t>(j)];
+            }
+            EXPECT_NEAR(sum, i == j, 1e-5) << i << " " << j;
+        }
+}
+
+/// In a closed box of exitance M and reflectance 0 radiance is M / pi everywhere: E(n) = M, and all but Y00 vanish.
+TEST(Probes, OfAFurnaceAreUniform) {
+    const Scene scene = closed_box({1, 2, 3}, 1, {{"wall", Rgb(0), Rgb(1, 2, 4)}});
+    const ProbeGrid grid = probes(scene, {.spacing = 1, .rays = 128});
+    ASSERT_EQ(grid.count, (std::array{1, 2, 3}));
+    ASSERT_EQ(grid.probes.size(), 6u);
+    EXPECT_EQ(grid.first, Imath::V3d(0.5, 0.5, 0.5));
+    EXPECT_EQ(grid.step, Imath::V3d(1, 1, 1));
+    for (const IrradianceProbe& probe : grid.probes) {
+        EXPECT_FALSE(probe.is_inside);
+        for (int c = 0; c < 3; ++c) {
+            const float exitance = static_cast<float>(1 << c);
+            EXPECT_NEAR(probe.coefficients[0][c], exitance * std::sqrt(4 * pi), 1e-5f * exitance);
+            for (std::size_t k = 1; k < 9; ++k) EXPECT_NEAR(probe.coefficients[k][c], 0, 1e-5f * exitance);
+            EXPECT_NEAR(probe.irradiance(V3f(0.6f, 0, -0.8f))[c], exitance, 1e-5f * exitance);
+        }
+    }
+}
+
+/// Parallel light of irradiance E from direction w: E_lm = A_l Y_lm(w) E, so facing it the nine terms give
+/// E (1/4 + 1/2 + 5/16) = 17/16 E, and away from it E (1/4 - 1/2 + 5/16) = E / 16 (Ramamoorthi and Hanrahan 2001).
+TEST(Probes, OfParallelLightHaveItsHarmonics) {
+    Scene scene = open_space();
+    const V3f towards = V3f(1, 2, 2) / 3;
+    scene.luminaires = {{"sun", 0, DirectionalLight{-towards, Rgb(3, 6, 9)}}};
+    const IrradianceProbe probe = probes(scene, {.spacing = 1e4f, .rays = 8}).probes[0];
+    const auto basis = spherical_harmonics(towards);
+    const std::array factors{pi, 2 * pi / 3, pi / 4};
+    for (std::size_t k = 0; k < 9; ++k)
+        EXPECT_NEAR(probe.coefficients[k].y, 6 * basis[k] * factors[k == 0 ? 0 : k < 4 ? 1 : 2], 1e-4f) << k;
+    EXPECT_NEAR(probe.irradiance(towards).x, 3 * 17 / 16.0f, 1e-4f);
+    EXPECT_NEAR(probe.irradiance(-towards).z, 9 / 16.0f, 1e-4f);
+    EXPECT_FALSE(probe.is_inside);
+}
+
+/// A hemisphere of radiance L above the horizon, 0 below: E(up) = pi L, E(down) = 0 and E(sideways) = pi L / 2; degrees
+/// 0 to 2 have all of the light but for odd degrees of no weight, since the next even one of a hemisphere vanishes.
+TEST(Probes, OfASkyOverBlackGroundTellUpFromDown) {
+    Scene scene = closed_box({1e3f, 1e3f, 1}, 1, {{"wall", Rgb(0), Rgb(0)}});
+    scene.patches.resize(5);  // without the ceiling
+    scene.luminaires = {{"sky", 0, UniformSky{Rgb(1)}}};
+    const IrradianceProbe probe = probes(scene, {.spacing = 1e4f, .rays = 20'000}).probes[0];
+    EXPECT_NEAR(probe.irradiance({0, 0, 1}).x, pi, 0.02f);
+    EXPECT_NEAR(probe.irradiance({0, 0, -1}).x, 0, 0.02f);
+    EXPECT_NEAR(probe.irradiance({1, 0, 0}).x, pi / 2, 0.02f);
+    EXPECT_NEAR(probe.irradiance({0, 1, 0}).x, pi / 2, 0.02f);
+}
+
+TEST(Probes, DoNotSeeLampsBehindWalls) {
+    Scene scene = closed_box({2, 1, 1}, 1, {{"wall", Rgb(0), Rgb(0)}});
+    add_rectangle(scene, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0, 1, 1, true);
+    scene.luminaires = {{"lamp", 0, PointLight{{0.75f, 0.5f, 0.5f}, Rgb(1)}}};
+    const ProbeGrid grid = probes(scene, {.spacing = 1, .rays = 8});
+    ASSERT_EQ(grid.probes.size(), 2u);
+    EXPECT_NEAR(grid.probes[0].irradiance({1, 0, 0}).x, 16 * 17 / 16.0f, 1e-3f) << "1 cd in 0.25 m";
+    EXPECT_EQ(grid.probes[1].coefficients[0], Rgb(0));
+    EXPECT_FALSE(grid.probes[0].is_inside);
+    EXPECT_TRUE(grid.probes[1].is_inside) << "in the dark";
+}
+
+TEST(Probes, AreFlaggedInsideSolids) {
+    Scene scene = closed_box({3, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
+    add_box(scene, {1.2f, 0.1f, 0.1f}, {1.8f, 0.9f, 0.9f}, 0);
+    const ProbeGrid grid = probes(scene, {.spacing = 1, .rays = 128});
+    ASSERT_EQ(grid.probes.size(), 3u);
+    EXPECT_FALSE(grid.probes[0].is_inside);
+    EXPECT_TRUE(grid.probes[1].is_inside);
+    EXPECT_FALSE(grid.probes[2].is_inside);
+}
+
+TEST(Probes, RefuseOptionsOutOfRange) {
+    const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0), Rgb(1)}});
+    for (const ProbeOptions& options : {ProbeOptions{.spacing = 0}, ProbeOptions{.spacing = std::nanf("")},
+                                        ProbeOptions{.spacing = 0.001f}, ProbeOptions{.rays = 7}})
+        EXPECT_THROW(probes(scene, options), InputError);
+}
+
+}  // namespace
+}  // namespace interflect
