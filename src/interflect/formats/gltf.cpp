@@ -102,7 +102,7 @@ class SceneReader {
         GltfPose pose;
         pose.weights = node.value->numbers("weights");
         pose.skin = node.value->index("skin", skins_.size());
-        if (pose.skin != none) pose.joints = joints_of(skins_[pose.skin]);
+        if (pose.skin != none) pose.joints = joints_of(pose.skin);
         const std::vector<std::uint32_t>& primitives = meshes_.meshes(mesh, pose);
         if (primitives.empty()) return;
         // The joints place a skinned mesh in the world; its node does not.
@@ -150,8 +150,11 @@ class SceneReader {
     }
 
     /// From a skinned mesh to the world, for each joint.
-    std::vector<M44d> joints_of(const GltfValue& skin) {
-        std::vector<M44d> result;
+    const std::vector<M44d>& joints_of(std::uint32_t index) {
+        const auto [entry, is_new] = joints_.try_emplace(index);
+        std::vector<M44d>& result = entry->second;
+        if (!is_new) return result;
+        const GltfValue& skin = skins_[index];
         for (const std::uint32_t joint : skin.indices("joints", nodes_.count()))
             result.push_back(nodes_.to_world(joint));
         const std::uint32_t inverse = skin.index("inverseBindMatrices", accessors_.count());
@@ -175,6 +178,7 @@ class SceneReader {
     GltfNodes nodes_;
     GltfLights lights_;
     std::vector<GltfValue> skins_;
+    std::map<std::uint32_t, std::vector<M44d>> joints_;  // of the skins that are shown
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };
 

@@ -93,11 +93,6 @@ GltfAsset::GltfAsset(const fs::path& path, const ReadOptions& options, const nlo
     model.files.push_back(path.string());
 }
 
-bool GltfAsset::requires_extension(const char* name) const {
-    const auto required = root_.texts("extensionsRequired");
-    return std::find(required.begin(), required.end(), name) != required.end();
-}
-
 void GltfAsset::warn(const char* kind, const std::string& message, const std::string& place) {
     model.warnings.add(kind, message, path().string() + ": " + place);
 }

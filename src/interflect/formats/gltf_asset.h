@@ -28,7 +28,6 @@ class GltfAsset {
     const GltfValue& root() const { return root_; }
     const ReadOptions& options() const { return options_; }
     const std::filesystem::path& path() const { return model.file; }
-    bool requires_extension(const char* name) const;
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -13,9 +14,9 @@ namespace interflect::inline detail {
 
 /// How a mesh is deformed before it is placed.
 struct GltfPose {
-    std::vector<double> weights;      ///< Of its morph targets; empty: the mesh's own.
-    std::uint32_t skin = none;        ///< Tells poses apart, for the cache.
-    std::vector<Imath::M44d> joints;  ///< Of the skin: from the mesh to the world.
+    std::vector<double> weights;          ///< Of its morph targets; empty: the mesh's own.
+    std::uint32_t skin = none;            ///< Tells poses apart, for the cache.
+    std::span<const Imath::M44d> joints;  ///< Of the skin: from the mesh to the world.
 };
 
 /// The meshes of a glTF file, each read in each pose when a node first asks for it.
