@@ -7,14 +7,16 @@
 namespace interflect {
 namespace {
 
-/// A two-sided square and a one-sided one; patches 0 and 1 are the sides of the first.
-Scene two_squares(float exitance = 0) {
+/// A two-sided square and a one-sided one above it; patches 0 and 1 are the sides of the first.
+Scene two_squares(float exitance = 0, float height = 1) {
     Scene scene;
     scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    for (std::size_t i = 0; i < 4; ++i) scene.vertices.push_back(scene.vertices[i] + V3f(0, 0, height));
+    scene.objects = {""};
     scene.materials = {{.name = "grey", .reflectance = Rgb(0.5f), .exitance = Rgb(exitance)}};
-    const std::vector<std::uint32_t> loop{0, 1, 2, 3};
-    add_polygon(scene, {&loop, 1}, 0, 0, true);
-    add_polygon(scene, {&loop, 1}, 0, 0, false);
+    const std::vector<std::uint32_t> lower{0, 1, 2, 3}, upper{4, 5, 6, 7};
+    add_polygon(scene, {&lower, 1}, 0, 0, true);
+    add_polygon(scene, {&upper, 1}, 0, 0, false);
     return scene;
 }
 
@@ -40,6 +42,11 @@ INSTANTIATE_TEST_SUITE_P(Of, ShownPatches,
 
 TEST(ShownPatchesOfALamp, AreBothThoughNothingLightsThem) {
     EXPECT_EQ(shown_patches(two_squares(100), std::vector<Rgb>(3, Rgb(0))), std::vector<bool>(3, true));
+}
+
+TEST(ShownPatchesOfCoincidentFaces, AreThoseThatAnswerRays) {
+    const Scene scene = two_squares(0, 0);
+    EXPECT_EQ(shown_patches(scene, std::vector<Rgb>(3, Rgb(1))), (std::vector<bool>{true, true, false}));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ class Addon(unittest.TestCase):
             out = Path(folder, "found.json")
             done = subprocess.run(
                 ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", INSIDE, "--", case, command, out],
-                env={**os.environ, "BLENDER_USER_SCRIPTS": str(Path(folder, "scripts"))},
+                # Blender takes its modules from any python3 that comes first.
+                env={"HOME": folder, "PATH": "/usr/bin:/bin", "BLENDER_USER_SCRIPTS": str(Path(folder, "scripts"))},
                 capture_output=True,
                 text=True,
                 timeout=300,

@@ -22,7 +22,7 @@ class glTF2ImportUserExtension:
         if lightmap:
             self._light_by_image(material, lightmap, notes, importer)
         elif vertex_color:
-            _light_by_vertices(material, vertex_color, notes)
+            _undo_exposure(material, notes)
 
     def _light_by_image(self, material, lightmap, notes, importer):
         """Emits reflectance / pi times the irradiance that the unclamped image has, beside what emits by itself."""
@@ -64,13 +64,12 @@ class glTF2ImportUserExtension:
         return self.images[name]
 
 
-def _light_by_vertices(material, vertex_color, notes):
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    colour, emission = nodes.new("ShaderNodeVertexColor"), nodes.new("ShaderNodeEmission")
-    colour.layer_name = vertex_color
-    links.new(colour.outputs["Color"], emission.inputs["Color"])
+def _undo_exposure(material, notes):
+    """Of vertex colours: the importer shows them, times the texture if there is one, as they are in the file."""
+    nodes = material.node_tree.nodes
+    emission = next(node for node in nodes if node.type == "EMISSION")
     emission.inputs["Strength"].default_value = 2 ** -notes["exposure"]
-    _output(nodes, links, emission)
+    _output(nodes, material.node_tree.links, emission)
 
 
 def _output(nodes, links, shader):

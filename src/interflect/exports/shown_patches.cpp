@@ -1,5 +1,7 @@
 #include "interflect/exports/shown_patches.h"
 
+#include "interflect/ray_caster.h"
+
 namespace interflect::inline detail {
 
 std::vector<bool> shown_patches(const Scene& scene, std::span<const Rgb> irradiance) {
@@ -7,10 +9,12 @@ std::vector<bool> shown_patches(const Scene& scene, std::span<const Rgb> irradia
         return largest_channel(irradiance[p]) == 0 &&
                largest_channel(scene.materials[scene.patches[p].material].exitance) == 0;
     };
+    const RayCaster ray_caster(scene);
     std::vector<bool> shown(scene.patches.size(), true);
     for (std::uint32_t p = 0; p < shown.size(); ++p) {
         const std::uint32_t other = scene.patches[p].other_side;
         if (other != none && is_dark(p)) shown[p] = is_dark(other) && p < other;
+        if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
     }
     return shown;
 }

@@ -7,9 +7,9 @@
 
 namespace interflect::inline detail {
 
-/// Which patches a picture of the light needs: all but the sides of faces from which no light comes while some comes
-/// from the other side, or from neither. Nobody sees the insides of closed bodies, and in renderers that do not tell
-/// the sides apart they would cover what is lit.
+/// Which patches a picture of the light needs: all but those that coincident faces cover wholly
+/// (RayCaster::uncovered_share), and but the dark sides of faces, of which one dark on both sides keeps its first. They
+/// would show through along the edges of what is lit, and in its place where a renderer draws both sides of a face.
 /// @param irradiance  Of every element, patches first.
 std::vector<bool> shown_patches(const Scene& scene, std::span<const Rgb> irradiance);
 
