@@ -59,7 +59,9 @@ def measure() -> None:
         results.write_csv(TABLE, rows, rows[-1])
 
 
-def pictures(command: program.Program, folder: Path, scene: str, views: str | None, options: list[str]) -> list[np.ndarray]:
+def pictures(
+    command: program.Program, folder: Path, scene: str, views: str | None, options: list[str]
+) -> list[np.ndarray]:
     """Of the first view: ours, and that of Cycles."""
     if views:
         (folder / "scene.mgf").write_text(scene)
@@ -69,13 +71,15 @@ def pictures(command: program.Program, folder: Path, scene: str, views: str | No
         program.run(command, [*scene.split(), "-o", str(folder / "scene.mgf")])
         scene = str(folder / "scene.mgf")
     files = [folder / "ours.exr", folder / "cycles.exr"]
-    drawing = [*options, *SIZE.split(), "--samples", str(SAMPLES)]
+    drawing = [*options, *SIZE.split()]
     information = json.loads(program.run(command, ["info", scene, *options, "--json"]).output)
     first = information["views"][0]["name"]
-    program.run(command, ["render", scene, "--view", first, "--shading", "path", "--no-mirrors", *drawing, "-o", str(files[0])])
-    program.run(command, ["export", scene, *options, *SIZE.split(), "--pixel-samples", str(SAMPLES), "-o", str(folder / "scene.py")])
-    script = ["blender", "--background", "--python-exit-code", "1", "--python", str(folder / "scene.py"), "--", str(files[1])]
-    finished = subprocess.run(script, capture_output=True, text=True)
+    ours = ["--view", first, "--shading", "path", "--no-mirrors", "--samples", str(SAMPLES), "-o", str(files[0])]
+    program.run(command, ["render", scene, *drawing, *ours])
+    exported = ["--pixel-samples", str(SAMPLES), "-o", str(folder / "scene.py")]
+    program.run(command, ["export", scene, *drawing, *exported])
+    script = ["blender", "--background", "--python-exit-code", "1", "--python", str(folder / "scene.py")]
+    finished = subprocess.run([*script, "--", str(files[1])], capture_output=True, text=True)
     if finished.returncode != 0 or not files[1].is_file():
         raise program.ExperimentError(f"blender failed:\n{finished.stdout[-1000:]}{finished.stderr[-1000:]}")
     return [read_exr(file) for file in files]
@@ -88,9 +92,8 @@ def blocks(picture: np.ndarray) -> np.ndarray:
 
 
 def draw() -> None:
-    lines = [
-        [row["scene"], f"{row['ratio_of_means'] - 1:+.2%}", f"{row['block_rmse']:.2%}"] for row in results.read_csv(TABLE)
-    ]
+    rows = results.read_csv(TABLE)
+    lines = [[row["scene"], f"{row['ratio_of_means'] - 1:+.2%}", f"{row['block_rmse']:.2%}"] for row in rows]
     results.write_table(program.ROOT / "docs/figures/exports.md", ["scene", "mean", "blocks of 9 x 9 pixels"], lines)
 
 

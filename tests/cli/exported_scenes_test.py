@@ -94,6 +94,7 @@ class Meshes(Exported):
         script = """if True:
             import h5py, numpy
             from vtkmodules.util.numpy_support import vtk_to_numpy
+            from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
             from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
             reader = vtkXMLUnstructuredGridReader()
             reader.SetFileName("room.vtu")
@@ -107,11 +108,19 @@ class Meshes(Exported):
                 for name in names:
                     stored = file["solution"][name][:][element]
                     assert numpy.array_equal(vtk_to_numpy(cells.GetArray(name)), stored), name
-                patches = file["scene/patches"][:]
+                patches, vertices = file["scene/patches"][:], file["scene/vertices"][:]
             patch = vtk_to_numpy(cells.GetArray("patch"))
             assert numpy.array_equal(vtk_to_numpy(cells.GetArray("material")), patches[patch, 4])
             level = vtk_to_numpy(cells.GetArray("level"))
             assert ((level == 0) == (element < len(patches))).all()
+            assert len(set(element)) == len(element)
+            sizes = vtkCellSizeFilter()
+            sizes.SetInputData(grid)
+            sizes.Update()
+            a, b, c = (vertices[patches[patch, k]] for k in range(3))  # of rectangles
+            areas = numpy.linalg.norm(numpy.cross(b - a, c - b), axis=1) / 4.0**level
+            found = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Area"))
+            assert numpy.allclose(found, areas, rtol=1e-4), "cells are not the elements that they tell of"
             illuminance = vtk_to_numpy(grid.GetPointData().GetArray("illuminance"))
             assert (illuminance >= 0).all() and illuminance.max() > 0
             print(grid.GetNumberOfCells(), *grid.GetBounds())
@@ -167,7 +176,8 @@ class Scenes(Exported):
         sensors = scene.findall("sensor")
         self.assertEqual([s.find("float[@name='fov']").get("value") for s in sensors], ["45", "60"])
         self.assertEqual(sensors[0].find("string[@name='fov_axis']").get("value"), "y")
-        self.assertEqual(sensors[0].find("transform/lookat").attrib, {"origin": "0.3, 0.2, 1.6", "target": "1.2, 3, 1", "up": "0, 0, 1"})
+        look_at = {"origin": "0.3, 0.2, 1.6", "target": "1.2, 3, 1", "up": "0, 0, 1"}
+        self.assertEqual(sensors[0].find("transform/lookat").attrib, look_at)
         self.assertEqual(sensors[0].find("film/integer[@name='height']").get("value"), "48")
         radiance = scene.find("shape/emitter[@type='area']/rgb[@name='radiance']").get("value")
         for channel in radiance.split(", "):
@@ -195,20 +205,25 @@ class Scenes(Exported):
         self.assertEqual(len(polygons), 7)
         view = (self.folder / "room-view-1.vf").read_text()
         self.assertIn("-vv 60", view)
-        self.assertAlmostEqual(float(view.split("-vh ")[1].split()[0]), 2 * math.degrees(math.atan(4 / 3 * math.tan(math.radians(30)))), places=3)
-        self.interflect("render", "room.mgf", "--view-file", "room-view-1.vf", "-o", "x.hdr", "--shading", "path", "--samples", "2", "--size", "8x6")
+        horizontal = 2 * math.degrees(math.atan(4 / 3 * math.tan(math.radians(30))))
+        self.assertAlmostEqual(float(view.split("-vh ")[1].split()[0]), horizontal, places=3)
+        picture = ("-o", "x.hdr", "--shading", "path", "--samples", "2", "--size", "8x6")
+        self.interflect("render", "room.mgf", "--view-file", "room-view-1.vf", *picture)
 
     def test_blender_script_has_the_scene(self):
         text, stderr = self.export("room.py", "--size", "64x48")
-        calls = [node.value for node in ast.parse(text).body if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)]
+        statements = [node.value for node in ast.parse(text).body if isinstance(node, ast.Expr)]
+        calls = [value for value in statements if isinstance(value, ast.Call)]
         named = {call.func.id: call for call in calls if isinstance(call.func, ast.Name)}
         self.assertEqual(ast.literal_eval(named["camera"].args[0]), "view-1")
         lamp = named["mesh"].args[1]
-        self.assertEqual([ast.literal_eval(a) for a in (lamp.args[0], lamp.args[1], lamp.args[4])], ["lamp-one-sided", (0, 0, 0), "pass"])
+        values = [ast.literal_eval(lamp.args[k]) for k in (0, 1, 4)]
+        self.assertEqual(values, ["lamp-one-sided", (0, 0, 0), "pass"])
         self.assertNotIn("warning", stderr, "Cycles can have one-sided faces")
 
     def test_tells_what_it_leaves_out(self):
-        self.write("room.mgf", room().replace("sides 1", "sides 2") + "v bulb =\n\tp 1 1 1\nlight sky 5\nlight point bulb 3\n")
+        lights = "v bulb =\n\tp 1 1 1\nlight sky 5\nlight point bulb 3\n"
+        self.write("room.mgf", room().replace("sides 1", "sides 2") + lights)
         _, stderr = self.export("room.xml")
         self.assertIn("left out: emission of the backs", stderr)
         text, stderr = self.export("room.pbrt")

@@ -63,11 +63,11 @@ TEST_F(Provenance, HasTheChecksumsOfTheFilesThatWereRead) {
 
 TEST_F(Provenance, RefusesIterationsThatCannotBe) {
     std::vector<double> row = report_row(solved.solution.iterations[0]);
-    EXPECT_NO_THROW(report_of(row));
+    EXPECT_NO_THROW(report_of_row(row));
     row[1] = -1;
-    EXPECT_THROW(report_of(row), std::runtime_error);
+    EXPECT_THROW(report_of_row(row), std::runtime_error);
     row[1] = std::nan("");
-    EXPECT_THROW(report_of(row), std::runtime_error);
+    EXPECT_THROW(report_of_row(row), std::runtime_error);
 }
 
 /// The table of checksums has a line for all arrays of a group that are numbered.

@@ -114,6 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"OutOfRange", header("ascii") + square + "7 3 0 1 4", "a face has vertex 4, but there are 4"},
         BadText{"NegativeIndex", header("ascii") + square + "7 3 0 1 -1", "-1 is no number of a vertex"},
         BadText{"TwoVertices", header("ascii") + square + "7 2 0 1", "a face has 2 vertices"},
+        BadText{"EndlessList", header("ascii") + square + "7 1e21 0 1 2", "1e+21 is no length of a list"},
         BadText{"LongList", header("ascii") + square + "7 255 0 1 2", "ends within a list of 255"},
         BadText{"NaN", header("ascii") + "nan 0 0\n2 0 0\n2 1 0\n0 1 0\n" + face,
                 "expected a finite number, not 'nan'"},

@@ -183,6 +183,14 @@ TEST(Rad, WhatIsLeftOutIsCounted) {
     EXPECT_EQ(scene.warnings.entries()[0].where, "room.rad:13");
 }
 
+TEST(Rad, WhatACommandMayHaveDefinedIsGrey) {
+    const Scene scene = read("!gensky 6 21 12\nskyfunc glow sky 0 0 4 1 1 1 0\nsky source dome 0 0 4 0 0 1 180\n" +
+                             grey + "paint polygon p 0 0 9 0 0 0  1 0 0  0 1 0\n");
+    expect_near(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
+    EXPECT_EQ(scene.warnings.entries().back().kind, "unsupported-material");
+    EXPECT_EQ(scene.warnings.entries().back().where, "room.rad:8");
+}
+
 // ---- Files and transforms
 
 TEST(Rad, XformPlacesCopiesOfAFile) {

@@ -75,6 +75,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, con
     MappedPrimitives primitives;
     std::vector<MeshTriangle> triangles;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        if (lightmap.chart_of_patch[p] == none) continue;
         triangles.clear();
         mesh.triangulate(p, triangles);
         const Patch& patch = scene.patches[p];

@@ -7,6 +7,7 @@
 #include "interflect/base/escapes.h"
 #include "interflect/exports/element_mesh.h"
 #include "interflect/exports/gltf_scene.h"
+#include "interflect/exports/shown_patches.h"
 #include "interflect/exports/welded_vertices.h"
 #include "interflect/geometry/texture_mapping.h"
 
@@ -91,11 +92,14 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Scene& sc
 /// By object and material.
 using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
 
-LitPrimitives primitives_of(const Scene& scene, const ElementForest& forest, ElementMesh& mesh, float exposure) {
+LitPrimitives primitives_of(const Scene& scene, const Solution& solution, ElementMesh& mesh, float exposure) {
+    const ElementForest& forest = *solution.forest;
+    const std::vector<bool> shown = shown_patches(scene, solution.irradiance);
     const VertexLight light(scene, exposure);
     LitPrimitives primitives;
     std::vector<MeshTriangle> triangles;
     for (const std::uint32_t leaf : forest.leaves()) {
+        if (!shown[forest.patch(leaf)]) continue;
         triangles.clear();
         mesh.triangulate(leaf, triangles);
         const Patch& patch = scene.patches[forest.patch(leaf)];
@@ -114,7 +118,7 @@ void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution
     GltfTextures textures(document, scene);
     std::map<std::uint32_t, int> materials;
     GltfPrimitives written;
-    for (const auto& [key, primitive] : primitives_of(scene, *solution.forest, mesh, options.exposure)) {
+    for (const auto& [key, primitive] : primitives_of(scene, solution, mesh, options.exposure)) {
         const auto& [object, material] = key;
         const auto [entry, is_new] = materials.try_emplace(material, 0);
         if (is_new) entry->second = add_material(document, textures, scene, scene.materials[material]);

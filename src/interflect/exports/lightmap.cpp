@@ -11,6 +11,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/exports/lightmap_atlas.h"
+#include "interflect/exports/shown_patches.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/measure.h"
@@ -233,7 +234,8 @@ V2f Lightmap::coordinate(std::uint32_t patch, const V3f& x) const {
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     const LightmapOptions& chosen = *options.lightmap;
     Lightmap lightmap;
-    lightmap.charts = make_charts(scene, chosen.texels_per_metre, chosen.max_size - 2 * chosen.gutter);
+    lightmap.charts = make_charts(scene, shown_patches(scene, solution.irradiance), chosen.texels_per_metre,
+                                  chosen.max_size - 2 * chosen.gutter);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
     double texels = 0;
     for (const Imath::V2i& size : pack_charts(lightmap.charts, chosen.gutter, chosen.max_size)) {

@@ -11,7 +11,7 @@ namespace interflect::inline detail {
 /// The light of a solved scene in images.
 struct Lightmap {
     std::vector<LightmapChart> charts;
-    std::vector<std::uint32_t> chart_of_patch;  ///< Of each patch.
+    std::vector<std::uint32_t> chart_of_patch;  ///< Of each patch; none where it is not shown (shown_patches).
     std::vector<Image> images;  ///< H [lm/m^2] or L [cd/m^2], see LightmapOptions::content; 0 between the charts.
     double used = 0;            ///< Share of the texels that belong to a chart or to its gutter.
     double covered = 0;         ///< Share of the texels that lie on a chart's patches.

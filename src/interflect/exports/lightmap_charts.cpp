@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <span>
+#include <tuple>
 #include <utility>
 
 #include "interflect/geometry/box_tree.h"
@@ -34,7 +35,7 @@ class Neighbourhood {
         std::vector<Intervals> inner(4 * scene.patches.size());
         const auto join = [&](const SmoothSurfaces::Seam& seam) {
             const std::uint32_t p = seam.edge[0] / 4, q = seam.edge[1] / 4;
-            if (!in_one_plane(p, q)) return;
+            if (side(p) != side(q)) return;
             neighbours_[p].push_back(q);
             neighbours_[q].push_back(p);
             for (std::size_t k = 0; k < 2; ++k) inner[seam.edge[k]].emplace_back(seam.from[k], seam.to[k]);
@@ -53,15 +54,15 @@ class Neighbourhood {
             if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
     }
 
-    bool in_one_plane(std::uint32_t p, std::uint32_t q) const {
-        return surface_[p] == surface_[q] && is_back(p) == is_back(q);
+    /// Which side of which flat surface a patch is part of.
+    std::uint64_t side(std::uint32_t p) const {
+        const bool is_back = scene_.patches[p].other_side < p;
+        return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
     }
     const std::vector<std::uint32_t>& neighbours(std::uint32_t patch) const { return neighbours_[patch]; }
     const std::vector<BorderEdge>& border() const { return border_; }
 
   private:
-    bool is_back(std::uint32_t p) const { return scene_.patches[p].other_side < p; }
-
     using Intervals = std::vector<std::pair<float, float>>;
 
     /// @param inner  The parts of the edge across which others continue it, in parameters along it.
@@ -108,11 +109,11 @@ bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
 }
 
-/// Of each patch those that must be in other charts.
-std::vector<std::vector<std::uint32_t>> find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood,
-                                                       double width) {
-    const std::vector<BorderEdge>& border = neighbourhood.border();
-    const auto box_of = [&](const BorderEdge& edge, float margin) {
+using Conflicts = std::vector<std::vector<std::uint32_t>>;
+
+/// Adds the conflicts between the patches of one side of a flat surface. @param border  All of its edges.
+void add_conflicts(std::span<const BorderEdge> border, float gap, Conflicts& conflicts) {
+    const auto box_of = [](const BorderEdge& edge, float margin) {
         Imath::Box3f box(edge.a);
         box.extendBy(edge.b);
         return Imath::Box3f(box.min - V3f(margin), box.max + V3f(margin));
@@ -120,37 +121,48 @@ std::vector<std::vector<std::uint32_t>> find_conflicts(const Scene& scene, const
     std::vector<Boxed> tree;
     for (std::uint32_t i = 0; i < border.size(); ++i) tree.push_back({box_of(border[i], 0), i});
     arrange_box_tree(tree);
-    std::vector<std::vector<std::uint32_t>> conflicts(scene.patches.size());
-    const auto gap = static_cast<float>(width);
     for (const BorderEdge& edge : border) {
-        const Imath::Box3f reach = box_of(edge, gap);
-        visit_box_tree(
-            std::span<const Boxed>(tree), [&](const Imath::Box3f& box) { return box.intersects(reach); },
-            [&](std::uint32_t j) {
-                const BorderEdge& other = border[j];
-                if (other.patch != edge.patch && neighbourhood.in_one_plane(edge.patch, other.patch) &&
-                    are_across_a_gap(edge, other, gap))
-                    conflicts[edge.patch].push_back(other.patch);
-            });
+        const auto is_near = [reach = box_of(edge, gap)](const Imath::Box3f& box) { return box.intersects(reach); };
+        visit_box_tree(std::span<const Boxed>(tree), is_near, [&](std::uint32_t j) {
+            if (border[j].patch != edge.patch && are_across_a_gap(edge, border[j], gap))
+                conflicts[edge.patch].push_back(border[j].patch);
+        });
+    }
+}
+
+/// Of each patch those that must be in other charts.
+Conflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood, double width) {
+    std::vector<BorderEdge> border = neighbourhood.border();
+    const auto side = [&](const BorderEdge& edge) { return neighbourhood.side(edge.patch); };
+    std::stable_sort(border.begin(), border.end(),
+                     [&](const BorderEdge& a, const BorderEdge& b) { return side(a) < side(b); });
+    Conflicts conflicts(scene.patches.size());
+    for (auto first = border.begin(); first != border.end();) {
+        const auto end =
+            std::find_if(first, border.end(), [&](const BorderEdge& edge) { return side(edge) != side(*first); });
+        add_conflicts(std::span<const BorderEdge>(first, end), static_cast<float>(width), conflicts);
+        first = end;
     }
     return conflicts;
 }
 
 /// Grows each chart from a patch across its neighbours, as far as there is no conflict.
-std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, double width) {
+std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, const std::vector<bool>& shown,
+                                                      double width) {
     const Neighbourhood neighbourhood(scene);
     const auto conflicts = find_conflicts(scene, neighbourhood, width);
     std::vector<std::uint32_t> chart(scene.patches.size(), none);
     std::vector<std::vector<std::uint32_t>> groups;
     for (std::uint32_t seed = 0; seed < chart.size(); ++seed) {
-        if (chart[seed] != none) continue;
+        if (chart[seed] != none || !shown[seed]) continue;
         const auto number = static_cast<std::uint32_t>(groups.size());
         std::vector<std::uint32_t> group{seed};
         chart[seed] = number;
         for (std::size_t i = 0; i < group.size(); ++i)
             for (const std::uint32_t next : neighbourhood.neighbours(group[i])) {
                 const auto is_here = [&](std::uint32_t other) { return chart[other] == number; };
-                if (chart[next] != none || std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
+                if (chart[next] != none || !shown[next] ||
+                    std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
                     continue;
                 chart[next] = number;
                 group.push_back(next);
@@ -242,9 +254,10 @@ LightmapChart chart_of(const Scene& scene, std::vector<std::uint32_t> patches, d
 
 }  // namespace
 
-std::vector<LightmapChart> make_charts(const Scene& scene, double texels_per_metre, int most_texels) {
+std::vector<LightmapChart> make_charts(const Scene& scene, const std::vector<bool>& shown, double texels_per_metre,
+                                       int most_texels) {
     std::vector<LightmapChart> charts;
-    for (auto& patches : group_patches(scene, narrow_gap / texels_per_metre))
+    for (auto& patches : group_patches(scene, shown, narrow_gap / texels_per_metre))
         charts.push_back(chart_of(scene, std::move(patches), texels_per_metre, most_texels));
     return charts;
 }

@@ -30,10 +30,12 @@ struct LightmapChart {
     }
 };
 
-/// Charts of all patches: flat surfaces (flat_surfaces.h), divided where light is discontinuous within them. Two sides
+/// Charts of flat surfaces (flat_surfaces.h), divided where light is discontinuous within them. Two sides
 /// of a gap or a contact that is narrower than two texels are in different charts, so that no texel mixes them.
+/// @param shown  Which patches get a chart.
 /// @param texels_per_metre  At least, in each direction. @param most_texels  Of a side: wider charts get fewer a metre.
 /// Cost: O(n log n) in the number of patches n.
-std::vector<LightmapChart> make_charts(const Scene& scene, double texels_per_metre, int most_texels);
+std::vector<LightmapChart> make_charts(const Scene& scene, const std::vector<bool>& shown, double texels_per_metre,
+                                       int most_texels);
 
 }  // namespace interflect::inline detail

@@ -184,7 +184,7 @@ void read_history(const Hdf5Reader& file, Solution& solution) {
     if (numbers.empty()) return;
     solution.iterations.clear();
     for (std::span<const double> left = numbers; !left.empty(); left = left.subspan(columns))
-        solution.iterations.push_back(report_of(left.first(columns)));
+        solution.iterations.push_back(report_of_row(left.first(columns)));
 }
 
 std::string group_dataset(std::size_t group) { return fmt::format("/solution/groups/{}", group); }

@@ -230,7 +230,7 @@ std::vector<double> report_row(const IterationReport& report) {
     return row;
 }
 
-IterationReport report_of(std::span<const double> row) {
+IterationReport report_of_row(std::span<const double> row) {
     IterationReport report;
     for_each_number(report, RowReader{row});
     return report;

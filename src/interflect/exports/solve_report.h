@@ -29,7 +29,7 @@ IterationReport report_of(const Json& json);
 std::vector<std::string> report_columns();
 std::vector<double> report_row(const IterationReport& report);
 /// The inverse. @param row  As many numbers as there are columns. @throws std::runtime_error for one that cannot be.
-IterationReport report_of(std::span<const double> row);
+IterationReport report_of_row(std::span<const double> row);
 
 /// A view, with world coordinates in double precision.
 Json json_of(const View& view);

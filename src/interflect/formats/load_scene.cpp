@@ -10,6 +10,7 @@
 
 #include "interflect/base/crc32.h"
 #include "interflect/error.h"
+#include "interflect/formats/checked_options.h"
 #include "interflect/formats/extension.h"
 #include "interflect/formats/gltf.h"
 #include "interflect/formats/mgf.h"
@@ -128,7 +129,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
         return maze;
     }
     require_regular_file(path);
-    Scene scene = format_of(path).read(path, options);
+    Scene scene = format_of(path).read(path, checked(options));
     warn_of_size(scene);
     add_luminaires(scene, luminaires, options);
     add_daylight(scene, added);

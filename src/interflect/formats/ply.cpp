@@ -62,7 +62,7 @@ class PlyReader {
 
     std::uint64_t list_length(const PlyProperty& property) {
         const double length = values_.next(*property.count_type);
-        if (!(length >= 0) || length != std::floor(length))
+        if (!(length >= 0 && length < none) || length != std::floor(length))
             throw std::invalid_argument(fmt::format("{} is no length of a list", length));
         const auto count = static_cast<std::uint64_t>(length);
         if (!values_.may_hold(count, count * size_of(property.type)))

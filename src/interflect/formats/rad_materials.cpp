@@ -13,6 +13,9 @@ namespace interflect::inline detail {
 
 namespace {
 
+/// Of a modifier that a command which was left out may define: no file can have a type with this name.
+constexpr std::string_view missing_type = "of a command";
+
 /// The first three numbers. @throws std::invalid_argument  for negative ones
 Rgb colour_of(const RadPrimitive& p) {
     Rgb colour;
@@ -79,6 +82,7 @@ const std::unordered_map<std::string_view, RadMaterials::Type>& RadMaterials::ty
         {"BSDF", unknown_type},
         {"aBSDF", unknown_type},
         {"WGMDfunc", unknown_type},
+        {missing_type, unknown_type},
         {"texfunc", pattern_type},
         {"texdata", pattern_type},
         {"brightfunc", pattern_type},
@@ -101,31 +105,38 @@ const std::unordered_map<std::string_view, RadMaterials::Type>& RadMaterials::ty
     return table;
 }
 
-bool RadMaterials::is_modifier(std::string_view type) { return type == "alias" || types().contains(type); }
+bool RadMaterials::is_modifier(std::string_view type) {
+    return type == "alias" || (type != missing_type && types().contains(type));
+}
 
-std::uint32_t RadMaterials::find(std::string_view name) const {
+std::uint32_t RadMaterials::find(std::string_view name, const Location& where) {
     if (name == "void") return none;
-    const auto entry = index_.find(name);
-    if (entry == index_.end()) throw std::invalid_argument(fmt::format("modifier '{}' is not defined", name));
-    return entry->second;
+    if (const auto entry = index_.find(name); entry != index_.end()) return entry->second;
+    if (!may_miss_) throw std::invalid_argument(fmt::format("modifier '{}' is not defined", name));
+    Modifier missing{{}, where};
+    missing.primitive.type = missing_type;
+    missing.primitive.name = missing_names_.emplace_back(name);
+    index_.emplace(missing.primitive.name, static_cast<std::uint32_t>(modifiers_.size()));
+    modifiers_.push_back(std::move(missing));
+    return static_cast<std::uint32_t>(modifiers_.size() - 1);
 }
 
 void RadMaterials::define(const RadPrimitive& primitive, const Location& where) {
     Modifier modifier{primitive, where};
     if (primitive.type == "alias") {
-        const std::uint32_t original = find(primitive.original);
+        const std::uint32_t original = find(primitive.original, where);
         if (original == none) throw std::invalid_argument("an alias cannot stand for void");
         modifier.primitive = modifiers_[original].primitive;
         modifier.primitive.name = primitive.name;
         if (primitive.modifier == "inherit") modifier.base = modifiers_[original].base;
     }
-    if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier);
+    if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier, where);
     if (types().at(modifier.primitive.type).role == Role::mixture) {
         // Its foreground, or its background where that is void.
         const auto& strings = modifier.primitive.strings;
         if (strings.size() < 2) throw std::invalid_argument("a mixture needs a foreground and a background");
-        modifier.base = find(strings[0]);
-        if (modifier.base == none) modifier.base = find(strings[1]);
+        modifier.base = find(strings[0], where);
+        if (modifier.base == none) modifier.base = find(strings[1], where);
     }
     index_[primitive.name] = static_cast<std::uint32_t>(modifiers_.size());
     modifiers_.push_back(std::move(modifier));
@@ -254,8 +265,11 @@ void RadMaterials::light(const Modifier& modifier, Material& result) {
 
 void RadMaterials::unknown(const Modifier& modifier, Material& result) {
     result.reflectance = Rgb(0.5f);
+    const std::string_view type = modifier.primitive.type;
     warn("unsupported-material",
-         fmt::format("the material {} is taken as diffuse with a reflectance of 0.5", modifier.primitive.type),
+         type == missing_type ? "a material that is not defined, but may be by a command that is left out, is taken as "
+                                "diffuse with a reflectance of 0.5"
+                              : fmt::format("the material {} is taken as diffuse with a reflectance of 0.5", type),
          modifier);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -34,8 +36,12 @@ class RadMaterials {
     /// Adds a modifier, which hides an earlier one of that name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
+    /// From now on, modifiers that are not defined are taken as diffuse grey, with a warning: a command that was left
+    /// out may define them.
+    void allow_missing() { may_miss_ = true; }
+
     /// Index of the modifier with this name; none for `void`. @throws std::invalid_argument  where it is not defined
-    std::uint32_t find(std::string_view name) const;
+    std::uint32_t find(std::string_view name, const Location& where);
     /// Index in Model::materials of what a surface with this modifier shows; none where that is nothing.
     /// @throws InputError  with the place of the modifier that has a fault
     std::uint32_t material(std::uint32_t modifier);
@@ -69,6 +75,8 @@ class RadMaterials {
     void warn(const std::string& kind, const std::string& message, const Modifier& modifier);
 
     Model& model_;
+    bool may_miss_ = false;
+    std::deque<std::string> missing_names_;  // which views point to
     std::vector<Modifier> modifiers_;
     std::unordered_map<std::string_view, std::uint32_t> index_;  // of the latest with each name
 };

@@ -99,6 +99,7 @@ void RadReader::read_statement(RadStatements& statements, RadStatements::Kind ki
 void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
     const std::optional<RadXform> xform = parse_xform(command);
     if (!xform) {
+        materials_.allow_missing();
         const std::string program = command.substr(0, std::min(command.find_first_of(" \t"), options_.max_name_length));
         model_.warnings.add("unsupported-command",
                             fmt::format("what the command '{}' would make is left out: commands are not run, but for "
@@ -174,7 +175,7 @@ std::vector<RadReader::Copy> RadReader::copies_of(const RadXform& xform, const s
 void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file, const Location& where) {
     const Surface& surface = surfaces().at(primitive.type);
     const std::string_view modifier = file.modifier.empty() ? primitive.modifier : std::string_view(file.modifier);
-    const std::uint32_t index = materials_.find(modifier);
+    const std::uint32_t index = materials_.find(modifier, where);
     if (!surface.read) {
         model_.warnings.add("unsupported-entity", fmt::format("surface of type {} is left out", primitive.type),
                             where.text());
