@@ -109,6 +109,7 @@ GltfElements GltfAccessors::in_view(const GltfValue& owner, const GltfElements& 
     const GltfBuffers::View view = buffers_.view(owner.required_index("bufferView", buffers_.view_count()));
     const std::uint64_t offset = owner.integer("byteOffset", 0), size = element_size(shape);
     result.stride = view.stride > 0 ? view.stride : size;
+    if (size == 0) owner.fail("its componentType is unknown");
     if (result.stride < size) owner.fail(fmt::format("byteStride {} is less than its elements' {}", view.stride, size));
     // Integers of the file are at most 2^40, but the product of two is not.
     const std::uint64_t room = offset <= view.bytes.size() ? view.bytes.size() - offset : 0;
@@ -132,7 +133,6 @@ const std::string& GltfAccessors::sparse(std::uint32_t index, const GltfElements
     const GltfValue at = owner.object("indices"), with = owner.object("values");
     const GltfElements places =
         in_view(at, {.count = owner.integer("count"), .component_type = static_cast<int>(at.integer("componentType"))});
-    if (size_of(places.component_type) == 0) at.fail("its componentType is unknown");
     GltfElements shape = base;
     shape.count = places.count;
     const GltfElements values = in_view(with, shape);
