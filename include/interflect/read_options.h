@@ -13,7 +13,7 @@ struct ReadOptions {
     /// Length of the file's unit [m], in [1e-9, 1e9]: what all coordinates in it are multiplied by, whatever its
     /// format. Views that are kept beside the file (view_list_path) are in metres.
     double unit = 1;
-    Axis up_axis = Axis::z;        ///< What is up in the file: the scene is turned so that it becomes z. z: as it is.
+    Axis up_axis = Axis::z;   ///< What is up in the file: the scene is turned so that it becomes z. z: as it is.
     int curve_divisions = 4;  ///< Flat pieces per quarter circle of a curved surface, 1 to 1000.
     std::uint64_t max_patches = 50'000'000;  ///< Patches in all, at most 4 * 10^9; also bounds the work of arrays.
     int max_include_depth = 32;              ///< Files that include files; 0 refuses every include.

@@ -107,7 +107,7 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
 }
 
 std::string ForeignScene::add_file(const std::string& name, std::string bytes) {
-    const std::string full = path.stem().string() + "-" + name;
+    std::string full = path.stem().string() + "-" + name;
     files.push_back({path.parent_path() / full, std::move(bytes)});
     return full;
 }

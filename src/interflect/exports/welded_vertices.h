@@ -19,7 +19,7 @@ class WeldedVertices {
     void add(const Vertex& vertex) {
         const auto number = static_cast<std::uint32_t>(vertices_.size());
         Words words;
-        std::memcpy(words.data(), &vertex, sizeof(Vertex));
+        std::memcpy(words.data(), static_cast<const void*>(&vertex), sizeof(Vertex));
         const auto [entry, is_new] = numbers_.try_emplace(words, number);
         if (is_new) vertices_.push_back(vertex);
         indices_.push_back(entry->second);

@@ -27,9 +27,11 @@ void write(const ExportedFile& file, const PendingFile& pending) {
 
 std::vector<std::filesystem::path> write_files(const std::vector<ExportedFile>& files) {
     std::vector<PendingFile> pending;
+    pending.reserve(files.size());
     for (const ExportedFile& file : files) pending.emplace_back(file.path);
     for (std::size_t i = 0; i < files.size(); ++i) write(files[i], pending[i]);
     std::vector<std::filesystem::path> written;
+    written.reserve(pending.size());
     for (PendingFile& file : pending) {
         file.commit();
         written.push_back(file.final_path());

@@ -40,7 +40,7 @@ class GltfAsset {
     Model model;
 
   private:
-    std::string read_file(const std::string& name, const GltfValue& user);
+    std::string read_file(const std::string& uri, const GltfValue& user);
 
     GltfValue root_;
     const ReadOptions& options_;

@@ -37,7 +37,7 @@ class GltfMeshes {
     void open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
-    void require_room(std::uint64_t triangles, const GltfValue& primitive);
+    void require_room(std::uint64_t count, const GltfValue& primitive);
 
     GltfAsset& asset_;
     GltfBuffers& buffers_;

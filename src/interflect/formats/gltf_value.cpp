@@ -19,7 +19,7 @@ const json empty_array = json::array();
 
 std::string gltf_place(const std::string& list, std::size_t index, const std::string& name) {
     constexpr std::size_t longest = 64;
-    const std::string place = fmt::format("{}[{}]", list, index);
+    std::string place = fmt::format("{}[{}]", list, index);
     if (name.empty()) return place;
     return fmt::format("{} '{}{}'", place, escaped(std::string_view(name).substr(0, longest)),
                        name.size() > longest ? "..." : "");

@@ -114,7 +114,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     }
     std::string name = fmt::format("{}", fmt::join(words, " "));
     std::replace(name.begin(), name.end(), '\\', '/');
-    const fs::path path = where.file->parent_path() / name;
+    fs::path path = where.file->parent_path() / name;
     if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
         throw std::invalid_argument(fmt::format(
             "the texture '{}' lies outside the scene's folder, which is not allowed (outside_files)", name));

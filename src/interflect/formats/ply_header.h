@@ -23,7 +23,7 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 
     /// Index of the property; nothing where there is none.
-    std::optional<std::size_t> find(std::string_view name) const;
+    std::optional<std::size_t> find(std::string_view wanted) const;
     /// The fewest values and bytes that one takes: of a list its length alone.
     std::uint64_t fewest_values() const { return properties.size(); }
     std::uint64_t fewest_bytes() const;

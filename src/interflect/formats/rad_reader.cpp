@@ -140,7 +140,7 @@ void RadReader::refuse_recursion(const SourceFile& source, const OpenFile& file)
     if (!outer) return;
     std::string chain = source.path.string();
     for (const OpenFile* open = &file; open != outer; open = open->includer)
-        chain = open->source.path.string() + " -> " + chain;
+        chain.insert(0, open->source.path.string() + " -> ");
     throw std::invalid_argument("a file includes itself: " + source.path.string() + " -> " + chain);
 }
 
