@@ -106,8 +106,8 @@ class LightAround {
     void add_luminaire(const Luminaire& luminaire, const V3f& x, IrradianceProbe& probe) const {
         constexpr int across = 4;  // points of an opening or disc
         for (int i = 0; i < across * across; ++i) {
-            const float u = (static_cast<float>(i % across) + 0.5f) / across;
-            const float v = (static_cast<float>(i / across) + 0.5f) / across;
+            const int row = i / across, column = i % across;
+            const float u = (static_cast<float>(column) + 0.5f) / across, v = (static_cast<float>(row) + 0.5f) / across;
             const Illumination light = illumination(luminaire, x, u, v);
             if (light.irradiance == Rgb(0)) continue;
             const Rgb share = light.irradiance / static_cast<float>(across * across);
@@ -213,8 +213,8 @@ ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const 
     const LightAround light(scene, solution, ray_caster, options);
     const auto columns = static_cast<std::size_t>(grid.count[0]), rows = static_cast<std::size_t>(grid.count[1]);
     parallel_for_ranges(grid.probes.size(), 1, [&](std::size_t i, std::size_t) {
-        const Imath::V3d number(static_cast<double>(i % columns), static_cast<double>(i / columns % rows),
-                                static_cast<double>(i / columns / rows));
+        const std::size_t column = i % columns, row = i / columns % rows, level = i / columns / rows;
+        const Imath::V3d number(static_cast<double>(column), static_cast<double>(row), static_cast<double>(level));
         grid.probes[i] = light.probe(V3f(grid.first - scene.origin + number * grid.step), i);
     });
     return grid;
