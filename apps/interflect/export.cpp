@@ -134,7 +134,7 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
 void add_export(CLI::App& app) {
     const auto options = std::make_shared<ExportArguments>();
     CLI::App& command = *app.add_subcommand("export", "Write a solved scene, or a scene, for other programs");
-    options->scene.add_to(command, "Solution file (.h5); for another renderer also a scene (.mgf)");
+    options->scene.add_to(command, "Solution file (.h5); for another renderer also a scene");
     std::string extensions;
     for (const ExportFormat& format : export_formats) extensions += std::string(" ") + format.extension;
     for (const char* extension : scene_export_extensions) extensions += std::string(" ") + extension;
