@@ -111,6 +111,7 @@ void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, c
 
 std::vector<std::uint32_t> checksums_of(const std::vector<std::string>& files) {
     std::vector<std::uint32_t> checksums;
+    checksums.reserve(files.size());
     for (const std::string& file : files) checksums.push_back(crc32_of_file(file));
     return checksums;
 }
