@@ -13,7 +13,7 @@ namespace interflect {
 
 enum class ImageFormat {
     png,   ///< 8 bit sRGB: for people. Needs a tone-mapped image.
-    jpeg,  ///< As png, lossy: written, never read.
+    jpeg,  ///< As png, lossy: written, and read as textures alone.
     exr,   ///< OpenEXR, linear 32 bit float: for measuring. Carries ImageMetadata.
     hdr,   ///< Radiance RGBE, linear, 8 bit mantissas with a common exponent.
 };

@@ -5,13 +5,14 @@
 
 #include "interflect/error.h"
 #include "interflect/formats/text_file.h"
+#include "interflect/image/photograph.h"
 #include "interflect/image/srgb.h"
 #include "interflect/image_files.h"
 
 namespace interflect::inline detail {
 
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most) {
-    Image image = read_image(path, static_cast<std::int64_t>(most));
+    Image image = read_photograph(path, static_cast<std::int64_t>(most));
     Texture texture{path.string(), static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height),
                     std::move(image.pixels)};
     if (const std::string fault = texture_fault(texture); !fault.empty()) throw InputError(path, 0, fault);

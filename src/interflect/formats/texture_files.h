@@ -9,7 +9,7 @@
 
 namespace interflect::inline detail {
 
-/// Reads an image as a texture: .png (sRGB), .exr or .hdr (linear).
+/// Reads an image as a texture: .png or .jpg (sRGB), .exr or .hdr (linear).
 /// @param most  Texels that it may have.
 /// @throws InputError with the path and the reason, as read_image() does, and for a texture with a fault.
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most = most_texels);

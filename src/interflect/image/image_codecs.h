@@ -19,6 +19,7 @@ void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t 
 std::string encode_png(const Image& image);
 std::string encode_jpeg(const Image& image);
 Image decode_png(std::string_view bytes, std::int64_t most_pixels);
+Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels);
 
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes, std::int64_t most_pixels);

@@ -14,6 +14,7 @@
 #include "interflect/error.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/pending_image.h"
+#include "interflect/image/photograph.h"
 
 namespace interflect {
 
@@ -130,6 +131,13 @@ void detail::write_image(PendingFile& file, const Image& image, const ImageMetad
 Image read_image(const fs::path& path, std::int64_t most_pixels) {
     return read_with(path,
                      [=](ImageFormat format, const fs::path& file) { return read_as(format, file, most_pixels); });
+}
+
+Image detail::read_photograph(const fs::path& path, std::int64_t most_pixels) {
+    return read_with(path, [=](ImageFormat format, const fs::path& file) {
+        return format == ImageFormat::jpeg ? codecs::decode_jpeg(read_bytes(file), most_pixels)
+                                           : read_as(format, file, most_pixels);
+    });
 }
 
 std::optional<float> read_field_of_view(const fs::path& path) {

@@ -29,6 +29,13 @@ std::vector<std::uint8_t> srgb_bytes(const Image& image) {
     return bytes;
 }
 
+Image linear_image(const StoredImage& stored) {
+    Image image(stored.width, stored.height);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        for (int c = 0; c < channels; ++c) image.pixels[i][c] = srgb_decode(stored.value(i, c));
+    return image;
+}
+
 void append(void* text, void* data, int size) {
     static_cast<std::string*>(text)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
@@ -54,11 +61,11 @@ std::string encode_jpeg(const Image& image) {
 }
 
 Image decode_png(std::string_view bytes, std::int64_t most_pixels) {
-    const StoredImage stored = decode_stored_png(bytes, most_pixels);
-    Image image(stored.width, stored.height);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        for (int c = 0; c < channels; ++c) image.pixels[i][c] = srgb_decode(stored.value(i, c));
-    return image;
+    return linear_image(decode_stored_png(bytes, most_pixels));
+}
+
+Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
+    return linear_image(decode_stored_image(bytes, most_pixels));
 }
 
 }  // namespace interflect::inline detail::codecs
