@@ -31,7 +31,7 @@ GltfBuilder file_with_light(const json& light) {
                    {"rotation", {half, 0, 0, half}},
                    {"scale", {2, 2, 2}},
                    {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    file.file["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    file.file["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
     return file;
 }
 
