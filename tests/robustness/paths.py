@@ -7,7 +7,7 @@ from case import BAD_INPUT, DONE, WRONG_USAGE, Case
 from seeds import ENTITIES, PICTURES, ROOM_RAYS, SCENE, TINY, WRITERS
 
 REFUSED = frozenset({BAD_INPUT})
-SECONDS_TO_READ = 15  # a pipe: with a sanitizer a report takes six until it is written
+SECONDS_TO_READ = 45  # a pipe: with a sanitizer, on a busy machine, a report takes over 15 until it is written
 LONGEST_NAME = 255  # bytes, of most file systems
 ODD = ("with space", " ", "new\nline", "\x1b[31mred", "tab\tand\rreturn", "caf\u00e9", "\udcff\udcfe")
 ODD += ("\udcc3(", "'\"$(id)`", "*?[a]")
@@ -154,6 +154,7 @@ def into_pipe(rng, seeds):
         os.mkfifo(folder / name)
 
     case = Case(f"{key}: into a pipe", list(command.arguments), seeds.some(*command.inputs), prepare=prepare)
+    case.seconds = 5.0  # a report takes its time
     case.shell = f"timeout {SECONDS_TO_READ} cat {name} >copy & true"
     case.outputs = ("copy",)
     case.checks = (check.same_bytes({"copy": seeds.written[key][name]}),)
