@@ -17,6 +17,7 @@ struct Mesh {
     std::string name;                       ///< For messages: "mesh 3 'chair', primitive 0".
     std::vector<Imath::V3d> positions;      ///< Of the vertices.
     std::vector<V2f> texture_coordinates;   ///< One for each vertex, as Scene has them, or empty.
+    std::vector<V2f> lightmap_coordinates;  ///< Likewise.
     std::vector<std::uint32_t> indices;     ///< Of the corners of all faces, counter-clockwise seen from the front.
     std::vector<std::uint32_t> face_sizes;  ///< How many corners each face has, at least 3; empty: triangles alone.
     std::uint32_t material = 0;             ///< Index into Model::materials.
