@@ -22,12 +22,13 @@ struct Material {
     std::string name;
     Rgb reflectance{0, 0, 0};  ///< Diffuse reflectance rho, each channel in [0, 1).
     Rgb exitance{0, 0, 0};     ///< Self-emitted exitance M [lm/m^2 or W/m^2], >= 0.
-    /// Indices into Scene::textures, or none: what the reflectance, the exitance and the transmittance are multiplied by.
-    /// The products keep within the limits of this struct.
-    std::uint32_t reflectance_texture = none, exitance_texture = none, transmittance_texture = none;
-    /// The share of light that goes straight through: thin glass, and with a texture the holes in a leaf or a fence.
+    /// Indices into Scene::textures, or none: what the reflectance and the exitance are multiplied by. The products
+    /// keep within the limits of this struct.
+    std::uint32_t reflectance_texture = none, exitance_texture = none;
+    /// The share of light that goes straight through: thin glass, and with a texture the holes of a leaf or a fence.
     /// With the other reflectances at most 1 in sum.
     Rgb transmittance{0, 0, 0};
+    std::uint32_t transmittance_texture = none;  ///< What the transmittance is multiplied by.
     /// Share of light that is mirrored: seen from the camera in gathered and path-traced pictures, lost to the solver.
     Rgb specular_reflectance{0, 0, 0};
 
@@ -76,8 +77,8 @@ struct Scene {
     std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Those that no patch uses count for nothing.
     /// (u, v) of every vertex, or empty where no patch is textured.
     std::vector<V2f> texture_coordinates;
-    /// (u, v) of every vertex in its object's own lightmap, where the file has laid one out (TEXCOORD_1 of glTF); (0, 0)
-    /// is the lower left corner. Empty where no patch has any; not finite for vertices that have none.
+    /// (u, v) of every vertex in its object's own lightmap, where the file has laid one out (TEXCOORD_1 of glTF); (0,
+    /// 0) is the lower left corner. Empty where no patch has any; not finite for vertices that have none.
     std::vector<V2f> lightmap_coordinates;
     std::vector<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().

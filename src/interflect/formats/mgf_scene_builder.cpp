@@ -105,14 +105,15 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     const auto reflected = [&](const MgfColour& colour, double share) {
         return converted(colour, share, largest_reflectance, material.defined);
     };
-    Material result{
-        std::string(name),
-        reflected(material.rd_colour, material.rd),
-        emitted(material.ed_colour, material.ed, material.defined),
-        texture(material.rd_texture),
-        texture(material.ed_texture),
-        reflected(material.ts_colour, material.ts),
-        is_mirror(material.rs, material.rs_roughness) ? reflected(material.rs_colour, material.rs) : Rgb(0)};
+    Material result{.name = std::string(name),
+                    .reflectance = reflected(material.rd_colour, material.rd),
+                    .exitance = emitted(material.ed_colour, material.ed, material.defined),
+                    .reflectance_texture = texture(material.rd_texture),
+                    .exitance_texture = texture(material.ed_texture),
+                    .transmittance = reflected(material.ts_colour, material.ts),
+                    .specular_reflectance = is_mirror(material.rs, material.rs_roughness)
+                                                ? reflected(material.rs_colour, material.rs)
+                                                : Rgb(0)};
     if (limit_sum(result))
         warn("reflectance-clamped", "more light than arrives would leave this material: rs and ts are reduced",
              material.defined);
