@@ -94,7 +94,8 @@ Json GltfTextures::reference(std::uint32_t texture, const Rgb& peak) {
 Json GltfTextures::diffuse(const Material& material) {
     const Rgb& rho = material.reflectance;
     Json result{{"baseColorFactor", {rho.x, rho.y, rho.z, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (material.reflectance_texture != none) result["baseColorTexture"] = reference(material.reflectance_texture);
+    if (material.reflectance_texture != none && material.transmittance_texture == none)  // else cut_out() adds it
+        result["baseColorTexture"] = reference(material.reflectance_texture);
     return result;
 }
 
