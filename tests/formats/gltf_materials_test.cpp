@@ -158,8 +158,8 @@ class GltfAlpha : public testing::Test {
         std::vector<float> found;
         for (std::size_t i = 0; i < 4; ++i) {
             found.push_back(1 - m.transmittance.x * scene.textures.at(m.transmittance_texture).texels.at(i).x);
-            EXPECT_NEAR((m.reflectance * scene.textures.at(m.reflectance_texture).texels.at(i)).x,
-                        found[i] * grey, 1e-5f);
+            EXPECT_NEAR((m.reflectance * scene.textures.at(m.reflectance_texture).texels.at(i)).x, found[i] * grey,
+                        1e-5f);
         }
         return found;
     }

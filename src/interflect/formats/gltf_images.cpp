@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "interflect/error.h"
+#include "interflect/formats/texture_limit.h"
 #include "interflect/image/srgb.h"
 
 namespace interflect::inline detail {
@@ -14,7 +15,7 @@ namespace {
 constexpr int repeat = 10497;  // glTF's number of it
 
 /// Pixels that are decoded in all: an image serves several textures, but not any number of them.
-constexpr std::uint64_t most_decoded = 8 * most_texels;
+constexpr std::uint64_t most_decoded = 32 * most_texels;
 
 /// The linear value of each 16 bit value of sRGB.
 const std::vector<float>& decoded_srgb() {
@@ -148,10 +149,17 @@ std::pair<std::uint32_t, bool> GltfImages::texture(const GltfTexels& texels) {
     entry->second.first = static_cast<std::uint32_t>(made.size());
     made.push_back(make_texture(texels, entry->second.second));
     texels_ += made.back().texels.size();
-    if (texels_ > most_texels)
-        throw GltfFault(
-            fmt::format("{}: with this texture there are more than {} texels", made.back().name, most_texels));
     return entry->second;
+}
+
+void GltfImages::limit_textures() {
+    if (texels_ <= most_texels) return;
+    reduce_textures(asset_.model.textures);
+    texels_ = texel_count(asset_.model.textures);
+    asset_.warn("textures-reduced",
+                fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
+                            most_texels),
+                "textures");
 }
 
 const GltfImageMeans& GltfImages::means(std::uint32_t image) {

@@ -58,6 +58,9 @@ class GltfImages {
 
     /// @return  index into Model::textures, and whether a texel was reduced to `largest`.
     std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
+    /// Reduces the textures made so far where they have too many texels, with a warning. Call it when all textures of a
+    /// material are made, since they must stay of equal size.
+    void limit_textures();
     const GltfImageMeans& means(std::uint32_t image);
 
   private:

@@ -234,6 +234,7 @@ GltfSurface GltfMaterials::make(std::uint32_t index, bool textured) {
     if (largest_channel(material.exitance) > 0)
         material.exitance_texture =
             images_.texture({.colour = parts.emissive_texture.image, .coverage = parts.coverage_from_texture()}).first;
+    images_.limit_textures();
     surface.material = static_cast<std::uint32_t>(asset_.model.materials.size());
     asset_.model.materials.push_back(std::move(material));
     return surface;

@@ -14,6 +14,7 @@
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/formats/texture_limit.h"
 #include "interflect/scene/limits.h"
 #include "interflect/scene/texel_centre.h"
 
@@ -157,6 +158,14 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
         result.transmittance = Rgb(1 - definition.opacity);
         result.reflectance_texture = texture(definition);
     }
+    if (texels_ > most_texels) {
+        reduce_textures(model_.textures);
+        texels_ = texel_count(model_.textures);
+        warn("textures-reduced",
+             fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
+                         most_texels),
+             definition.where);
+    }
     bool limited = limit_reflectance(result.reflectance);
     if (result.reflectance_texture != none) {
         const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);
@@ -193,7 +202,7 @@ Texture ObjMaterials::read_colours(const Definition& definition) {
         return {"", 1, 1, {Rgb(1)}};
     try {
         require_regular_file(definition.texture);
-        Texture texture = read_texture(definition.texture, most_texels - texels_);
+        Texture texture = read_texture(definition.texture);
         model_.files.push_back(definition.texture.string());
         return texture;
     } catch (const InputError& unreadable) {
@@ -233,8 +242,6 @@ void ObjMaterials::cut_out(const Definition& definition, Material& material) {
     Texture reflectance{
         definition.mask.string(), static_cast<std::uint32_t>(mask.width), static_cast<std::uint32_t>(mask.height), {}};
     Texture opening = reflectance, coverage = reflectance;
-    if (3 * mask.pixel_count() > most_texels - texels_)
-        throw definition.where.error(fmt::format("with this texture there are more than {} texels", most_texels));
     for (std::size_t i = 0; i < mask.pixel_count(); ++i) {
         const float stored =
             has_alpha ? mask.value(i, 3) : (mask.value(i, 0) + mask.value(i, 1) + mask.value(i, 2)) / 3;
