@@ -44,7 +44,7 @@ TEST(TexturedSolution, ComesBack) {
     EXPECT_EQ(read.materials[0].exitance_texture, 1u);
 }
 
-TEST(LightmapCoordinates, ComeBackAndSoDoesTheirLack) {
+TEST(LightmapCoordinates, ComeBackWithThoseThatAreMissing) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "laid-out.h5";
     Scene scene = textured_furnace(Rgb(2, 1, 3));
