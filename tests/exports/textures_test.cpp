@@ -30,7 +30,9 @@ SolveOptions refining() {
 TEST(TexturedSolution, ComesBack) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "textured.h5";
-    const Scene scene = textured_furnace(Rgb(2, 1, 3));
+    Scene scene = textured_furnace(Rgb(2, 1, 3));
+    scene.materials[0].transmittance = Rgb(0.01f);
+    scene.materials[0].transmittance_texture = 1;
     write_solution(path, scene, solve(scene, RayCaster(scene), refining()));
     const Scene read = read_solution(path).scene;
     EXPECT_EQ(read.texture_coordinates, scene.texture_coordinates);
@@ -42,6 +44,7 @@ TEST(TexturedSolution, ComesBack) {
     }
     EXPECT_EQ(read.materials[0].reflectance_texture, 0u);
     EXPECT_EQ(read.materials[0].exitance_texture, 1u);
+    EXPECT_EQ(read.materials[0].transmittance_texture, 1u);
 }
 
 TEST(LightmapCoordinates, ComeBackWithThoseThatAreMissing) {

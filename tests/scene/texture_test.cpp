@@ -94,6 +94,14 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "there is no texture 1"},
         Fault{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
               "reflectance times its texture is up to (1.2"},
+        Fault{"LetsTooMuchThrough",
+              [](Scene& s) {
+                  s.materials[0].transmittance = Rgb(0.1f);
+                  s.materials[0].transmittance_texture = 0;
+              },
+              "times their textures, are up to (1.2"},
+        Fault{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
+              "there is no texture 7"},
         Fault{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
         Fault{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
         Fault{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
@@ -124,6 +132,23 @@ INSTANTIATE_TEST_SUITE_P(
               },
               "patch 0 has lightmap coordinates at some of its vertices only"}),
     testing::PrintToStringParamName());
+
+/// What is reflected and what goes through are added texel by texel where the textures have one size.
+TEST(TexturedScene, MayReflectWhereNothingGoesThrough) {
+    Scene scene = textured_scene();
+    Texture checks{"checks", 3, 2, {Rgb(0), Rgb(1), Rgb(0), Rgb(1), Rgb(0), Rgb(1)}}, others = checks;
+    for (Rgb& texel : others.texels) texel = Rgb(1) - texel;
+    scene.textures = {checks, others};
+    scene.materials[0] = {.name = "screen", .reflectance = Rgb(0.9f), .exitance = Rgb(1), .reflectance_texture = 0};
+    scene.materials[0].transmittance = Rgb(1);
+    scene.materials[0].transmittance_texture = 1;
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+    scene.materials[0].transmittance_texture = 0;
+    EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
+    scene.textures[0].width = 6, scene.textures[0].height = 1;  // sizes differ: the largest count
+    scene.materials[0].transmittance_texture = 1;
+    EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
+}
 
 }  // namespace
 }  // namespace interflect

@@ -128,6 +128,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
         document.use_extension("KHR_materials_unlit");
     } else {
         json["pbrMetallicRoughness"] = textures.diffuse(material);
+        if (material.transmittance_texture != none) textures.cut_out(json, material);
         // Without it there is a specular layer, which takes light from the diffuse one.
         json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
         document.use_extension("KHR_materials_specular");

@@ -9,7 +9,8 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr const char *reflectance_texture = "reflectance_texture", *exitance_texture = "exitance_texture";
+constexpr const char *reflectance_texture = "reflectance_texture", *exitance_texture = "exitance_texture",
+                     *transmittance_texture = "transmittance_texture";
 constexpr const char* coordinates_dataset = "/scene/texture_coordinates";
 constexpr const char* lightmap_coordinates_dataset = "/scene/lightmap_coordinates";
 
@@ -56,11 +57,13 @@ std::vector<Texture> textures_of(const Json& json) {
 void add_textures(const Material& material, Json& json) {
     if (material.reflectance_texture != none) json[reflectance_texture] = material.reflectance_texture;
     if (material.exitance_texture != none) json[exitance_texture] = material.exitance_texture;
+    if (material.transmittance_texture != none) json[transmittance_texture] = material.transmittance_texture;
 }
 
 void read_textures(const Json& json, Material& material) {
     material.reflectance_texture = json.value(reflectance_texture, none);
     material.exitance_texture = json.value(exitance_texture, none);
+    material.transmittance_texture = json.value(transmittance_texture, none);
 }
 
 std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {

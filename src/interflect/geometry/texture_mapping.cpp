@@ -39,4 +39,9 @@ Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p) {
     return times_texel(scene, patch, p, material.exitance, material.exitance_texture);
 }
 
+Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p) {
+    const Material& material = scene.materials[patch.material];
+    return times_texel(scene, patch, p, material.transmittance, material.transmittance_texture);
+}
+
 }  // namespace interflect::inline detail

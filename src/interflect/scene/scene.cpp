@@ -60,7 +60,7 @@ void check_points(const Scene& scene, Faults& faults) {
 }
 
 void check_material(const Scene& scene, const Material& m, Faults& faults) {
-    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture})
+    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture, m.transmittance_texture})
         faults.check(texture == none || texture < scene.textures.size(),
                      [&] { return fmt::format("material '{}': there is no texture {}", m.name, texture); });
     const Rgb& r = m.reflectance;
@@ -68,7 +68,8 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
-    faults.check(is_share(t) && is_share(s) && largest_channel(Rgb(r + t + s)) <= 1, [&] {
+    const bool are_added = m.transmittance_texture == none;  // else check_products() does, texel by texel
+    faults.check(is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), [&] {
         return fmt::format(
             "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
             "more than 1 with the reflectance",
@@ -78,7 +79,8 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
 }
 
 /// @param largest  Of all textures, as largest_texels().
-void check_products(const Material& m, const std::vector<Rgb>& largest, Faults& faults) {
+void check_products(const Material& m, const std::vector<Texture>& textures, const std::vector<Rgb>& largest,
+                    Faults& faults) {
     const Rgb r = textured(m.reflectance, m.reflectance_texture, largest);
     faults.check(is_reflectance(r), [&] {
         return fmt::format("material '{}': reflectance times its texture is up to ({}, {}, {}), not in [0, 1)", m.name,
@@ -86,6 +88,14 @@ void check_products(const Material& m, const std::vector<Rgb>& largest, Faults& 
     });
     faults.add(exitance_fault(textured(m.exitance, m.exitance_texture, largest)),
                [&] { return fmt::format("material '{}' times its texture: ", m.name); });
+    if (m.transmittance_texture == none) return;
+    const Rgb sum = largest_sum(m, textures, largest);
+    faults.check(largest_channel(sum) <= 1, [&] {
+        return fmt::format(
+            "material '{}': reflectance and transmittance, times their textures, are up to ({}, {}, {}) in sum; "
+            "expected at most 1",
+            m.name, sum.x, sum.y, sum.z);
+    });
 }
 
 void check_textures(const Scene& scene, Faults& faults) {
@@ -138,7 +148,7 @@ void check_materials(const Scene& scene, Faults& faults) {
     if (!faults.empty()) return;
     const std::vector<Rgb> largest = largest_texels(scene);
     for (const Material& m : scene.materials)
-        if (m.is_textured()) check_products(m, largest, faults);
+        if (m.is_textured()) check_products(m, scene.textures, largest, faults);
     faults.add(brightness_fault(brightest_source(scene)), [] { return std::string("the scene "); });
 }
 
