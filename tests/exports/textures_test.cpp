@@ -1,8 +1,12 @@
-// Textures in solution files: a textured scene comes back as it was, and a run in it goes on with the same bits.
+// Textures and lightmap coordinates in solution files: a textured scene comes back as it was, and a run in it goes on
+// with the same bits.
 //
-// Seen to fail when coordinates are left out, and when the means of elements are not found again after a file is
-// opened.
+// Seen to fail when coordinates of either kind are left out, and when the means of elements are not found again after a
+// file is opened.
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
 
 #include "interflect/elements/forest.h"
 #include "interflect/error.h"
@@ -41,6 +45,29 @@ TEST(TexturedSolution, ComesBack) {
     EXPECT_EQ(read.materials[0].reflectance_texture, 0u);
     EXPECT_EQ(read.materials[0].exitance_texture, 1u);
     EXPECT_EQ(read.materials[0].transmittance_texture, 1u);
+}
+
+TEST(LightmapCoordinates, ComeBackWithThoseThatAreMissing) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "laid-out.h5";
+    Scene scene = textured_furnace(Rgb(2, 1, 3));
+    const Solution solution = solve(scene, RayCaster(scene), refining());
+    write_solution(path, scene, solution);
+    EXPECT_TRUE(read_solution(path).scene.lightmap_coordinates.empty());
+
+    const Patch last = scene.patches.back();
+    for (const V3f& x : scene.vertices) scene.lightmap_coordinates.emplace_back(x.x, x.y / 2);
+    for (const std::uint32_t v : last.vertices) scene.vertices.push_back(scene.vertices[v]);
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        scene.patches.back().vertices[k] = static_cast<std::uint32_t>(scene.lightmap_coordinates.size());
+        scene.texture_coordinates.push_back(scene.texture_coordinates[last.vertices[k]]);
+        scene.lightmap_coordinates.emplace_back(std::numeric_limits<float>::quiet_NaN());
+    }
+    write_solution(path, scene, solution);
+    const std::vector<V2f> read = read_solution(path).scene.lightmap_coordinates;
+    ASSERT_EQ(read.size(), scene.vertices.size());
+    for (std::size_t i = 0; i + 4 < read.size(); ++i) EXPECT_EQ(read[i], scene.lightmap_coordinates[i]) << i;
+    for (std::size_t i = read.size() - 4; i < read.size(); ++i) EXPECT_TRUE(std::isnan(read[i].x)) << i;
 }
 
 TEST(TexturedSolution, OfAFaultySceneIsNotWritten) {

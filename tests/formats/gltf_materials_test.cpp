@@ -315,6 +315,16 @@ TEST_F(GltfTextures, OfOtherCoordinatesThanTheEmissionAreReplacedByTheirMean) {
     EXPECT_THAT(warning_kinds(scene), Contains("texture-coordinates"));
 }
 
+TEST_F(GltfTextures, MayUseTheCoordinatesOfTheLightmap) {
+    add_textured({{"texCoord", 1}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}});
+    file.file["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+        file.add_coordinates({{0, 0.5f}, {0, 0}, {1, 1}});
+    const Scene scene = file.read();
+    const std::uint32_t vertex = scene.patches[0].vertices[0];
+    EXPECT_EQ(scene.texture_coordinates.at(vertex), V2f(0.5f, 0.5f));
+    EXPECT_EQ(scene.lightmap_coordinates.at(vertex), V2f(0, 0.5f)) << "the transform is the texture's";
+}
+
 TEST_F(GltfTextures, ThatReflectAllAreReducedTo99Percent) {
     file.add_triangle(diffuse({{"baseColorTexture", {{"index", file.add_image(encoded({Rgb(1), Rgb(0.5f)}, 2))}}}}));
     const Scene scene = file.read();

@@ -17,6 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
 /// Three columns and two rows, the upper one 1 2 3, the lower 4 5 6.
 Texture numbered() {
     Texture texture{"numbers.png", 3, 2, {}};
@@ -54,6 +56,14 @@ Scene textured_scene() {
 }
 
 TEST(TexturedScene, HasNoFaults) { EXPECT_THAT(scene_faults(textured_scene()), testing::IsEmpty()); }
+
+TEST(Lightmap, HasNoFaultsWhereAllVerticesOfAPatchOrNoneHaveCoordinates) {
+    Scene scene = textured_scene();
+    scene.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+    scene.lightmap_coordinates.assign(4, V2f(not_a_number));
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+}
 
 struct Fault {
     const char* name;
@@ -98,10 +108,29 @@ INSTANTIATE_TEST_SUITE_P(
               "patch 0 has a texture, but no texture coordinates"},
         Fault{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
               "there are 4 vertices and 3 texture coordinates"},
-        Fault{"CoordinateNotANumber",
-              [](Scene& s) { s.texture_coordinates[2].x = std::numeric_limits<float>::quiet_NaN(); },
+        Fault{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
               "vertex 2 has the texture coordinates (nan"},
-        Fault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; }, "expected numbers up to 4096"}),
+        Fault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; }, "expected numbers up to 4096"},
+        Fault{"LightmapCoordinatesMissing",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
+              },
+              "there are 4 vertices and 3 lightmap coordinates"},
+        Fault{"LightmapCoordinateOutside",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};
+              },
+              "vertex 2 has the lightmap coordinates (1, 1.001)"},
+        Fault{"HalfALightmapCoordinate",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {not_a_number, 0}, {1, 1}, {0, 1}};
+              },
+              "vertex 1 has the lightmap coordinates (nan"},
+        Fault{"LightmapCoordinatesOfSomeVertices",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {1, 0}, V2f(not_a_number), {0, 1}};
+              },
+              "patch 0 has lightmap coordinates at some of its vertices only"}),
     testing::PrintToStringParamName());
 
 /// What is reflected and what goes through are added texel by texel where the textures have one size.

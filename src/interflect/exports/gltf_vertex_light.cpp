@@ -59,7 +59,7 @@ class VertexLight {
                     gltf_coordinate(texture_coordinate(scene_, patch, corner.at))};
         const Rgb reflected = reflectance_at(scene_, patch, corner.at) * corner.irradiance;
         const Rgb radiosity = exitance_at(scene_, patch, corner.at) + reflected;
-        const V2f coordinate = coordinate_at(scene_, patch, corner.at).value_or(V2f(0, 0));
+        const V2f coordinate = coordinates_at(scene_, patch, corner.at).texture.value_or(V2f(0, 0));
         return {corner.point, corner.irradiance, clamped(scale_ * radiosity), gltf_coordinate(coordinate)};
     }
 

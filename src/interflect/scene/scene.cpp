@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "interflect/error.h"
 #include "interflect/scene/environment_maps.h"
@@ -116,6 +117,32 @@ void check_textures(const Scene& scene, Faults& faults) {
                    [&] { return fmt::format("vertex {} ", i); });
 }
 
+bool is_missing(const V2f& c) { return std::isnan(c.x) && std::isnan(c.y); }
+
+void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
+    const std::vector<V2f>& all = scene.lightmap_coordinates;
+    if (all.empty()) return;
+    faults.check(all.size() == scene.vertices.size(), [&] {
+        return fmt::format("there are {} vertices and {} lightmap coordinates", scene.vertices.size(), all.size());
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const V2f& c = all[i];
+        const bool is_inside = c.x >= 0 && c.x <= 1 && c.y >= 0 && c.y <= 1;
+        faults.check(is_inside || is_missing(c), [&] {
+            return fmt::format("vertex {} has the lightmap coordinates ({}, {}); expected 0 to 1, or NaN for none", i,
+                               c.x, c.y);
+        });
+    }
+}
+
+/// @param patch  Has vertices of the scene.
+bool has_some_lightmap_coordinates_only(const Scene& scene, const Patch& patch) {
+    if (scene.lightmap_coordinates.size() != scene.vertices.size()) return false;
+    const auto count = std::count_if(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(),
+                                     [&](std::uint32_t v) { return is_missing(scene.lightmap_coordinates[v]); });
+    return count != 0 && count != patch.vertex_count();
+}
+
 void check_materials(const Scene& scene, Faults& faults) {
     for (const Material& m : scene.materials) check_material(scene, m, faults);
     if (!faults.empty()) return;
@@ -142,6 +169,8 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
     faults.check(p.material >= scene.materials.size() || !scene.materials[p.material].is_textured() ||
                      !scene.texture_coordinates.empty(),
                  [&] { return fmt::format("patch {} has a texture, but no texture coordinates", i); });
+    faults.check(!has_vertices(scene, p) || !has_some_lightmap_coordinates_only(scene, p),
+                 [&] { return fmt::format("patch {} has lightmap coordinates at some of its vertices only", i); });
     faults.check(p.object < scene.objects.size(),
                  [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
     const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
@@ -158,6 +187,7 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     const auto the_scene = [] { return std::string("the scene "); };
     check_points(scene, faults);
     check_textures(scene, faults);
+    check_lightmap_coordinates(scene, faults);
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     faults.add(sky_count_fault(scene), the_scene);
     check_materials(scene, faults);
