@@ -311,7 +311,7 @@ class CutOuts(Exported):
         self.assertEqual(row, [(0, 0, 0), (255, 255, 255), (0, 0, 0), (255, 255, 255)])
 
     def test_come_back(self):
-        """Seen to fail with the holes closed, and where what reflects is multiplied by the mask twice."""
+        """Seen to fail with the holes closed."""
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
         self.interflect("export", "room.h5", "-o", "back.glb", "--lightmap", "--exposure", "0")
         self.interflect("export", "room.h5", "-o", "back.obj")

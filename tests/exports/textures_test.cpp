@@ -10,6 +10,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/error.h"
+#include "interflect/exports/opacity.h"
 #include "interflect/solution_file.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
@@ -68,6 +69,23 @@ TEST(LightmapCoordinates, ComeBackWithThoseThatAreMissing) {
     ASSERT_EQ(read.size(), scene.vertices.size());
     for (std::size_t i = 0; i + 4 < read.size(); ++i) EXPECT_EQ(read[i], scene.lightmap_coordinates[i]) << i;
     for (std::size_t i = read.size() - 4; i < read.size(); ++i) EXPECT_TRUE(std::isnan(read[i].x)) << i;
+}
+
+/// Other renderers multiply reflectance by opacity, which a Scene's has already been. Seen to fail where it is not
+/// undone.
+TEST(Opacity, IsDividedOutOfTheReflectance) {
+    Scene scene;
+    scene.textures = {{"reflectance", 3, 1, {Rgb(0.25f), Rgb(0), Rgb(0.75f)}},
+                      {"open", 3, 1, {Rgb(0.5f), Rgb(1), Rgb(0)}}};
+    Material leaf{.name = "leaf", .reflectance = Rgb(0.9f), .reflectance_texture = 0};
+    leaf.transmittance = Rgb(1);
+    leaf.transmittance_texture = 1;
+    const Texture opacity = opacity_of(scene, leaf);
+    EXPECT_EQ(opacity.texels, (std::vector<Rgb>{Rgb(0.5f), Rgb(0), Rgb(1)}));
+    EXPECT_FALSE(is_mask(opacity));
+    const std::vector<Rgb> expected{Rgb(0.5f), Rgb(0), Rgb(0.75f)};
+    const std::vector<Rgb> found = opaque_reflectance(scene, leaf, opacity).texels;
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found.at(i).x, expected[i].x, 1e-6f);
 }
 
 TEST(TexturedSolution, OfAFaultySceneIsNotWritten) {
