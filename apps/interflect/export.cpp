@@ -80,6 +80,8 @@ void run(const ExportArguments& arguments) {
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
+    Warnings warnings;
+    options.warnings = &warnings;
     std::vector<std::filesystem::path> written;
     const auto write = [&] { written = export_solution(arguments.output, solved.scene, solved.solution, options); };
     const bool traces_rays = options.lightmap && options.lightmap->shading == LightmapShading::gather;
@@ -91,6 +93,7 @@ void run(const ExportArguments& arguments) {
     else
         write();
     for (const auto& path : written) spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
+    log_warnings(warnings);
 }
 
 void add_lightmap(CLI::App& command, ExportArguments& arguments) {
@@ -127,6 +130,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
     of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
                                         "Of the unclamped images beside the file"))
         ->default_str("exr");
+    of_lightmap(
+        command.add_flag("--own-charts", lightmap.own_charts, "Ignore lightmap coordinates of the scene's file"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "interflect/probes.h"
 #include "interflect/scene.h"
 #include "interflect/solve.h"
+#include "interflect/warnings.h"
 
 namespace interflect {
 
@@ -35,6 +36,7 @@ struct LightmapOptions {
     int samples = 64;  ///< Gathered directions a texel, >= 2.
     std::uint64_t seed = 1;
     std::string image = ".exr";  ///< Of the images beside the file: .exr or .hdr.
+    bool own_charts = false;     ///< Ignores Scene::lightmap_coordinates.
 };
 
 /// What is exported and how.
@@ -45,6 +47,7 @@ struct ExportOptions {
     std::optional<LightmapOptions> lightmap;  ///< None: the light is at the vertices of the elements.
     ProbeOptions probes;                      ///< Of formats that hold probes in place of surfaces.
     PathMonitor monitor;                      ///< Of gathering.
+    Warnings* warnings = nullptr;             ///< Gets what could not be exported as it is; may be null.
 };
 
 /// A file of an export: its own, or one beside it.

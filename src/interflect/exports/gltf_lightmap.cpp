@@ -70,8 +70,7 @@ std::string encode_beside(const Image& image, const std::string& extension, cons
     return codecs::encode_exr(image, metadata, {});
 }
 
-MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, const ElementForest& patches,
-                               ElementMesh& mesh) {
+MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, ElementMesh& mesh) {
     MappedPrimitives primitives;
     std::vector<MeshTriangle> triangles;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
@@ -83,8 +82,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, con
         for (const MeshTriangle& triangle : triangles)
             for (const MeshCorner& corner : triangle) {
                 const V2f coordinate = coordinates_at(scene, patch, corner.at).texture.value_or(V2f(0, 0));
-                const V3f x = patches.geometry(p).point(corner.at);
-                primitive.add({corner.point, gltf_coordinate(coordinate), lightmap.coordinate(p, x)});
+                primitive.add({corner.point, gltf_coordinate(coordinate), lightmap.coordinate(p, corner.at)});
             }
     }
     return primitives;
@@ -179,7 +177,7 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesy
     GltfTextures textures(document, scene);
     std::map<std::pair<std::uint32_t, int>, int> materials;
     GltfPrimitives written;
-    for (const auto& [key, primitive] : primitives_of(scene, lightmap, patches, mesh)) {
+    for (const auto& [key, primitive] : primitives_of(scene, lightmap, mesh)) {
         const auto& [object, material, page] = key;
         const auto [entry, is_new] = materials.try_emplace({material, page}, 0);
         if (is_new)

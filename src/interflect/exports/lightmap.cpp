@@ -29,12 +29,13 @@ struct TexelPlace {
     bool is_inside = false;  // the texel's centre is on the patch
 };
 
-/// Finds the nearest points of a chart's patches.
+/// Finds the nearest points of a chart's patches, in the plane that they are laid out in.
 class NearestPatch {
   public:
-    NearestPatch(const ElementForest& forest, const LightmapChart& chart) : forest_(forest), patches_(chart.patches) {
+    explicit NearestPatch(const LightmapChart& chart) : patches_(chart.patches) {
         for (std::uint32_t i = 0; i < patches_.size(); ++i) {
-            const PatchGeometry& geometry = forest.geometry(patches_[i]);
+            geometries_.push_back(geometry_of(patches_[i]));
+            const PatchGeometry& geometry = geometries_.back();
             Imath::Box3f box;
             for (const Parameters p : {Parameters{0, 0}, {1, 0}, {0, 1}}) box.extendBy(geometry.point(p));
             if (!geometry.is_triangle()) box.extendBy(geometry.point({1, 1}));
@@ -43,19 +44,20 @@ class NearestPatch {
         arrange_box_tree(tree_);
     }
 
-    TexelPlace find(const V3f& x, float texel) const {
+    TexelPlace find(const Imath::V2d& at, float texel) const {
+        const V3f x(static_cast<float>(at.x), static_cast<float>(at.y), 0);
         TexelPlace nearest;
         float least = std::numeric_limits<float>::max();
         const auto is_near = [&](const Imath::Box3f& box) {
             return (Imath::closestPointInBox(x, box) - x).length2() <= least;
         };
         visit_box_tree(std::span<const Boxed>(tree_), is_near, [&](std::uint32_t i) {
-            const Parameters p = nearest_parameters(forest_.geometry(patches_[i]), x);
-            const float distance2 = (forest_.geometry(patches_[i]).point(p) - x).length2();
-            const bool precedes = nearest.patch == none || patches_[i] < nearest.patch;
+            const Parameters p = nearest_parameters(geometries_[i], x);
+            const float distance2 = (geometries_[i].point(p) - x).length2();
+            const bool precedes = nearest.patch == none || patches_[i].patch < nearest.patch;
             if (distance2 < least || (distance2 == least && precedes)) {
                 least = distance2;
-                nearest = {patches_[i], p};
+                nearest = {patches_[i].patch, p};
             }
         });
         constexpr float rounding = 1e-3f;  // of a texel
@@ -64,12 +66,23 @@ class NearestPatch {
     }
 
   private:
+    static PatchGeometry geometry_of(const FlatPatch& flat);
     static Parameters nearest_parameters(const PatchGeometry& geometry, const V3f& x);
 
-    const ElementForest& forest_;
-    const std::vector<std::uint32_t>& patches_;
+    const FlatPatches& patches_;
+    std::vector<PatchGeometry> geometries_;
     std::vector<Boxed> tree_;
 };
+
+PatchGeometry NearestPatch::geometry_of(const FlatPatch& flat) {
+    Scene plane;
+    Patch patch;
+    for (std::uint32_t c = 0; c < flat.outline().size(); ++c) {
+        plane.vertices.emplace_back(static_cast<float>(flat.corners[c].x), static_cast<float>(flat.corners[c].y), 0.0f);
+        patch.vertices[c] = c;
+    }
+    return {plane, patch};
+}
 
 V3f nearest_on_segment(const V3f& a, const V3f& b, const V3f& x) {
     const V3f along = b - a;
@@ -170,8 +183,8 @@ Rgb content_of(const Scene& scene, const TexelPlace& place, const Rgb& irradianc
 }
 
 /// The place of every texel of a chart with its gutters, row by row.
-std::vector<TexelPlace> places_of(const LightmapChart& chart, const ElementForest& forest, int gutter) {
-    const NearestPatch nearest(forest, chart);
+std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
+    const NearestPatch nearest(chart);
     const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
     const auto texel = static_cast<float>(std::max(chart.spacing().x, chart.spacing().y));
     std::vector<TexelPlace> places(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -180,7 +193,7 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, const ElementFores
         for (std::size_t i = begin; i < end; ++i) {
             const auto column = static_cast<int>(i % static_cast<std::size_t>(columns)) - gutter;
             const auto row = static_cast<int>(i / static_cast<std::size_t>(columns)) - gutter;
-            places[i] = nearest.find(V3f(chart.point_at(column, row)), texel);
+            places[i] = nearest.find(Imath::V2d(column, row) * chart.spacing(), texel);
         }
     });
     return places;
@@ -189,11 +202,11 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, const ElementFores
 /// Texels of all charts, which are evaluated together.
 class LightmapTexels {
   public:
-    LightmapTexels(Lightmap& lightmap, const Scene& scene, const ElementForest& forest, const ExportOptions& options)
-        : lightmap_(lightmap), scene_(scene), forest_(forest), options_(*options.lightmap) {}
+    LightmapTexels(Lightmap& lightmap, const Scene& scene, const ExportOptions& options)
+        : lightmap_(lightmap), scene_(scene), options_(*options.lightmap) {}
 
     void add(const LightmapChart& chart) {
-        const std::vector<TexelPlace> places = places_of(chart, forest_, options_.gutter);
+        const std::vector<TexelPlace> places = places_of(chart, options_.gutter);
         const int columns = chart.columns + 2 * options_.gutter;
         for (std::size_t i = 0; i < places.size(); ++i) {
             const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
@@ -215,7 +228,6 @@ class LightmapTexels {
   private:
     Lightmap& lightmap_;
     const Scene& scene_;
-    const ElementForest& forest_;
     const LightmapOptions& options_;
     std::vector<TexelPlace> places_;
     std::vector<Rgb*> targets_;
@@ -223,10 +235,10 @@ class LightmapTexels {
 
 }  // namespace
 
-V2f Lightmap::coordinate(std::uint32_t patch, const V3f& x) const {
+V2f Lightmap::coordinate(std::uint32_t patch, Parameters at) const {
     const LightmapChart& chart = charts[chart_of_patch[patch]];
     const Image& image = images[static_cast<std::size_t>(chart.page)];
-    const Imath::V2d texel = chart.texel_at(x);
+    const Imath::V2d texel = chart.patches[index_in_chart[patch]].point(at) / chart.spacing();
     return {static_cast<float>((chart.left + texel.x + 0.5) / image.width),
             static_cast<float>((chart.top + texel.y + 0.5) / image.height)};
 }
@@ -234,17 +246,21 @@ V2f Lightmap::coordinate(std::uint32_t patch, const V3f& x) const {
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     const LightmapOptions& chosen = *options.lightmap;
     Lightmap lightmap;
-    lightmap.charts = make_charts(scene, shown_patches(scene, solution.irradiance), chosen.texels_per_metre,
-                                  chosen.max_size - 2 * chosen.gutter);
+    lightmap.charts = make_charts(scene, shown_patches(scene, solution.irradiance), chosen, options.warnings);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
+    lightmap.index_in_chart.assign(scene.patches.size(), none);
     double texels = 0;
     for (const Imath::V2i& size : pack_charts(lightmap.charts, chosen.gutter, chosen.max_size)) {
         lightmap.images.emplace_back(size.x, size.y);
         texels += static_cast<double>(size.x) * size.y;
     }
-    LightmapTexels evaluated(lightmap, scene, *solution.forest, options);
+    LightmapTexels evaluated(lightmap, scene, options);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
-        for (const std::uint32_t patch : lightmap.charts[i].patches) lightmap.chart_of_patch[patch] = i;
+        const FlatPatches& patches = lightmap.charts[i].patches;
+        for (std::uint32_t k = 0; k < patches.size(); ++k) {
+            lightmap.chart_of_patch[patches[k].patch] = i;
+            lightmap.index_in_chart[patches[k].patch] = k;
+        }
         evaluated.add(lightmap.charts[i]);
     }
     evaluated.evaluate(IrradianceSource(scene, solution, options));

@@ -94,10 +94,10 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
     return lying.packed_area >= standing.packed_area ? lying : standing;
 }
 
-/// By 90 degrees: columns become rows. The frame stays right-handed, so that charts are never mirrored.
+/// By 90 degrees: columns become rows. Charts are never mirrored.
 void turn(LightmapChart& chart) {
-    chart.origin += chart.across * chart.size.x;
-    chart.across = std::exchange(chart.down, -chart.across);
+    for (FlatPatch& flat : chart.patches)
+        for (Imath::V2d& corner : flat.corners) corner = {corner.y, chart.size.x - corner.x};
     std::swap(chart.size.x, chart.size.y);
     std::swap(chart.columns, chart.rows);
 }

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "interflect/exports/lightmap_layouts.h"
+#include "interflect/exports/unfolding.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/flat_surfaces.h"
 #include "interflect/geometry/patch_geometry.h"
@@ -26,30 +28,37 @@ struct BorderEdge {
     V3f inwards;  // unit vector in the patch's plane
 };
 
+/// Of one object; each edge with the first of its group.
+Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
+    Joints joints = smooth.seams;
+    std::vector<std::uint32_t> first(smooth.edges.count, none);
+    for (std::uint32_t edge = 0; edge < smooth.edges.group.size(); ++edge) {
+        const std::uint32_t group = smooth.edges.group[edge];
+        if (group == none) continue;
+        if (first[group] == none)
+            first[group] = edge;
+        else
+            joints.push_back({{first[group], edge}, {0, 0}, {1, 1}});
+    }
+    std::erase_if(joints, [&](const SmoothSurfaces::Seam& joint) {
+        return scene.patches[joint.edge[0] / 4].object != scene.patches[joint.edge[1] / 4].object;
+    });
+    return joints;
+}
+
 /// The patches on one side of each flat surface, and which of them continue which.
 class Neighbourhood {
   public:
-    explicit Neighbourhood(const Scene& scene)
+    Neighbourhood(const Scene& scene, const Joints& joints)
         : scene_(scene), neighbours_(scene.patches.size()), surface_(flat_surfaces(scene)) {
-        const SmoothSurfaces smooth = find_smooth_surfaces(scene);
         std::vector<Intervals> inner(4 * scene.patches.size());
-        const auto join = [&](const SmoothSurfaces::Seam& seam) {
-            const std::uint32_t p = seam.edge[0] / 4, q = seam.edge[1] / 4;
-            if (side(p) != side(q)) return;
+        for (const auto& joint : joints) {
+            const std::uint32_t p = joint.edge[0] / 4, q = joint.edge[1] / 4;
+            if (side(p) != side(q)) continue;
             neighbours_[p].push_back(q);
             neighbours_[q].push_back(p);
-            for (std::size_t k = 0; k < 2; ++k) inner[seam.edge[k]].emplace_back(seam.from[k], seam.to[k]);
-        };
-        std::vector<std::uint32_t> first(smooth.edges.count, none);
-        for (std::uint32_t edge = 0; edge < smooth.edges.group.size(); ++edge) {
-            const std::uint32_t group = smooth.edges.group[edge];
-            if (group == none) continue;
-            if (first[group] == none)
-                first[group] = edge;
-            else
-                join({{first[group], edge}, {0, 0}, {1, 1}});
+            for (std::size_t k = 0; k < 2; ++k) inner[joint.edge[k]].emplace_back(joint.from[k], joint.to[k]);
         }
-        for (const auto& seam : smooth.seams) join(seam);
         for (std::uint32_t edge = 0; edge < inner.size(); ++edge)
             if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
     }
@@ -109,10 +118,8 @@ bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
 }
 
-using Conflicts = std::vector<std::vector<std::uint32_t>>;
-
 /// Adds the conflicts between the patches of one side of a flat surface. @param border  All of its edges.
-void add_conflicts(std::span<const BorderEdge> border, float gap, Conflicts& conflicts) {
+void add_conflicts(std::span<const BorderEdge> border, float gap, ChartConflicts& conflicts) {
     const auto box_of = [](const BorderEdge& edge, float margin) {
         Imath::Box3f box(edge.a);
         box.extendBy(edge.b);
@@ -130,13 +137,12 @@ void add_conflicts(std::span<const BorderEdge> border, float gap, Conflicts& con
     }
 }
 
-/// Of each patch those that must be in other charts.
-Conflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood, double width) {
+ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood, double width) {
     std::vector<BorderEdge> border = neighbourhood.border();
     const auto side = [&](const BorderEdge& edge) { return neighbourhood.side(edge.patch); };
     std::stable_sort(border.begin(), border.end(),
                      [&](const BorderEdge& a, const BorderEdge& b) { return side(a) < side(b); });
-    Conflicts conflicts(scene.patches.size());
+    ChartConflicts conflicts(scene.patches.size());
     for (auto first = border.begin(); first != border.end();) {
         const auto end =
             std::find_if(first, border.end(), [&](const BorderEdge& edge) { return side(edge) != side(*first); });
@@ -146,16 +152,14 @@ Conflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood,
     return conflicts;
 }
 
-/// Grows each chart from a patch across its neighbours, as far as there is no conflict.
-std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, const std::vector<bool>& shown,
-                                                      double width) {
-    const Neighbourhood neighbourhood(scene);
-    const auto conflicts = find_conflicts(scene, neighbourhood, width);
+/// Flat pieces of charts: grows each from a patch across its neighbours, as far as there is no conflict.
+std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>& shown,
+                                     const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
     std::vector<std::uint32_t> chart(scene.patches.size(), none);
-    std::vector<std::vector<std::uint32_t>> groups;
+    std::vector<FlatPatches> pieces;
     for (std::uint32_t seed = 0; seed < chart.size(); ++seed) {
         if (chart[seed] != none || !shown[seed]) continue;
-        const auto number = static_cast<std::uint32_t>(groups.size());
+        const auto number = static_cast<std::uint32_t>(pieces.size());
         std::vector<std::uint32_t> group{seed};
         chart[seed] = number;
         for (std::size_t i = 0; i < group.size(); ++i)
@@ -167,9 +171,9 @@ std::vector<std::vector<std::uint32_t>> group_patches(const Scene& scene, const 
                 chart[next] = number;
                 group.push_back(next);
             }
-        groups.push_back(std::move(group));
+        pieces.push_back(projected(scene, group));
     }
-    return groups;
+    return pieces;
 }
 
 using Points = std::vector<Imath::V2d>;
@@ -228,37 +232,63 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
-LightmapChart chart_of(const Scene& scene, std::vector<std::uint32_t> patches, double texels_per_metre, int most) {
-    const Patch& first = scene.patches[patches.front()];
-    const Imath::V3d origin(scene.vertices[first.vertices[0]]);
-    const Imath::V3d normal(PatchGeometry(scene, first).normal());
-    const Imath::V3d edge = Imath::V3d(scene.vertices[first.vertices[1]]) - origin;
-    const Imath::V3d x = (edge - normal * edge.dot(normal)).normalized(), y = normal.cross(x);
-    Points points;
-    for (const std::uint32_t p : patches)
-        for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
-            const Imath::V3d offset = Imath::V3d(scene.vertices[scene.patches[p].vertices[c]]) - origin;
-            points.emplace_back(offset.dot(x), offset.dot(y));
-        }
-    const Rectangle rectangle = smallest_rectangle(convex_hull(std::move(points)));
-    LightmapChart chart;
-    chart.patches = std::move(patches);
-    chart.origin = origin + x * rectangle.corner.x + y * rectangle.corner.y;
-    chart.across = x * rectangle.across.x + y * rectangle.across.y;
-    chart.down = normal.cross(chart.across);
-    chart.size = rectangle.size;
-    chart.columns = texels_along(chart.size.x, texels_per_metre, most);
-    chart.rows = texels_along(chart.size.y, texels_per_metre, most);
+/// Of patches whose coordinates are positive, the smallest 0.
+LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
+    LightmapChart chart{std::move(patches), {0, 0}};
+    for (const FlatPatch& flat : chart.patches)
+        for (const Imath::V2d& corner : flat.outline())
+            chart.size = {std::max(chart.size.x, corner.x), std::max(chart.size.y, corner.y)};
+    const int most = options.max_size - 2 * options.gutter;
+    chart.columns = texels_along(chart.size.x, options.texels_per_metre, most);
+    chart.rows = texels_along(chart.size.y, options.texels_per_metre, most);
     return chart;
+}
+
+/// In the rectangle's frame: along it and down from its corner.
+FlatPatches moved_into(const Rectangle& rectangle, FlatPatches patches) {
+    for (FlatPatch& flat : patches)
+        for (Imath::V2d& corner : flat.corners) {
+            const Imath::V2d offset = corner - rectangle.corner;
+            corner = {offset.dot(rectangle.across), rectangle.across.cross(offset)};
+        }
+    return patches;
+}
+
+Points corners_of(const FlatPatches& patches) {
+    Points points;
+    for (const FlatPatch& flat : patches) points.insert(points.end(), flat.outline().begin(), flat.outline().end());
+    return points;
+}
+
+/// The smallest rectangle that is not turned.
+Rectangle bounding_rectangle(const FlatPatches& patches) {
+    Imath::Box2d box;
+    for (const FlatPatch& flat : patches) box.extendBy(flat.box());
+    return {box.min, {1, 0}, box.size()};
+}
+
+std::vector<FlatPatches> smooth_layouts(const Scene& scene, const std::vector<bool>& shown, double gap) {
+    const SmoothSurfaces smooth = find_smooth_surfaces(scene);
+    const Joints joints = joints_of(scene, smooth);
+    const Neighbourhood neighbourhood(scene, joints);
+    const ChartConflicts conflicts = find_conflicts(scene, neighbourhood, gap);
+    return unfolded(scene, smooth.corners, joints, conflicts, flat_pieces(scene, shown, neighbourhood, conflicts), gap);
 }
 
 }  // namespace
 
-std::vector<LightmapChart> make_charts(const Scene& scene, const std::vector<bool>& shown, double texels_per_metre,
-                                       int most_texels) {
+std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
+                                       Warnings* warnings) {
     std::vector<LightmapChart> charts;
-    for (auto& patches : group_patches(scene, shown, narrow_gap / texels_per_metre))
-        charts.push_back(chart_of(scene, std::move(patches), texels_per_metre, most_texels));
+    if (!options.own_charts)
+        for (FlatPatches& layout : kept_layouts(scene, shown, warnings)) {
+            for (const FlatPatch& flat : layout) shown[flat.patch] = false;
+            charts.push_back(chart_of(moved_into(bounding_rectangle(layout), std::move(layout)), options));
+        }
+    for (FlatPatches& layout : smooth_layouts(scene, shown, narrow_gap / options.texels_per_metre)) {
+        const Rectangle rectangle = smallest_rectangle(convex_hull(corners_of(layout)));
+        charts.push_back(chart_of(moved_into(rectangle, std::move(layout)), options));
+    }
     return charts;
 }
 
