@@ -283,7 +283,8 @@ std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> sho
     if (!options.own_charts)
         for (FlatPatches& layout : kept_layouts(scene, shown, warnings)) {
             for (const FlatPatch& flat : layout) shown[flat.patch] = false;
-            charts.push_back(chart_of(moved_into(bounding_rectangle(layout), std::move(layout)), options));
+            const Rectangle rectangle = bounding_rectangle(layout);
+            charts.push_back(chart_of(moved_into(rectangle, std::move(layout)), options));
         }
     for (FlatPatches& layout : smooth_layouts(scene, shown, narrow_gap / options.texels_per_metre)) {
         const Rectangle rectangle = smallest_rectangle(convex_hull(corners_of(layout)));
