@@ -1,5 +1,6 @@
 """`interflect export`: what it writes, what it refuses, and that nothing is left half written."""
 
+import base64
 import json
 import unittest
 
@@ -45,6 +46,23 @@ class Export(CommandTest):
             [file for file in self.files() if file.startswith("room")],
             ["room.glb", "room.gltf", "room.lightmap-0.exr", "room.lightmap-0.hdr"],
         )
+
+    def test_warns_of_layouts_that_cannot_be_kept(self):
+        self.solve()
+        scene = self.export("--lightmap")
+        attributes = scene["meshes"][0]["primitives"][0]["attributes"]
+        accessor = scene["accessors"][attributes["TEXCOORD_1"]]
+        view = scene["bufferViews"][accessor["bufferView"]]
+        prefix, _, text = scene["buffers"][view["buffer"]]["uri"].partition(",")
+        data = bytearray(base64.b64decode(text))
+        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        data[start : start + 8 * accessor["count"]] = bytes(8 * accessor["count"])  # all at (0, 0)
+        scene["buffers"][view["buffer"]]["uri"] = prefix + "," + base64.b64encode(data).decode()
+        (self.folder / "flat.gltf").write_text(json.dumps(scene))
+        self.interflect("solve", "flat.gltf", "--rays", "100k", "-o", "scene.h5")
+        export = ("export", "scene.h5", "--lightmap", "-o", "out.gltf")
+        self.assertIn("the lightmap layout of object", self.interflect(*export).stderr)
+        self.assertNotIn("the lightmap layout of object", self.interflect(*export, "--own-charts").stderr)
 
     def test_refusals(self):
         self.solve()
