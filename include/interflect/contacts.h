@@ -29,10 +29,10 @@ struct ContactOptions {
 ///
 /// Each face is cut by a binary space partition in its plane: a cut runs along the line of a segment through the whole
 /// convex piece that the segment lies in. Pieces are triangles and convex quadrilaterals with the face's material,
-/// object and texture coordinates; they cover it exactly (to the rounding of vertices). Patch::surface tells what was
-/// one surface. Vertices may lie in the middle of a neighbour's edge. Scene::contacts gets the parts of the cuts on
-/// which other faces do meet the face. A warped quadrilateral is cut as the two triangles that the ray caster takes it
-/// for.
+/// object and coordinates in textures and lightmaps; they cover it exactly (to the rounding of vertices).
+/// Patch::surface tells what was one surface. Vertices may lie in the middle of a neighbour's edge. Scene::contacts
+/// gets the parts of the cuts on which other faces do meet the face. A warped quadrilateral is cut as the two triangles
+/// that the ray caster takes it for.
 ///
 /// Lengths below 4e-6 of the face's diameter, or below four roundings of its coordinates, are ignored: nothing thinner
 /// is cut off. Neither the order of faces nor the number of threads matters.

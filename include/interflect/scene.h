@@ -77,8 +77,9 @@ struct Scene {
     std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Those that no patch uses count for nothing.
     /// (u, v) of every vertex, or empty where no patch is textured.
     std::vector<V2f> texture_coordinates;
-    /// (u, v) of every vertex in its object's own lightmap, where the file has laid one out (TEXCOORD_1 of glTF); (0,
-    /// 0) is the lower left corner. Empty where no patch has any; not finite for vertices that have none.
+    /// (u, v) in [0, 1] of every vertex in its object's own lightmap, where the file has laid one out (TEXCOORD_1 of
+    /// glTF); (0, 0) is the lower left corner. Empty where no patch has any. All corners of a patch have some, or none
+    /// has: then they are NaN.
     std::vector<V2f> lightmap_coordinates;
     std::vector<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().

@@ -1,12 +1,14 @@
 """What `export` writes, read back by others: meshes with their light, probes, scenes for other renderers."""
 
 import ast
+import base64
 import json
 import math
 import struct
 import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
+import zlib
 from pathlib import Path
 
 from command import BAD_INPUT, VIEWS, CommandTest, room
@@ -224,6 +226,106 @@ class Scenes(Exported):
         text, _ = self.export("room.pbrt")
         self.interflect("export", "room.h5", "-o", "solved.pbrt")
         self.assertEqual(self.bytes("solved.pbrt").decode().count("Shape"), text.count("Shape"))
+
+
+def hdr(*texels):
+    """A row of greys, 0 or 1, as a Radiance picture."""
+    pixels = b"".join(bytes([128, 128, 128, 129]) if texel else bytes(4) for texel in texels)
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X %d\n" % len(texels) + pixels
+
+
+def png_rows(content):
+    """The rows of an unfiltered PNG of 8 bits."""
+    at, data = 8, b""
+    while at < len(content):
+        (length,), kind = struct.unpack_from(">I", content, at), content[at + 4 : at + 8]
+        body = content[at + 8 : at + 8 + length]
+        if kind == b"IHDR":
+            width, height, _, colour_type = struct.unpack(">IIBB", body[:10])
+        data += body if kind == b"IDAT" else b""
+        at += 12 + length
+    channels = {2: 3, 6: 4}[colour_type]
+    data, stride = zlib.decompress(data), 1 + channels * width
+    rows = [data[i * stride : (i + 1) * stride] for i in range(height)]
+    assert all(row[0] in (0, 1) for row in rows), "no filter, or the pixel to the left"
+    pixels = []
+    for row in rows:
+        values = list(row[1:])
+        if row[0] == 1:
+            for i in range(channels, len(values)):
+                values[i] = (values[i] + values[i - channels]) % 256
+        pixels.append([tuple(values[i : i + channels]) for i in range(0, len(values), channels)])
+    return pixels
+
+
+class CutOuts(Exported):
+    """A board across the room of which every other column is open: what is left reflects 0.5."""
+
+    def setUp(self):
+        super().setUp()
+        corners = "".join(
+            f"v b{i} =\n\tp {x} 1 {z}\n\tuv {x / 2} {z / 2}\n" for i, (x, z) in enumerate([(0, 0), (2, 0), (2, 2), (0, 2)])
+        )
+        for name, texels in (("holes.hdr", (1, 0, 1, 0)), ("rest.hdr", (0, 1, 0, 1))):
+            (self.folder / name).write_bytes(hdr(*texels))
+        self.write(
+            "room.mgf",
+            room() + corners + "m board =\n\tsides 2\n\tc\n\trd .5\n\tts 1 0\n\ttexture rd rest.hdr\n\ttexture ts holes.hdr\n"
+            "f b0 b1 b2 b3\n",
+        )
+
+    def test_are_masks_in_gltf(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
+        for options in ((), ("--lightmap",)):
+            self.interflect("export", "room.h5", "-o", "room.gltf", *options)
+            gltf = json.loads(self.bytes("room.gltf"))
+            board = next(m for m in gltf["materials"] if m["name"] == "board")
+            self.assertEqual(board["alphaMode"], "MASK")
+            self.assertNotIn("alphaMode", next(m for m in gltf["materials"] if m["name"] == "paint"))
+            image = gltf["images"][gltf["textures"][board["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]]
+            view = gltf["bufferViews"][image["bufferView"]]
+            data = base64.b64decode(gltf["buffers"][0]["uri"].split(",")[1])
+            (row,) = png_rows(data[view["byteOffset"] : view["byteOffset"] + view["byteLength"]])
+            self.assertEqual([pixel[3] for pixel in row], [0, 255, 0, 255])
+            self.assertEqual(row[1][:3], (255, 255, 255), "the factor has the reflectance")
+
+    def test_are_masks_in_obj(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
+        self.interflect("export", "room.h5", "-o", "room.obj")
+        self.assertIn("map_d room-board-opacity.png", self.bytes("room.mtl").decode())
+        (row,) = png_rows(self.bytes("room-board-opacity.png"))
+        self.assertEqual(row, [(0, 0, 0), (255, 255, 255), (0, 0, 0), (255, 255, 255)])
+
+    def test_come_back(self):
+        """Seen to fail with the holes closed."""
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
+        self.interflect("export", "room.h5", "-o", "back.glb", "--lightmap", "--exposure", "0")
+        self.interflect("export", "room.h5", "-o", "back.obj")
+        view = ("--eye", "0.3,0.2,1.6", "--look-at", "1.2,3,1", "--up", "0,0,1", "--fov", "45")
+        for scene, camera in (("room.mgf", view), ("back.obj", view), ("back.glb", ("--view", "door"))):
+            picture = ("--shading", "path", "--samples", "256", "--size", "24x18")
+            self.interflect("render", scene, *camera, *picture, "-o", "seen.exr")
+            if scene == "room.mgf":
+                self.bytes("seen.exr")
+                (self.folder / "seen.exr").rename(self.folder / "expected.exr")
+                continue
+            found = self.json("compare", "seen.exr", "expected.exr")
+            # The lamp of room() has no back, that of the exports has a dark one.
+            self.assertAlmostEqual(found["ratio_of_means"], 1, delta=0.03)
+            self.assertLess(found["blocks"][1]["relative_rmse"], 0.03)
+
+    def test_are_told_to_renderers(self):
+        for name, words in (
+            ("room.xml", '<bsdf type="mask"><texture type="bitmap" name="opacity">'),
+            ("room.pbrt", '"texture alpha" "board-opacity"'),
+            ("room.py", '"room-board-transmittance.exr"'),
+        ):
+            stderr = self.interflect("export", "room.mgf", "-o", name).stderr
+            self.assertIn(words, self.bytes(name).decode())
+            self.assertNotIn("holes", stderr)
+        self.bytes("room-board-opacity.exr")
+        self.bytes("room-board-transmittance.exr")
+        self.assertIn("left out: holes", self.interflect("export", "room.mgf", "-o", "room.rad").stderr)
 
 
 if __name__ == "__main__":

@@ -264,6 +264,7 @@ TEST_F(SolutionFile, OpensVersion4) {
     EXPECT_THAT(read.scene.files, testing::ElementsAre("room.mgf", "room.views.json"));
     EXPECT_TRUE(read.scene.file_checksums.empty());
     EXPECT_EQ(read.scene.patches.size(), 13u);
+    EXPECT_TRUE(read.scene.lightmap_coordinates.empty());
     EXPECT_EQ(read.solution.forest->size(), 133u);
     EXPECT_EQ(read.solution.groups.size(), 1u);
     ASSERT_EQ(read.solution.iterations.size(), 1u) << "the last one alone";

@@ -305,15 +305,18 @@ TEST(GltfMeshopt, QuaternionFilterIsUndone) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((found[i] - expected[i]).length(), 1e-3f) << "16 bits";
 }
 
-/// The triangle with positions and texture coordinates, as Draco compresses them.
+/// The triangle with positions and two sets of texture coordinates, as Draco compresses them.
 std::string draco_triangle() {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(1);
     const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
     const int coordinate = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+    const int lightmap = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
     const float positions[3][3] = {{0, 0, 0}, {4, 0, 0}, {0, 2, 0}}, coordinates[3][2] = {{0, 0}, {1, 0}, {0, 1}};
     builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), positions[0], positions[1], positions[2]);
     builder.SetAttributeValuesForFace(coordinate, draco::FaceIndex(0), coordinates[0], coordinates[1], coordinates[2]);
+    const float layout[3][2] = {{0, 0}, {0.5f, 0}, {0, 0.25f}};
+    builder.SetAttributeValuesForFace(lightmap, draco::FaceIndex(0), layout[0], layout[1], layout[2]);
     const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
     draco::Encoder encoder;
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
@@ -328,8 +331,9 @@ GltfBuilder draco_file() {
     json& primitive = file.file["meshes"][0]["primitives"][0];
     primitive["indices"] = file.add("accessors", {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
     file.file["accessors"][0].erase("bufferView");
-    primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", file.add_view(draco_triangle())},
-                                                             {"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}};
+    primitive["extensions"]["KHR_draco_mesh_compression"] = {
+        {"bufferView", file.add_view(draco_triangle())},
+        {"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}, {"TEXCOORD_1", 2}}}};
     return file;
 }
 
@@ -337,6 +341,11 @@ TEST(GltfDraco, MeshesAreDecoded) {
     const Scene scene = draco_file().read();
     ASSERT_EQ(scene.patches.size(), 2u);
     EXPECT_THAT(from_origin(corners(scene, 0)), ElementsAre(V3f(0), V3f(4, 0, 0), V3f(0, 2, 0)));
+    ASSERT_EQ(scene.lightmap_coordinates.size(), scene.vertices.size());
+    for (std::size_t i = 0; i < 3; ++i) {
+        const V3f x = V3f(scene.origin) + scene.vertices[i];
+        EXPECT_EQ(scene.lightmap_coordinates[i], V2f(x.x / 8, 1 - x.y / 8));
+    }
 }
 
 TEST(GltfDraco, DamagedOnesAreRefused) {

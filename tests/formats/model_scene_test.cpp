@@ -151,6 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "a face has 2 vertices"},
         BadModel{"Material", [](Model& m) { m.meshes[0].material = 1; }, "material 1 does not exist"},
         BadModel{"Coordinates", [](Model& m) { m.meshes[0].texture_coordinates.resize(3); }, "3 texture coordinates"},
+        BadModel{"LightmapCoordinates", [](Model& m) { m.meshes[0].lightmap_coordinates.resize(3); },
+                 "3 lightmap coordinates"},
         BadModel{"Mesh", [](Model& m) { m.instances[0].mesh = 1; }, "does not exist"},
         BadModel{"Object", [](Model& m) { m.instances[0].object = 1; }, "does not exist"},
         BadModel{"NotFinite", [](Model& m) { m.meshes[0].positions[4].y = std::nan(""); }, "too far"},

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include "interflect/formats/texture_files.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/image/image_codecs.h"
+#include "interflect/image/srgb.h"
 #include "interflect/load_scene.h"
 #include "tests/formats/read_faults.h"
 #include "tests/support/scenes.h"
@@ -110,6 +113,30 @@ TEST(Obj, TextureMultipliesTheReflectance) {
     EXPECT_FLOAT_EQ(wood.reflectance.x, 0.99f);
     EXPECT_FLOAT_EQ(wood.reflectance.z, 0.5f);
     EXPECT_EQ(scene.texture_coordinates[scene.patches[0].vertices[2]], V2f(.5f, 1));
+}
+
+/// The alpha of a mask, or its greys where it has none, as they are stored: not decoded from sRGB.
+TEST(Obj, MasksMakeHoles) {
+    const TemporaryFolder folder;
+    write_texture(folder.path() / "bark.png", {"", 2, 1, {Rgb(1), Rgb(1)}});
+    write_texture(folder.path() / "greys.png", {"", 2, 1, {Rgb(0), Rgb(srgb_decode(0.6f))}});
+    std::ofstream(folder.path() / "alpha.png", std::ios::binary)
+        << codecs::encode_png(Image(2, 1, Rgb(1)), std::vector<float>{0, 0.6f});
+    for (const std::string mask : {"greys.png", "alpha.png"}) {
+        folder.write("a.mtl", "newmtl leaf\nKd .5 .5 .5\nd .5\nKe 1 1 1\nmap_Kd bark.png\nmap_d " + mask + "\n");
+        const Scene scene =
+            load_scene(folder.write("room.obj", "mtllib a.mtl\n" + square +
+                                                    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 "
+                                                    "2/2 3/3 4/4\n"));
+        const Material& leaf = scene.materials[scene.patches[0].material];
+        ASSERT_NE(leaf.transmittance_texture, none) << mask;
+        const auto at = [&](std::uint32_t texture, std::size_t i) { return scene.textures.at(texture).texels.at(i).x; };
+        for (const auto& [i, there] : {std::pair(0u, 0.0f), {1u, 0.3f}}) {
+            EXPECT_NEAR(leaf.transmittance.x * at(leaf.transmittance_texture, i), 1 - there, 1e-5f) << mask;
+            EXPECT_NEAR(leaf.reflectance.x * at(leaf.reflectance_texture, i), there / 2, 1e-5f) << mask;
+            EXPECT_NEAR(at(leaf.exitance_texture, i), there, 1e-5f) << mask;
+        }
+    }
 }
 
 TEST(Obj, WhatIsMissingIsAWarning) {

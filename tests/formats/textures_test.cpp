@@ -67,6 +67,30 @@ TEST_F(MgfTextures, BelongToMaterialsAndCoordinatesToVertices) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
 }
 
+/// Seen to fail where materials that differ in this alone are one.
+TEST_F(MgfTextures, OfTransmittanceMakeHoles) {
+    const std::string material = "m fence =\n rd .5\n ts 1 0\n texture rd black.exr\n";
+    Image image(2, 1, Rgb(1));
+    image.at(0, 0) = Rgb(0);
+    write_image(folder.path() / "black.exr", image);
+    image = Image(2, 1, Rgb(0));
+    image.at(0, 0) = Rgb(1);
+    write_image(folder.path() / "holes.exr", image);
+    const Scene scene = read(three_vertices + material + " texture ts holes.exr\nf a b d\n");
+    const Material& fence = scene.materials.at(scene.patches.at(0).material);
+    EXPECT_EQ(fence.transmittance, Rgb(1));
+    ASSERT_NE(fence.transmittance_texture, none);
+    EXPECT_EQ(scene.textures[fence.transmittance_texture].texels[0], Rgb(1));
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+    EXPECT_TRUE(scene.warnings.entries().empty());
+    EXPECT_THAT(fault(three_vertices + material + " texture ts black.exr\nf a b d\n"),
+                HasSubstr("rd, rs and ts times their textures are up to (1.5"));
+    fs::copy_file(folder.path() / "holes.exr", folder.path() / "other.exr");
+    const Scene others = read(three_vertices + material + " texture ts holes.exr\nf a b d\n" + material +
+                              " texture ts other.exr\nf a b d\n");
+    EXPECT_EQ(others.materials.size(), 2u);
+}
+
 TEST_F(MgfTextures, MaterialsThatDifferInTheirTextureAlone) {
     write_image_of(0.75f, "other.exr");
     const Scene scene = read(three_vertices +
@@ -133,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, MgfBadTexture,
     testing::Values(
         BadTexture{"NoFile", "texture rd", "expected 'texture rd|ed image'"},
-        BadTexture{"OfWhat", "texture rs image.exr", "a texture is one of rd or ed, not of 'rs'"},
+        BadTexture{"OfWhat", "texture rs image.exr", "a texture is one of rd, ts or ed, not of 'rs'"},
         BadTexture{"MissingImage", "texture rd nowhere.png\nrd .5", "there is no such file"},
         BadTexture{"Folder", "texture rd .\nrd .5", "this is a folder"},
         BadTexture{"UnknownFormat", "texture rd scene.mgf\nrd .5", "no image format has the extension '.mgf'"},
@@ -179,6 +203,7 @@ void expect_same(const Scene& actual, const Scene& expected) {
         };
         ASSERT_EQ(texels(actual, m.reflectance_texture), texels(expected, n.reflectance_texture)) << "patch " << i;
         ASSERT_EQ(texels(actual, m.exitance_texture), texels(expected, n.exitance_texture)) << "patch " << i;
+        ASSERT_EQ(texels(actual, m.transmittance_texture), texels(expected, n.transmittance_texture)) << "patch " << i;
     }
     EXPECT_TRUE(actual.warnings.entries().empty());
 }

@@ -1,10 +1,14 @@
-// Texture coordinates through all that makes new vertices: a coordinate that is linear in space stays so.
+// Coordinates in textures and lightmaps through all that makes new vertices: those that are linear in space stay so.
 //
 // Seen to fail when cuts or crossings of outlines make vertices without coordinates, splits with those of a corner,
-// when vertices that differ in coordinates alone are merged, and when a seam between images divides a flat surface.
+// when either kind is interpolated as the other, when vertices that differ in coordinates alone are merged, and when a
+// seam between images divides a flat surface.
 #include "interflect/geometry/texture_mapping.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
 
 #include "interflect/contacts.h"
 #include "interflect/geometry/flat_surfaces.h"
@@ -21,12 +25,19 @@ using namespace testing_support;
 /// An image laid askew on the plane z = 0.
 V2f laid(const V3f& x) { return {0.3f * x.x - 0.1f * x.y + 0.7f, 0.2f * x.x + 0.4f * x.y - 0.3f}; }
 
+/// A chart of a lightmap, laid another way.
+V2f charted(const V3f& x) { return {0.12f * x.x + 0.02f * x.y + 0.05f, 0.8f - 0.15f * x.y - 0.01f * x.x}; }
+
+const V2f no_chart(std::numeric_limits<float>::quiet_NaN());
+
 void lay_image(Scene& scene) {
-    scene.texture_coordinates.clear();
-    for (const V3f& x : scene.vertices) scene.texture_coordinates.push_back(laid(x));
+    for (const V3f& x : scene.vertices) {
+        scene.texture_coordinates.push_back(laid(x));
+        scene.lightmap_coordinates.push_back(charted(x));
+    }
 }
 
-/// A trapezoid and a triangle in the plane z = 0, with the image, and walls that stand on them.
+/// A trapezoid and a triangle in the plane z = 0, with image and chart, and walls without a chart that stand on them.
 Scene floor_with_walls() {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(0));
@@ -39,20 +50,30 @@ Scene floor_with_walls() {
     add_rectangle(scene, {1, -1, 0}, {0.3f, 4, 0}, {0, 0, 1}, 1, 1, 1, true);
     add_rectangle(scene, {-1, 0.4f, 0}, {7, 0.5f, 0}, {0, 0, 1}, 1, 1, 1, true);
     lay_image(scene);
+    for (std::size_t i = 5; i < scene.vertices.size(); ++i) scene.lightmap_coordinates[i] = no_chart;
     return scene;
 }
 
-/// Whether the image is where it was, at the corners and in the middle of each patch of material 0.
+void expect_near(const V2f& actual, const V2f& expected) {
+    EXPECT_NEAR(actual.x, expected.x, 1e-5f);
+    EXPECT_NEAR(actual.y, expected.y, 1e-5f);
+}
+
+/// Whether image and chart are where they were, at the corners and in the middle of each patch of material 0, and the
+/// others have no chart.
 void expect_laid(const Scene& scene) {
     ASSERT_EQ(scene_faults(scene), std::vector<std::string>());
     ASSERT_EQ(scene.texture_coordinates.size(), scene.vertices.size());
+    ASSERT_EQ(scene.lightmap_coordinates.size(), scene.vertices.size());
     for (const Patch& patch : scene.patches) {
-        if (patch.material != 0) continue;
         const PatchGeometry geometry(scene, patch);
         for (const Parameters p : {Parameters{0, 0}, {1, 0}, {0, 1}, {0.3f, 0.4f}}) {
-            const V2f expected = laid(geometry.point(p)), actual = texture_coordinate(scene, patch, p);
-            EXPECT_NEAR(actual.x, expected.x, 1e-5f);
-            EXPECT_NEAR(actual.y, expected.y, 1e-5f);
+            const VertexCoordinates actual = coordinates_at(scene, patch, p);
+            ASSERT_EQ(actual.lightmap.has_value(), patch.material == 0);
+            if (patch.material != 0) continue;
+            expect_near(texture_coordinate(scene, patch, p), laid(geometry.point(p)));
+            expect_near(actual.texture.value(), laid(geometry.point(p)));
+            expect_near(*actual.lightmap, charted(geometry.point(p)));
         }
     }
 }
@@ -97,11 +118,29 @@ TEST(VertexWeld, KeepsVerticesApartThatDifferInCoordinates) {
     Scene scene;
     VertexWeld weld(scene);
     EXPECT_EQ(weld.vertex({1, 2, 3}), 0u);
-    EXPECT_EQ(weld.vertex({1, 2, 3}, V2f(0.5f, 0)), 1u);
-    EXPECT_EQ(weld.vertex({1, 2, 3}, V2f(0.5f, 1)), 2u);
-    EXPECT_EQ(weld.vertex({1, 2, 3}, V2f(0.5f, 0)), 1u);
+    EXPECT_EQ(weld.vertex({1, 2, 3}, {.texture = V2f(0.5f, 0), .lightmap = {}}), 1u);
+    EXPECT_EQ(weld.vertex({1, 2, 3}, {.texture = V2f(0.5f, 1), .lightmap = {}}), 2u);
+    EXPECT_EQ(weld.vertex({1, 2, 3}, {.texture = V2f(0.5f, 0), .lightmap = {}}), 1u);
     EXPECT_EQ(weld.vertex({1, 2, 3}), 0u);
     EXPECT_EQ(scene.texture_coordinates, (std::vector<V2f>{{0, 0}, {0.5f, 0}, {0.5f, 1}}));
+    EXPECT_TRUE(scene.lightmap_coordinates.empty());
+}
+
+TEST(VertexWeld, KeepsVerticesApartThatDifferInLightmapsAlone) {
+    Scene scene;
+    VertexWeld weld(scene);
+    EXPECT_EQ(weld.vertex({1, 2, 3}), 0u);
+    EXPECT_EQ(weld.vertex({1, 2, 3}, {.texture = {}, .lightmap = V2f(0)}), 1u) << "a place, other than none";
+    EXPECT_EQ(weld.vertex({1, 2, 3}, {.texture = {}, .lightmap = V2f(-0.0f, 0)}), 1u);
+    for (const bool are_new : {true, false}) {
+        for (std::uint32_t i = 2; i < 1000; ++i) {
+            const V2f coordinate(static_cast<float>(i) / 1000, 0.5f);
+            ASSERT_EQ(weld.vertex({1, 2, 3}, {.texture = {}, .lightmap = coordinate}), i) << are_new;
+        }
+    }
+    EXPECT_EQ(weld.vertex({1, 2, 3}), 0u);
+    ASSERT_EQ(scene.lightmap_coordinates.size(), scene.vertices.size());
+    EXPECT_TRUE(std::isnan(scene.lightmap_coordinates[0].x) && std::isnan(scene.lightmap_coordinates[0].y));
 }
 
 TEST(VertexWeld, LeavesASceneWithoutCoordinatesWithout) {
@@ -109,18 +148,34 @@ TEST(VertexWeld, LeavesASceneWithoutCoordinatesWithout) {
     VertexWeld weld(scene);
     weld.vertex({1, 2, 3});
     EXPECT_TRUE(scene.texture_coordinates.empty());
+    EXPECT_TRUE(scene.lightmap_coordinates.empty());
 }
 
-TEST(FlatSurfaces, AreNotDividedWhereImagesMeet) {
+TEST(VertexCoordinates, StayInTheLightmapWhateverRoundingDoes) {
+    Scene scene;
+    for (const float u : {0.0f, 1.0f}) add_vertex(scene, {u, 0, 0}, {.texture = {}, .lightmap = V2f(u, 1 - u)});
+    const std::vector<std::uint32_t> vertices = {0, 1};
+    const std::vector<float> weights = {-1e-6f, 1.000001f};
+    EXPECT_EQ(interpolated(scene, vertices, weights).lightmap, V2f(1, 0));
+}
+
+/// Two squares side by side, each with the whole image or lightmap and so with vertices of its own.
+class SeamInAFlatSurface : public testing::TestWithParam<std::vector<V2f> Scene::*> {};
+
+TEST_P(SeamInAFlatSurface, DoesNotDivideIt) {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(0));
     scene.objects = {""};
     scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}};
-    scene.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    scene.*GetParam() = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
     scene.patches = {{.vertices = {0, 1, 2, 3}}, {.vertices = {4, 5, 6, 7}}};
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
     EXPECT_EQ(surface[0], surface[1]);
 }
+
+INSTANTIATE_TEST_SUITE_P(Of, SeamInAFlatSurface,
+                         testing::Values(&Scene::texture_coordinates, &Scene::lightmap_coordinates),
+                         [](const auto& test) { return test.index == 0 ? "Textures" : "Lightmaps"; });
 
 }  // namespace
 }  // namespace interflect

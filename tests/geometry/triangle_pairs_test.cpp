@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "interflect/base/random.h"
@@ -18,6 +19,21 @@ std::size_t quadrilaterals(const Faces& faces) {
 
 const std::vector<V3f> unit_square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
+Scene scene_of(const std::vector<V3f>& vertices, const std::vector<V2f>& textures = {},
+               const std::vector<V2f>& lightmap = {}) {
+    Scene scene;
+    scene.vertices = vertices;
+    scene.texture_coordinates = textures;
+    scene.lightmap_coordinates = lightmap;
+    return scene;
+}
+
+const std::vector<std::uint32_t> halves_of_square{0, 1, 2, 0, 2, 3};
+
+/// Coordinates of the square's corners: of one linear map, and of two that agree on its diagonal.
+const std::vector<V2f> linear{{0.1f, 0}, {0.5f, 0.2f}, {0.4f, 0.8f}, {0, 0.6f}};
+const std::vector<V2f> distorted{{0, 0}, {1, 0}, {1, 0.5f}, {0, 1}};
+
 /// The vertices of a face, from the lowest on in its order round the face.
 FaceVertices from_lowest(FaceVertices face) {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
@@ -27,7 +43,7 @@ FaceVertices from_lowest(FaceVertices face) {
 TEST(TrianglePairs, ASquareSplitAlongEitherDiagonalIsOneFace) {
     for (const std::vector<std::uint32_t>& triangles :
          {std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}, {0, 1, 3, 3, 1, 2}, {2, 3, 0, 1, 2, 0}}) {
-        const Faces faces = merge_triangle_pairs(unit_square, {}, triangles);
+        const Faces faces = merge_triangle_pairs(scene_of(unit_square), triangles);
         ASSERT_EQ(faces.size(), 1u);
         EXPECT_EQ(from_lowest(faces[0]), (FaceVertices{0, 1, 2, 3}));
     }
@@ -36,33 +52,51 @@ TEST(TrianglePairs, ASquareSplitAlongEitherDiagonalIsOneFace) {
 struct Unmergeable {
     const char* name;
     std::vector<V3f> vertices;
-    std::vector<V2f> coordinates;
     std::vector<std::uint32_t> triangles;
 };
 
 class UnmergeablePair : public testing::TestWithParam<Unmergeable> {};
 
 TEST_P(UnmergeablePair, StaysTwoTriangles) {
-    const auto& [name, vertices, coordinates, triangles] = GetParam();
-    const Faces faces = merge_triangle_pairs(vertices, coordinates, triangles);
+    const auto& [name, vertices, triangles] = GetParam();
+    const Faces faces = merge_triangle_pairs(scene_of(vertices), triangles);
     ASSERT_EQ(faces.size(), 2u);
     EXPECT_EQ(quadrilaterals(faces), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Of, UnmergeablePair,
-    testing::Values(Unmergeable{"Folded", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.001f}, {0, 1, 0}}, {}, {0, 1, 2, 0, 2, 3}},
-                    Unmergeable{"Concave", {{0, 0, 0}, {1, 0, 0}, {0.3f, 0.3f, 0}, {0, 1, 0}}, {}, {0, 1, 2, 0, 2, 3}},
-                    Unmergeable{"InALine", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {}, {0, 1, 3, 1, 2, 3}},
-                    Unmergeable{"BackToBack", unit_square, {}, {0, 1, 2, 0, 3, 2}},
-                    Unmergeable{"Twice", unit_square, {}, {0, 1, 2, 0, 1, 2}},
-                    Unmergeable{"Distorted", unit_square, {{0, 0}, {1, 0}, {1, 0.5f}, {0, 1}}, {0, 1, 2, 0, 2, 3}}),
+    testing::Values(Unmergeable{"Folded", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.001f}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3}},
+                    Unmergeable{"Concave", {{0, 0, 0}, {1, 0, 0}, {0.3f, 0.3f, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3}},
+                    Unmergeable{"InALine", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {0, 1, 3, 1, 2, 3}},
+                    Unmergeable{"BackToBack", unit_square, {0, 1, 2, 0, 3, 2}},
+                    Unmergeable{"Twice", unit_square, {0, 1, 2, 0, 1, 2}}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(TrianglePairs, ALinearTextureIsKept) {
-    const std::vector<V2f> coordinates{{0, 0}, {2, 1}, {1, 3}, {-1, 2}};
-    EXPECT_EQ(merge_triangle_pairs(unit_square, coordinates, std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}).size(), 1u);
+struct CoordinatesOfPair {
+    const char* name;
+    std::vector<V2f> textures, lightmap;
+    std::size_t faces;
+};
+
+class CoordinatesOfPairs : public testing::TestWithParam<CoordinatesOfPair> {};
+
+TEST_P(CoordinatesOfPairs, AreLinearMapsOverEachFace) {
+    const auto& [name, textures, lightmap, faces] = GetParam();
+    EXPECT_EQ(merge_triangle_pairs(scene_of(unit_square, textures, lightmap), halves_of_square).size(), faces);
 }
+
+INSTANTIATE_TEST_SUITE_P(With, CoordinatesOfPairs,
+                         testing::Values(CoordinatesOfPair{"LinearTexture", linear, {}, 1},
+                                         CoordinatesOfPair{"DistortedTexture", distorted, {}, 2},
+                                         CoordinatesOfPair{"LinearLightmap", {}, linear, 1},
+                                         CoordinatesOfPair{"DistortedLightmap", {}, distorted, 2},
+                                         CoordinatesOfPair{"DistortedLightmapAlone", linear, distorted, 2},
+                                         CoordinatesOfPair{"DistortedTextureAlone", distorted, linear, 2},
+                                         CoordinatesOfPair{"BothLinear", linear, linear, 1},
+                                         CoordinatesOfPair{"PlaceInNoLightmap", linear,
+                                                           std::vector<V2f>(4, V2f(std::nanf(""))), 1}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 /// A grid of cells 1 by 0.7, its triangles in any order and each turned any way: no triangle is left alone.
 TEST(TrianglePairs, AGridIsMergedWholeWhateverTheOrder) {
@@ -85,7 +119,7 @@ TEST(TrianglePairs, AGridIsMergedWholeWhateverTheOrder) {
                     triangle.end());
         corners.insert(corners.end(), triangle.begin(), triangle.end());
     }
-    const Faces faces = merge_triangle_pairs(vertices, {}, corners);
+    const Faces faces = merge_triangle_pairs(scene_of(vertices), corners);
     EXPECT_EQ(faces.size(), (n - 1) * (n - 1));
     EXPECT_EQ(quadrilaterals(faces), faces.size());
     std::set<FaceVertices> cells;

@@ -17,6 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
 /// Three columns and two rows, the upper one 1 2 3, the lower 4 5 6.
 Texture numbered() {
     Texture texture{"numbers.png", 3, 2, {}};
@@ -55,6 +57,14 @@ Scene textured_scene() {
 
 TEST(TexturedScene, HasNoFaults) { EXPECT_THAT(scene_faults(textured_scene()), testing::IsEmpty()); }
 
+TEST(Lightmap, HasNoFaultsWhereAllVerticesOfAPatchOrNoneHaveCoordinates) {
+    Scene scene = textured_scene();
+    scene.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+    scene.lightmap_coordinates.assign(4, V2f(not_a_number));
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+}
+
 struct Fault {
     const char* name;
     std::function<void(Scene&)> make;
@@ -84,17 +94,61 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "there is no texture 1"},
         Fault{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
               "reflectance times its texture is up to (1.2"},
+        Fault{"LetsTooMuchThrough",
+              [](Scene& s) {
+                  s.materials[0].transmittance = Rgb(0.1f);
+                  s.materials[0].transmittance_texture = 0;
+              },
+              "times their textures, are up to (1.2"},
+        Fault{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
+              "there is no texture 7"},
         Fault{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
         Fault{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
         Fault{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
               "patch 0 has a texture, but no texture coordinates"},
         Fault{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
               "there are 4 vertices and 3 texture coordinates"},
-        Fault{"CoordinateNotANumber",
-              [](Scene& s) { s.texture_coordinates[2].x = std::numeric_limits<float>::quiet_NaN(); },
+        Fault{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
               "vertex 2 has the texture coordinates (nan"},
-        Fault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; }, "expected numbers up to 4096"}),
+        Fault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; }, "expected numbers up to 4096"},
+        Fault{"LightmapCoordinatesMissing",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
+              },
+              "there are 4 vertices and 3 lightmap coordinates"},
+        Fault{"LightmapCoordinateOutside",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};
+              },
+              "vertex 2 has the lightmap coordinates (1, 1.001)"},
+        Fault{"HalfALightmapCoordinate",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {not_a_number, 0}, {1, 1}, {0, 1}};
+              },
+              "vertex 1 has the lightmap coordinates (nan"},
+        Fault{"LightmapCoordinatesOfSomeVertices",
+              [](Scene& s) {
+                  s.lightmap_coordinates = {{0, 0}, {1, 0}, V2f(not_a_number), {0, 1}};
+              },
+              "patch 0 has lightmap coordinates at some of its vertices only"}),
     testing::PrintToStringParamName());
+
+/// What is reflected and what goes through are added texel by texel where the textures have one size.
+TEST(TexturedScene, MayReflectWhereNothingGoesThrough) {
+    Scene scene = textured_scene();
+    Texture checks{"checks", 3, 2, {Rgb(0), Rgb(1), Rgb(0), Rgb(1), Rgb(0), Rgb(1)}}, others = checks;
+    for (Rgb& texel : others.texels) texel = Rgb(1) - texel;
+    scene.textures = {checks, others};
+    scene.materials[0] = {.name = "screen", .reflectance = Rgb(0.9f), .exitance = Rgb(1), .reflectance_texture = 0};
+    scene.materials[0].transmittance = Rgb(1);
+    scene.materials[0].transmittance_texture = 1;
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
+    scene.materials[0].transmittance_texture = 0;
+    EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
+    scene.textures[0].width = 6, scene.textures[0].height = 1;  // sizes differ: the largest count
+    scene.materials[0].transmittance_texture = 1;
+    EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
+}
 
 }  // namespace
 }  // namespace interflect

@@ -69,7 +69,7 @@ def material(name, reflectance, radiance, transmittance, backs):
     back = front = diffuse.outputs[0]
     if any(transmittance):
         glass = nodes.new("ShaderNodeBsdfTransparent")
-        glass.inputs["Color"].default_value = (*transmittance, 1)
+        set_colour(links, nodes, glass.inputs["Color"], transmittance)
         back = front = added(front, glass.outputs[0])
     if radiance:
         emission = nodes.new("ShaderNodeEmission")
@@ -207,7 +207,10 @@ std::string material_text(ForeignScene& scene, const ForeignMesh& mesh) {
     if (scene.emits(mesh))
         radiance = m.exitance_texture == none ? tuple(scene.radiance(mesh))
                                               : "\"" + scene.add_radiance_image(mesh.material) + "\"";
-    return fmt::format("material(\"{}\", {}, {}, {}, \"{}\")", mesh.name, reflectance, radiance, tuple(m.transmittance),
+    const std::string transmittance = m.transmittance_texture == none
+                                          ? tuple(m.transmittance)
+                                          : "\"" + scene.add_transmittance_image(mesh.material) + "\"";
+    return fmt::format("material(\"{}\", {}, {}, {}, \"{}\")", mesh.name, reflectance, radiance, transmittance,
                        backs[static_cast<std::size_t>(mesh.backs)]);
 }
 
@@ -260,7 +263,7 @@ std::string blender_description(ForeignScene& scene) {
     constexpr int rows = 512;
     if (const std::string image = scene.add_sky_image(2 * rows, rows, equirectangular_direction); !image.empty())
         text += fmt::format("sky(\"{}\")\n", image);
-    scene.warn_of_materials(true);
+    scene.warn_of_materials(true, true);
     return text + epilogue;
 }
 

@@ -23,6 +23,18 @@ std::string texture(const char* name, const std::string& file) {
                        file);
 }
 
+std::string bsdf_text(ForeignScene& scene, std::uint32_t material) {
+    const Material& m = scene.scene.materials[material];
+    const auto two_sided = [](const std::string& reflectance) {
+        return fmt::format("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{}</bsdf></bsdf>", reflectance);
+    };
+    if (m.transmittance_texture != none)
+        return fmt::format("<bsdf type=\"mask\">{}{}</bsdf>", texture("opacity", scene.add_opacity_image(material)),
+                           two_sided(texture("reflectance", scene.add_opaque_reflectance_image(material))));
+    return two_sided(m.reflectance_texture == none ? rgb("reflectance", m.reflectance)
+                                                   : texture("reflectance", scene.add_reflectance_image(material)));
+}
+
 std::string point(const char* name, const V3f& value) {
     return fmt::format("<point name=\"{}\" x=\"{}\" y=\"{}\" z=\"{}\"/>", name, value.x, value.y, value.z);
 }
@@ -56,9 +68,7 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
 std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
     const Material& m = scene.material(mesh);
     const std::string file = scene.add_file(mesh.name + ".ply", ply_of(mesh));
-    const std::string reflectance = m.reflectance_texture == none
-                                        ? rgb("reflectance", m.reflectance)
-                                        : texture("reflectance", scene.add_reflectance_image(mesh.material));
+    const std::string bsdf = bsdf_text(scene, mesh.material);
     std::string emitter;
     if (scene.emits(mesh))
         emitter = "    <emitter type=\"area\">" +
@@ -70,8 +80,8 @@ std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
             "  <shape type=\"ply\">\n    <string name=\"filename\" value=\"{}\"/>\n"
             "    <boolean name=\"face_normals\" value=\"true\"/>\n    <boolean name=\"flip_tex_coords\" "
             "value=\"true\"/>\n{}"
-            "    <bsdf type=\"twosided\"><bsdf type=\"diffuse\">{}</bsdf></bsdf>\n{}  </shape>\n",
-            file, is_flipped ? "    <boolean name=\"flip_normals\" value=\"true\"/>\n" : "", reflectance, emitter);
+            "    {}\n{}  </shape>\n",
+            file, is_flipped ? "    <boolean name=\"flip_normals\" value=\"true\"/>\n" : "", bsdf, emitter);
     };
     if (!scene.emits(mesh) || mesh.backs != Backs::emit) return shape(false);
     scene.leave_out("emission of the backs of faces that emit on both sides");
@@ -125,7 +135,7 @@ std::string mitsuba_description(ForeignScene& scene) {
     constexpr int rows = 512;
     if (const std::string sky = scene.add_sky_image(2 * rows, rows, envmap_direction); !sky.empty())
         text += fmt::format("  <emitter type=\"envmap\"><string name=\"filename\" value=\"{}\"/></emitter>\n", sky);
-    scene.warn_of_materials(false);
+    scene.warn_of_materials(false, true);
     return text + "</scene>\n";
 }
 

@@ -34,13 +34,19 @@ std::string camera_text(const ForeignScene& scene, const View& view) {
 std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
     const Material& m = scene.material(mesh);
     std::string text = "AttributeBegin\n";
-    if (m.reflectance_texture == none) {
+    const bool is_cut_out = m.transmittance_texture != none;
+    if (is_cut_out)
+        text += fmt::format("  Texture \"{0}-opacity\" \"float\" \"imagemap\" \"string filename\" \"{1}\"\n", mesh.name,
+                            scene.add_opacity_image(mesh.material));
+    if (m.reflectance_texture == none && !is_cut_out) {
         text += fmt::format("  Material \"diffuse\" \"rgb reflectance\" [ {} ]\n", triple(m.reflectance));
     } else {
         text += fmt::format(
             "  Texture \"{0}\" \"spectrum\" \"imagemap\" \"string filename\" \"{1}\"\n"
             "  Material \"diffuse\" \"texture reflectance\" \"{0}\"\n",
-            mesh.name, scene.add_reflectance_image(mesh.material));
+            mesh.name,
+            is_cut_out ? scene.add_opaque_reflectance_image(mesh.material)
+                       : scene.add_reflectance_image(mesh.material));
     }
     if (scene.emits(mesh)) {
         Rgb radiance = scene.radiance(mesh);
@@ -51,8 +57,9 @@ std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
         text += fmt::format("  AreaLightSource \"diffuse\" \"rgb L\" [ {} ]{}\n", triple(radiance),
                             mesh.backs == Backs::emit ? " \"bool twosided\" true" : "");
     }
-    return text + fmt::format("  Shape \"plymesh\" \"string filename\" \"{}\"\nAttributeEnd\n",
-                              scene.add_file(mesh.name + ".ply", ply_of(mesh)));
+    return text + fmt::format("  Shape \"plymesh\" \"string filename\" \"{}\"{}\nAttributeEnd\n",
+                              scene.add_file(mesh.name + ".ply", ply_of(mesh)),
+                              is_cut_out ? fmt::format(" \"texture alpha\" \"{}-opacity\"", mesh.name) : "");
 }
 
 std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
@@ -104,7 +111,7 @@ std::string pbrt_description(ForeignScene& scene) {
     constexpr int side = 512;
     if (const std::string sky = scene.add_sky_image(side, side, octahedral_direction); !sky.empty())
         text += fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n", sky);
-    scene.warn_of_materials(false);
+    scene.warn_of_materials(false, true);
     return text;
 }
 

@@ -111,7 +111,7 @@ std::string radiance_description(ForeignScene& scene) {
         text += "\n" + luminaire_text(scene, scene.scene.luminaires[i], scene.luminaires[i]);
     for (std::size_t i = 0; i < scene.views.size(); ++i)
         scene.add_file(fmt::format("view-{}.vf", i), view_text(scene, scene.views[i]));
-    scene.warn_of_materials(false);
+    scene.warn_of_materials(false, false);
     return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "interflect/exports/exported_parts.h"
 #include "interflect/exports/lit_polygons.h"
+#include "interflect/exports/opacity.h"
 #include "interflect/luminaires/skies.h"
 #include "interflect/scene/view.h"
 
@@ -124,6 +125,22 @@ std::string ForeignScene::add_radiance_image(std::uint32_t m) {
                                                                      material.exitance / std::numbers::pi_v<float>)));
 }
 
+std::string ForeignScene::add_transmittance_image(std::uint32_t m) {
+    const Material& material = scene.materials[m];
+    return add_file(materials[m] + "-transmittance.exr",
+                    exr_bytes(scaled(scene.textures[material.transmittance_texture], material.transmittance)));
+}
+
+std::string ForeignScene::add_opacity_image(std::uint32_t m) {
+    return add_file(materials[m] + "-opacity.exr", exr_bytes(opacity_of(scene, scene.materials[m])));
+}
+
+std::string ForeignScene::add_opaque_reflectance_image(std::uint32_t m) {
+    const Material& material = scene.materials[m];
+    const Texture reflectance = opaque_reflectance(scene, material, opacity_of(scene, material));
+    return add_file(materials[m] + "-reflectance.exr", exr_bytes(scaled(reflectance, material.reflectance)));
+}
+
 std::string ForeignScene::add_sky_image(int width, int height, const std::function<V3f(float, float)>& direction) {
     bool has_sky = false;
     for (const Luminaire& luminaire : scene.luminaires) has_sky |= is_sky(luminaire);
@@ -142,11 +159,13 @@ Rgb ForeignScene::radiance(const ForeignMesh& mesh) const {
     return material(mesh).exitance / std::numbers::pi_v<float>;
 }
 
-void ForeignScene::warn_of_materials(bool has_glass) {
+void ForeignScene::warn_of_materials(bool has_glass, bool has_holes) {
     for (const ForeignMesh& mesh : meshes) {
         const Material& m = material(mesh);
         if (m.specular_reflectance != Rgb(0)) leave_out("mirrors");
-        if (!has_glass && m.transmittance != Rgb(0)) leave_out("glass: panes are opaque there");
+        const bool is_pane = m.transmittance != Rgb(0), is_cut_out = m.transmittance_texture != none;
+        if (is_pane && is_cut_out && !has_holes) leave_out("holes: faces are opaque all over there");
+        if (is_pane && !is_cut_out && !has_glass) leave_out("glass: panes are opaque there");
         if (!has_glass && mesh.backs == Backs::pass)
             warnings.add("one-sided", "one-sided faces, through whose backs light passes here, block it there");
     }

@@ -48,9 +48,13 @@ struct ForeignScene {
 
     /// Adds a file "STEM-name" beside the description. @return  Its name.
     std::string add_file(const std::string& name, std::string bytes);
-    /// The images of a material, in linear values: reflectance, and radiance M / pi. @return  Its name.
+    /// The images of a material, in linear values: reflectance, radiance M / pi, and transmittance. @return  Its name.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
+    std::string add_transmittance_image(std::uint32_t material);
+    /// The same as opacity, and the reflectance of what is opaque (opacity.h).
+    std::string add_opacity_image(std::uint32_t material);
+    std::string add_opaque_reflectance_image(std::uint32_t material);
     /// All skies as one image of radiance; no name where there are none.
     /// @param direction  Of a point of the image, x from the left and y from the top, in [0, 1].
     std::string add_sky_image(int width, int height, const std::function<V3f(float x, float y)>& direction);
@@ -63,7 +67,8 @@ struct ForeignScene {
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
     /// Warns of all that no renderer but `has_glass` ones are told.
-    void warn_of_materials(bool has_glass);
+    /// @param has_holes  Whether it is told of textures of transmittance.
+    void warn_of_materials(bool has_glass, bool has_holes);
 };
 
 /// The mean of an image.

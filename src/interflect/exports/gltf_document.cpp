@@ -97,8 +97,9 @@ int GltfDocument::add_indices(std::span<const std::uint32_t> values) {
     return add_accessor("SCALAR", uint32_type, values.size(), bytes_of(values), index_target);
 }
 
-int GltfDocument::add_texture(const Image& image, const std::string& name, bool repeats) {
-    const int view = add_buffer_view(codecs::encode_png(image));
+int GltfDocument::add_texture(const Image& image, const std::string& name, bool repeats,
+                              std::span<const float> opacity) {
+    const int view = add_buffer_view(codecs::encode_png(image, opacity));
     const int source = add("images", {{"name", escaped(name)}, {"mimeType", "image/png"}, {"bufferView", view}});
     const int wrap = repeats ? repeat : clamp_to_edge;
     // The texels of neighbouring charts would mix in the smaller images of a mipmap.

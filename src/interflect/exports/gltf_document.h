@@ -34,9 +34,10 @@ class GltfDocument {
     int add_indices(std::span<const std::uint32_t> values);
 
     /// Adds an image as PNG with 8 bit sRGB, and a texture that shows it; values are clamped to [0, 1].
+    /// @param opacity  Of each pixel, in [0, 1], for the alpha channel; none: there is none.
     /// @param repeats  Whether it repeats beyond [0, 1]; else its edge goes on.
     /// @return         The texture's index.
-    int add_texture(const Image& image, const std::string& name, bool repeats);
+    int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 
     /// The file as GLB, or as JSON with the buffer within. @throws InputError beyond 4 GiB.
     std::string glb() const;

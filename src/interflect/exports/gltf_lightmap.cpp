@@ -82,7 +82,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, con
         MappedPrimitive& primitive = primitives[{patch.object, patch.material, lightmap.page(p)}];
         for (const MeshTriangle& triangle : triangles)
             for (const MeshCorner& corner : triangle) {
-                const V2f coordinate = coordinate_at(scene, patch, corner.at).value_or(V2f(0, 0));
+                const V2f coordinate = coordinates_at(scene, patch, corner.at).texture.value_or(V2f(0, 0));
                 const V3f x = patches.geometry(p).point(corner.at);
                 primitive.add({corner.point, gltf_coordinate(coordinate), lightmap.coordinate(p, x)});
             }
@@ -128,6 +128,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
         document.use_extension("KHR_materials_unlit");
     } else {
         json["pbrMetallicRoughness"] = textures.diffuse(material);
+        if (material.transmittance_texture != none) textures.cut_out(json, material);
         // Without it there is a specular layer, which takes light from the diffuse one.
         json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
         document.use_extension("KHR_materials_specular");

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "interflect/base/escapes.h"
+#include "interflect/exports/opacity.h"
 
 namespace interflect::inline detail {
 
@@ -93,8 +94,23 @@ Json GltfTextures::reference(std::uint32_t texture, const Rgb& peak) {
 Json GltfTextures::diffuse(const Material& material) {
     const Rgb& rho = material.reflectance;
     Json result{{"baseColorFactor", {rho.x, rho.y, rho.z, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (material.reflectance_texture != none) result["baseColorTexture"] = reference(material.reflectance_texture);
+    if (material.reflectance_texture != none && material.transmittance_texture == none)  // else cut_out() adds it
+        result["baseColorTexture"] = reference(material.reflectance_texture);
     return result;
+}
+
+void GltfTextures::cut_out(Json& json, const Material& material, const Rgb& peak) {
+    const Texture opacity = opacity_of(scene_, material);
+    const Texture reflectance = opaque_reflectance(scene_, material, opacity);
+    Image pixels(static_cast<int>(opacity.width), static_cast<int>(opacity.height));
+    std::vector<float> alpha;
+    for (std::size_t i = 0; i < pixels.pixels.size(); ++i) {
+        pixels.pixels[i] = reflectance.texels[i] / peak;
+        alpha.push_back(opacity.texels[i].x);
+    }
+    json["pbrMetallicRoughness"]["baseColorTexture"] = {
+        {"index", document_.add_texture(pixels, opacity.name, true, alpha)}};
+    json["alphaMode"] = is_mask(opacity) ? "MASK" : "BLEND";
 }
 
 }  // namespace interflect::inline detail

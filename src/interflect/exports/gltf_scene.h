@@ -24,6 +24,10 @@ class GltfTextures {
 
     /// Diffuse reflection as pbrMetallicRoughness, with the image of the reflectance where there is one.
     GltfDocument::Json diffuse(const Material& material);
+    /// Gives a material holes, by the alpha of its base colour's texture, which it then has in any case.
+    /// @param json  What has been made of the material. @param material  It has a texture of transmittance.
+    /// @param peak  What the reflectance is divided by.
+    void cut_out(GltfDocument::Json& json, const Material& material, const Rgb& peak = Rgb(1));
     /// A reference to a texture of the scene, divided by `peak`.
     GltfDocument::Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
 

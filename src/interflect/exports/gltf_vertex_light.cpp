@@ -7,6 +7,7 @@
 #include "interflect/base/escapes.h"
 #include "interflect/exports/element_mesh.h"
 #include "interflect/exports/gltf_scene.h"
+#include "interflect/exports/opacity.h"
 #include "interflect/exports/shown_patches.h"
 #include "interflect/exports/welded_vertices.h"
 #include "interflect/geometry/texture_mapping.h"
@@ -35,7 +36,9 @@ struct LitVertex {
 /// The largest of each channel of a material's image; 1 where it is 0. The file has the image divided by it, so that
 /// vertices, which hold at most 1, are no darker than they need be.
 Rgb peak_of(const Scene& scene, const Material& material) {
-    Rgb peak = largest_texel(scene.textures[material.reflectance_texture]);
+    Rgb peak = material.transmittance_texture == none
+                   ? largest_texel(scene.textures[material.reflectance_texture])
+                   : largest_texel(opaque_reflectance(scene, material, opacity_of(scene, material)));
     for (int k = 0; k < 3; ++k)
         if (!(peak[k] > 0)) peak[k] = 1;
     return peak;
@@ -56,7 +59,8 @@ class VertexLight {
                     gltf_coordinate(texture_coordinate(scene_, patch, corner.at))};
         const Rgb reflected = reflectance_at(scene_, patch, corner.at) * corner.irradiance;
         const Rgb radiosity = exitance_at(scene_, patch, corner.at) + reflected;
-        return {corner.point, corner.irradiance, clamped(scale_ * radiosity), V2f(0, 0)};
+        const V2f coordinate = coordinates_at(scene_, patch, corner.at).texture.value_or(V2f(0, 0));
+        return {corner.point, corner.irradiance, clamped(scale_ * radiosity), gltf_coordinate(coordinate)};
     }
 
   private:
@@ -76,17 +80,21 @@ Json write_primitive(GltfDocument& document, const LitPrimitive& primitive, cons
         document.add_positions(primitive.values([&](const LitVertex& v) { return points[v.point]; }));
     add("COLOR_0", primitive.values([](const LitVertex& v) { return v.colour; }));
     add("_IRRADIANCE", primitive.values([](const LitVertex& v) { return v.irradiance; }));
-    if (keeps_texture(material)) add("TEXCOORD_0", primitive.values([](const LitVertex& v) { return v.coordinate; }));
+    if (keeps_texture(material) || material.transmittance_texture != none)
+        add("TEXCOORD_0", primitive.values([](const LitVertex& v) { return v.coordinate; }));
     return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
 }
 
 int add_material(GltfDocument& document, GltfTextures& textures, const Scene& scene, const Material& material) {
-    Json colour{{"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (keeps_texture(material))
-        colour["baseColorTexture"] = textures.reference(material.reflectance_texture, peak_of(scene, material));
-    return document.add("materials", {{"name", escaped(material.name)},
-                                      {"pbrMetallicRoughness", colour},
-                                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+    Json json{{"name", escaped(material.name)},
+              {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+              {"extensions", {{"KHR_materials_unlit", Json::object()}}}};
+    const Rgb peak = keeps_texture(material) ? peak_of(scene, material) : Rgb(1);
+    if (material.transmittance_texture != none)
+        textures.cut_out(json, material, peak);
+    else if (keeps_texture(material))
+        json["pbrMetallicRoughness"]["baseColorTexture"] = textures.reference(material.reflectance_texture, peak);
+    return document.add("materials", std::move(json));
 }
 
 /// By object and material.

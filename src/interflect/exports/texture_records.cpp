@@ -9,8 +9,10 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr const char *reflectance_texture = "reflectance_texture", *exitance_texture = "exitance_texture";
+constexpr const char *reflectance_texture = "reflectance_texture", *exitance_texture = "exitance_texture",
+                     *transmittance_texture = "transmittance_texture";
 constexpr const char* coordinates_dataset = "/scene/texture_coordinates";
+constexpr const char* lightmap_coordinates_dataset = "/scene/lightmap_coordinates";
 
 std::string texels_dataset(std::size_t texture) { return "/scene/textures/" + std::to_string(texture); }
 
@@ -55,11 +57,13 @@ std::vector<Texture> textures_of(const Json& json) {
 void add_textures(const Material& material, Json& json) {
     if (material.reflectance_texture != none) json[reflectance_texture] = material.reflectance_texture;
     if (material.exitance_texture != none) json[exitance_texture] = material.exitance_texture;
+    if (material.transmittance_texture != none) json[transmittance_texture] = material.transmittance_texture;
 }
 
 void read_textures(const Json& json, Material& material) {
     material.reflectance_texture = json.value(reflectance_texture, none);
     material.exitance_texture = json.value(exitance_texture, none);
+    material.transmittance_texture = json.value(transmittance_texture, none);
 }
 
 std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {
@@ -70,9 +74,12 @@ std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {
     const auto maps = environment_maps(scene);
     for (std::size_t i = 0; i < maps.size(); ++i)
         ranges.push_back(file.write(map_dataset(i), numbers_of(maps[i]->texels), sizeof(Rgb) / sizeof(float)));
-    if (!scene.texture_coordinates.empty())
-        ranges.push_back(
-            file.write(coordinates_dataset, numbers_of(scene.texture_coordinates), sizeof(V2f) / sizeof(float)));
+    const auto write_coordinates = [&](const char* dataset, const std::vector<V2f>& coordinates) {
+        if (!coordinates.empty())
+            ranges.push_back(file.write(dataset, numbers_of(coordinates), sizeof(V2f) / sizeof(float)));
+    };
+    write_coordinates(coordinates_dataset, scene.texture_coordinates);
+    write_coordinates(lightmap_coordinates_dataset, scene.lightmap_coordinates);
     return ranges;
 }
 
@@ -88,6 +95,8 @@ void read_textures(const Hdf5Reader& file, Scene& scene) {
                 map->image = image;
     }
     if (file.has(coordinates_dataset)) scene.texture_coordinates = read_vectors<V2f>(file, coordinates_dataset);
+    if (file.has(lightmap_coordinates_dataset))
+        scene.lightmap_coordinates = read_vectors<V2f>(file, lightmap_coordinates_dataset);
 }
 
 }  // namespace interflect::inline detail

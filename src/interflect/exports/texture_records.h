@@ -21,8 +21,8 @@ void add_textures(const Material& material, Json& json);
 /// The inverse. @throws Json::exception
 void read_textures(const Json& json, Material& material);
 
-/// Writes the texels of a scene's textures and environment maps, and texture coordinates, where there are some. @return
-/// Where they are.
+/// Writes the texels of a scene's textures and environment maps, and its texture and lightmap coordinates, where there
+/// are some. @return Where they are.
 std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
 /// The inverse. @param scene  Has its textures and environment maps without their texels. @throws std::runtime_error
 void read_textures(const Hdf5Reader& file, Scene& scene);

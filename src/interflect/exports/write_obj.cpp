@@ -8,7 +8,10 @@
 #include "interflect/exports/exported_parts.h"
 #include "interflect/exports/lit_polygons.h"
 #include "interflect/exports/mesh_files.h"
+#include "interflect/exports/opacity.h"
 #include "interflect/geometry/texture_mapping.h"
+#include "interflect/image/image_codecs.h"
+#include "interflect/image/srgb.h"
 
 namespace interflect::inline detail {
 
@@ -16,7 +19,15 @@ namespace {
 
 std::string text_of_colour(const Rgb& colour) { return fmt::format("{} {} {}", colour.x, colour.y, colour.z); }
 
-std::string materials_text(const Scene& scene, const std::vector<ExportedFile>& images) {
+/// Greys in MTL are no colours, of which PNG would have the sRGB code.
+std::string opacity_png(const Texture& opacity) {
+    Image image(static_cast<int>(opacity.width), static_cast<int>(opacity.height));
+    for (std::size_t i = 0; i < opacity.texels.size(); ++i) image.pixels[i] = Rgb(srgb_decode(opacity.texels[i].x));
+    return codecs::encode_png(image);
+}
+
+/// @param images  Of all textures; those of cut-outs are added.
+std::string materials_text(const std::filesystem::path& path, const Scene& scene, std::vector<ExportedFile>& images) {
     const std::vector<std::string> names = material_names(scene);
     std::string text = fmt::format("# Interflect {}\n", INTERFLECT_VERSION);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -25,9 +36,21 @@ std::string materials_text(const Scene& scene, const std::vector<ExportedFile>& 
         if (m.exitance != Rgb(0))
             text += fmt::format("Ke {}\n", text_of_colour(m.exitance / std::numbers::pi_v<float>));
         if (m.specular_reflectance != Rgb(0)) text += fmt::format("Ks {}\n", text_of_colour(m.specular_reflectance));
-        if (m.transmittance != Rgb(0)) text += fmt::format("Tf {}\n", text_of_colour(m.transmittance));
-        if (m.reflectance_texture != none)
-            text += fmt::format("map_Kd {}\n", images[m.reflectance_texture].path.filename().string());
+        const auto add = [&](const std::string& name, std::string bytes) {
+            images.push_back(
+                {path.parent_path() / fmt::format("{}-{}-{}", path.stem().string(), names[i], name), std::move(bytes)});
+            return images.back().path.filename().string();
+        };
+        if (m.transmittance_texture != none) {
+            const Texture opacity = opacity_of(scene, m);
+            text += fmt::format("map_d {}\n", add("opacity.png", opacity_png(opacity)));
+            text +=
+                fmt::format("map_Kd {}\n", add("reflectance.exr", exr_bytes(opaque_reflectance(scene, m, opacity))));
+        } else {
+            if (m.transmittance != Rgb(0)) text += fmt::format("Tf {}\n", text_of_colour(m.transmittance));
+            if (m.reflectance_texture != none)
+                text += fmt::format("map_Kd {}\n", images[m.reflectance_texture].path.filename().string());
+        }
         if (m.exitance_texture != none)
             text += fmt::format("map_Ke {}\n", images[m.exitance_texture].path.filename().string());
     }
@@ -88,7 +111,8 @@ std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scen
                     INTERFLECT_VERSION, options.exposure, library.filename().string());
     append_vertices(text, scene, polygons, options.exposure);
     append_faces(text, scene, *solution.forest, polygons);
-    files.push_back({library, materials_text(scene, files)});
+    std::string materials = materials_text(path, scene, files);
+    files.push_back({library, std::move(materials)});
     files.push_back({path, std::move(text)});
     return files;
 }

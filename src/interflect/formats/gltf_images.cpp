@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "interflect/error.h"
+#include "interflect/formats/texture_limit.h"
 #include "interflect/image/srgb.h"
 
 namespace interflect::inline detail {
@@ -14,7 +15,7 @@ namespace {
 constexpr int repeat = 10497;  // glTF's number of it
 
 /// Pixels that are decoded in all: an image serves several textures, but not any number of them.
-constexpr std::uint64_t most_decoded = 8 * most_texels;
+constexpr std::uint64_t most_decoded = 32 * most_texels;
 
 /// The linear value of each 16 bit value of sRGB.
 const std::vector<float>& decoded_srgb() {
@@ -106,16 +107,20 @@ StoredImage GltfImages::decode(std::uint32_t image) {
 }
 
 Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
-    StoredImage colour, metallic;
-    if (texels.colour != none) colour = decode(texels.colour);
-    if (texels.metallic != none) metallic = decode(texels.metallic);
-    const StoredImage& shape = texels.colour != none ? colour : metallic;
-    Texture result{images_[texels.colour != none ? texels.colour : texels.metallic].place(),
-                   static_cast<std::uint32_t>(shape.width),
-                   static_cast<std::uint32_t>(shape.height),
-                   {}};
-    constexpr int blue = 2;
-    result.texels.reserve(shape.pixel_count());
+    StoredImage colour, metallic, coverage;
+    const StoredImage* shape = nullptr;  // the first one's size is the texture's
+    std::string name;
+    const auto load = [&](std::uint32_t index, StoredImage& image) {
+        if (index == none) return;
+        image = decode(index);
+        if (!shape) shape = &image, name = images_[index].place();
+    };
+    load(texels.colour, colour);
+    load(texels.metallic, metallic);
+    load(texels.coverage.image, coverage);
+    Texture result{name, static_cast<std::uint32_t>(shape->width), static_cast<std::uint32_t>(shape->height), {}};
+    constexpr int blue = 2, alpha = 3;
+    result.texels.reserve(shape->pixel_count());
     for (std::uint32_t y = 0; y < result.height; ++y)
         for (std::uint32_t x = 0; x < result.width; ++x) {
             const std::size_t pixel = result.texels.size();
@@ -123,6 +128,10 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
             float share = texels.metallic_factor;
             if (texels.metallic != none) share *= metallic.value(pixel_at(metallic, x, y, result), blue);
             texel *= texels.factor * (1 - share);
+            if (texels.coverage.image != none) {
+                const float there = texels.coverage.at(coverage.value(pixel_at(coverage, x, y, result), alpha));
+                texel = texel * there + texels.open * (1 - there);
+            }
             for (int c = 0; c < 3; ++c) {
                 is_reduced |= texel[c] > 1;
                 texel[c] = std::min(texel[c], 1.0f);
@@ -133,17 +142,24 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
 }
 
 std::pair<std::uint32_t, bool> GltfImages::texture(const GltfTexels& texels) {
-    if (texels.colour == none && texels.metallic == none) return {none, false};
+    if (texels.colour == none && texels.metallic == none && texels.coverage.image == none) return {none, false};
     const auto [entry, is_new] = index_.try_emplace(texels.key());
     if (!is_new) return entry->second;
     std::vector<Texture>& made = asset_.model.textures;
     entry->second.first = static_cast<std::uint32_t>(made.size());
     made.push_back(make_texture(texels, entry->second.second));
     texels_ += made.back().texels.size();
-    if (texels_ > most_texels)
-        throw GltfFault(
-            fmt::format("{}: with this texture there are more than {} texels", made.back().name, most_texels));
     return entry->second;
+}
+
+void GltfImages::limit_textures() {
+    if (texels_ <= most_texels) return;
+    reduce_textures(asset_.model.textures);
+    texels_ = texel_count(asset_.model.textures);
+    asset_.warn("textures-reduced",
+                fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
+                            most_texels),
+                "textures");
 }
 
 const GltfImageMeans& GltfImages::means(std::uint32_t image) {
@@ -153,14 +169,17 @@ const GltfImageMeans& GltfImages::means(std::uint32_t image) {
     const StoredImage pixels = decode(image);
     constexpr int alpha = 3;
     RgbD colour(0), stored(0);
+    double opaque = 0;
     for (std::size_t i = 0; i < pixels.pixel_count(); ++i) {
         colour += RgbD(colour_at(pixels, i));
         stored += RgbD(pixels.value(i, 0), pixels.value(i, 1), pixels.value(i, 2));
+        opaque += static_cast<double>(pixels.value(i, alpha));
         result.least_alpha = std::min(result.least_alpha, pixels.value(i, alpha));
     }
     const auto count = static_cast<double>(pixels.pixel_count());
     result.colour = Rgb(colour / count);
     result.stored = Rgb(stored / count);
+    result.alpha = static_cast<float>(opaque / count);
     return result;
 }
 

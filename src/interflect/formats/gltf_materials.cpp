@@ -44,8 +44,14 @@ struct GltfMaterials::Parts {
     Rgb emissive{0, 0, 0};  ///< [cd/m^2]
     GltfTextureUse emissive_texture;
     float transmission = 0;  ///< Mean.
-    float coverage = 1;      ///< Share of the area that is there; the rest is open.
+    GltfTextureUse coverage_texture;
+    float coverage = 1;  ///< Share of the area that is there; the rest is open. A factor where there is a texture.
+    float cutoff = 0;    ///< As GltfCoverage has it.
     std::optional<GltfMapping> mapping;
+
+    GltfCoverage coverage_from_texture() const { return {coverage_texture.image, coverage, cutoff}; }
+    /// Of the area that is there, where that is the same everywhere; else 1, since the textures have it.
+    float even_coverage() const { return coverage_texture.image == none ? coverage : 1; }
 };
 
 GltfMaterials::GltfMaterials(GltfAsset& asset, GltfImages& images)
@@ -109,20 +115,20 @@ void GltfMaterials::apply_alpha(const GltfValue& owner, Parts& parts, GltfSurfac
     }
     if (mode != "MASK" && mode != "BLEND") owner.fail("its alphaMode is unknown");
     const std::uint32_t image = parts.base_texture.image;
-    const bool varies = image != none && images_.means(image).least_alpha < 1;
-    if (mode == "MASK") {
-        const double cutoff = owner.amount("alphaCutoff", 0.5);
-        surface.is_invisible = parts.coverage < cutoff;
+    if (image != none && images_.means(image).least_alpha < 1) parts.coverage_texture = parts.base_texture;
+    if (mode != "MASK") return;
+    parts.cutoff = static_cast<float>(owner.amount("alphaCutoff", 0.5));
+    surface.is_invisible = parts.coverage < parts.cutoff;
+    if (parts.coverage_texture.image == none || parts.cutoff == 0) {
         parts.coverage = 1;
+        parts.coverage_texture.image = none;
     }
-    if (!varies) return;
-    parts.coverage = 1;
-    asset_.warn("alpha", "a texture's alpha is ignored: the surface is opaque all over", owner.place());
 }
 
 /// Decides whose mapping the vertices get, since they have one, and replaces the other textures by their means.
 void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool textured) {
-    GltfTextureUse* const uses[] = {&parts.emissive_texture, &parts.base_texture, &parts.metallic_texture};
+    GltfTextureUse* const uses[] = {&parts.coverage_texture, &parts.emissive_texture, &parts.base_texture,
+                                    &parts.metallic_texture};
     if (textured)
         for (const GltfTextureUse* use : uses)
             if (use->image != none && !parts.mapping) parts.mapping = use->mapping;
@@ -130,6 +136,7 @@ void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool te
     for (GltfTextureUse* use : uses) {
         if (!is_lost(*use)) continue;
         const GltfImageMeans& means = images_.means(use->image);
+        if (use == &parts.coverage_texture) parts.coverage *= means.alpha;
         if (use == &parts.emissive_texture) parts.emissive *= means.colour;
         if (use == &parts.base_texture) parts.base *= means.colour;
         if (use == &parts.metallic_texture) parts.metallic *= means.stored.z;
@@ -143,15 +150,15 @@ void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool te
 
 void GltfMaterials::reflect(const GltfValue& owner, const Parts& parts, Material& material) {
     const std::uint32_t colour = parts.base_texture.image, metallic = parts.metallic_texture.image;
-    const float reflected = parts.coverage * (1 - parts.transmission);
+    const float reflected = parts.even_coverage() * (1 - parts.transmission);
     material.reflectance = parts.base * reflected;
     bool is_reduced = false;
-    if (colour == none && metallic == none) {
+    if (colour == none && metallic == none && parts.coverage_texture.image == none) {
         material.reflectance *= 1 - parts.metallic;
         is_reduced = largest_channel(material.reflectance) > most_reflected;
         for (int c = 0; c < 3; ++c) material.reflectance[c] = std::min(material.reflectance[c], most_reflected);
     } else {
-        GltfTexels texels{colour, metallic, parts.metallic, Rgb(1)};
+        GltfTexels texels{colour, metallic, parts.metallic, Rgb(1), parts.coverage_from_texture()};
         for (int c = 0; c < 3; ++c) {
             texels.factor[c] = std::max(1.0f, material.reflectance[c] / most_reflected);
             material.reflectance[c] = std::min(material.reflectance[c], most_reflected);
@@ -172,7 +179,8 @@ void GltfMaterials::reflect(const GltfValue& owner, const Parts& parts, Material
 }
 
 void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Material& material) {
-    if (parts.transmission == 0 && parts.coverage == 1) return;
+    const GltfCoverage coverage = parts.coverage_from_texture();
+    if (parts.transmission == 0 && parts.coverage == 1 && coverage.image == none) return;
     Rgb base = parts.base;
     float metallic = parts.metallic;
     if (parts.base_texture.image != none) base *= images_.means(parts.base_texture.image).colour;
@@ -180,10 +188,16 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
     if (parts.transmission > 0 && parts.base_texture.image != none)
         asset_.warn("transmission-texture", "what goes through a surface has the mean of its base colour's texture",
                     owner.place());
-    const Rgb open(1 - parts.coverage);
-    material.transmittance = base * (parts.coverage * parts.transmission * (1 - metallic)) + open;
-    const float rest = 1 - largest_channel(parts.base) * parts.coverage * (1 - parts.transmission);
     constexpr float above_rounding = 1 - 0x1p-20f;
+    const Rgb through = base * (parts.transmission * (1 - metallic));  // where the surface is there
+    if (coverage.image != none) {
+        material.transmittance = Rgb(1);
+        material.transmittance_texture =
+            images_.texture({.factor = through * above_rounding, .coverage = coverage, .open = Rgb(1)}).first;
+        return;
+    }
+    material.transmittance = through * parts.coverage + Rgb(1 - parts.coverage);
+    const float rest = 1 - largest_channel(parts.base) * parts.coverage * (1 - parts.transmission);
     if (const float most = largest_channel(material.transmittance); most > rest * above_rounding)
         material.transmittance *= std::max(rest, 0.0f) * above_rounding / most;
 }
@@ -206,7 +220,8 @@ GltfSurface GltfMaterials::make(std::uint32_t index, bool textured) {
     apply_alpha(owner, parts, surface);
     choose_mapping(owner, parts, textured);
     surface.mapping = parts.mapping;
-    for (const GltfTextureUse* use : {&parts.emissive_texture, &parts.base_texture, &parts.metallic_texture})
+    for (const GltfTextureUse* use :
+         {&parts.coverage_texture, &parts.emissive_texture, &parts.base_texture, &parts.metallic_texture})
         surface.repeats &= use->image == none || use->repeats;
     warn_of_ignored(owner);
 
@@ -214,10 +229,12 @@ GltfSurface GltfMaterials::make(std::uint32_t index, bool textured) {
     material.name = owner.text("name", fmt::format("material-{}", index));
     reflect(owner, parts, material);
     transmit(owner, parts, material);
-    material.exitance = parts.emissive * (parts.coverage * std::numbers::pi_v<float>);
+    material.exitance = parts.emissive * (parts.even_coverage() * std::numbers::pi_v<float>);
     if (const std::string fault = exitance_fault(material.exitance); !fault.empty()) owner.fail("its " + fault);
-    if (parts.emissive_texture.image != none)
-        material.exitance_texture = images_.texture({.colour = parts.emissive_texture.image}).first;
+    if (largest_channel(material.exitance) > 0)
+        material.exitance_texture =
+            images_.texture({.colour = parts.emissive_texture.image, .coverage = parts.coverage_from_texture()}).first;
+    images_.limit_textures();
     surface.material = static_cast<std::uint32_t>(asset_.model.materials.size());
     asset_.model.materials.push_back(std::move(material));
     return surface;

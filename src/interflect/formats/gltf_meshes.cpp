@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "interflect/error.h"
 
@@ -15,6 +16,9 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
+constexpr const char* lightmap_set = "TEXCOORD_1";  // by which programs that bake lightmaps lay them out
+/// How far a lightmap coordinate may lie outside of [0, 1]: rounding.
+constexpr double lightmap_tolerance = 1e-4;
 enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
 V3d vector_at(const GltfElements& elements, std::uint64_t i) {
@@ -67,8 +71,8 @@ struct GltfMeshes::Vertices {
         GltfElements offsets;
         double weight;
     };
-    GltfElements positions, coordinates;
-    bool has_coordinates = false;
+    GltfElements positions;
+    std::optional<GltfElements> coordinates, lightmap_coordinates;
     DracoMesh draco;
     std::vector<Target> targets;
     GltfElements joint_indices, joint_weights;
@@ -114,14 +118,23 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
+/// The texture coordinates that its material's textures use: "TEXCOORD_0"; empty where it has none.
+std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
+    const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
+    return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
+}
+
 void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices) {
     const GltfValue ids = extension.object("attributes");
     constexpr std::size_t most_ids = 1 << 16;
     std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", most_ids)};
-    const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
-    const std::string key = fmt::format("TEXCOORD_{}", surface.mapping ? surface.mapping->set : 0);
-    vertices.has_coordinates = surface.mapping && ids.has(key.c_str());
-    if (vertices.has_coordinates) wanted.push_back(ids.index(key.c_str(), most_ids));
+    const std::string texture_set = texture_set_of(primitive);
+    const auto is_wanted = [&](const std::string& set) {
+        if (set.empty() || !ids.has(set.c_str())) return false;
+        wanted.push_back(ids.index(set.c_str(), most_ids));
+        return true;
+    };
+    const bool has_coordinates = is_wanted(texture_set), has_lightmap = is_wanted(lightmap_set);
     const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
     const GltfElements indices =
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
@@ -129,9 +142,12 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
     require_room(indices.count / 3, primitive);
     if (positions.count > indices.count) extension.fail("it has more vertices than corners");
     vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
-    vertices.positions = elements_of(vertices.draco.attributes[0], vertices.draco.vertex_count);
-    if (vertices.has_coordinates)
-        vertices.coordinates = elements_of(vertices.draco.attributes[1], vertices.draco.vertex_count);
+    const auto decoded = [&](std::size_t i) {
+        return elements_of(vertices.draco.attributes[i], vertices.draco.vertex_count);
+    };
+    vertices.positions = decoded(0);
+    if (has_coordinates) vertices.coordinates = decoded(1);
+    if (has_lightmap) vertices.lightmap_coordinates = decoded(wanted.size() - 1);
 }
 
 void GltfMeshes::open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices) {
@@ -162,16 +178,16 @@ GltfMeshes::Vertices GltfMeshes::vertices_of(const GltfValue& primitive) {
     } else {
         vertices.positions = attribute(primitive, "POSITION", "VEC3");
         if (vertices.positions.stride == 0) attributes.fail("the accessor of POSITION has no data");
-        const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
-        const std::string key = fmt::format("TEXCOORD_{}", surface.mapping ? surface.mapping->set : 0);
-        vertices.has_coordinates = surface.mapping && attributes.has(key.c_str());
-        if (vertices.has_coordinates) vertices.coordinates = attribute(primitive, key.c_str(), "VEC2");
+        const std::string texture_set = texture_set_of(primitive);
+        if (!texture_set.empty() && attributes.has(texture_set.c_str()))
+            vertices.coordinates = attribute(primitive, texture_set.c_str(), "VEC2");
+        if (attributes.has(lightmap_set)) vertices.lightmap_coordinates = attribute(primitive, lightmap_set, "VEC2");
     }
     if (vertices.positions.components != 3) attributes.fail("POSITION has not three components");
-    if (vertices.has_coordinates &&
-        (vertices.coordinates.count != vertices.positions.count || vertices.coordinates.components != 2))
-        attributes.fail(fmt::format("{} texture coordinates for {} vertices", vertices.coordinates.count,
-                                    vertices.positions.count));
+    for (const std::optional<GltfElements>& set : {vertices.coordinates, vertices.lightmap_coordinates})
+        if (set && (set->count != vertices.positions.count || set->components != 2))
+            attributes.fail(
+                fmt::format("{} texture coordinates for {} vertices", set->count, vertices.positions.count));
     return vertices;
 }
 
@@ -218,7 +234,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
         asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are ignored", primitive.place());
     Vertices vertices = vertices_of(primitive);
     const GltfSurface& surface =
-        materials_.surface(primitive.index("material", materials_.count()), vertices.has_coordinates);
+        materials_.surface(primitive.index("material", materials_.count()), vertices.coordinates.has_value());
     if (surface.is_invisible) return;
     open_deformation(primitive, pose, vertices);
 
@@ -233,7 +249,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     bool is_outside = false;
     if (surface.mapping) mesh.texture_coordinates.reserve(used.size());
     for (const std::uint32_t v : surface.mapping ? used : std::vector<std::uint32_t>()) {
-        const GltfElements& c = vertices.coordinates;
+        const GltfElements& c = *vertices.coordinates;
         const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));
         is_outside |= std::min(coordinate.x, coordinate.y) < 0 || std::max(coordinate.x, coordinate.y) > 1;
         mesh.texture_coordinates.push_back(coordinate);
@@ -241,9 +257,29 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     if (is_outside && !surface.repeats)
         asset_.warn("texture-wrap", "a texture that its sampler clamps or mirrors repeats beyond its edges",
                     primitive.place());
+    if (vertices.lightmap_coordinates) read_lightmap_coordinates(*vertices.lightmap_coordinates, used, mesh);
     if (mesh.indices.empty()) return;
     result.push_back(static_cast<std::uint32_t>(asset_.model.meshes.size()));
     asset_.model.meshes.push_back(std::move(mesh));
+}
+
+/// Leaves a mesh without lightmap coordinates where some of them are no place in a lightmap.
+void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used,
+                                           Mesh& mesh) {
+    const auto is_in_range = [](double x) { return x >= -lightmap_tolerance && x <= 1 + lightmap_tolerance; };
+    const auto clamped = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
+    mesh.lightmap_coordinates.reserve(used.size());
+    for (const std::uint32_t v : used) {
+        const double u = set.number(v, 0), down = set.number(v, 1);
+        if (!is_in_range(u) || !is_in_range(down)) {
+            asset_.warn("lightmap-coordinates",
+                        fmt::format("{} is no lightmap, since it leaves [0, 1]: it is ignored", lightmap_set),
+                        mesh.name);
+            mesh.lightmap_coordinates.clear();
+            return;
+        }
+        mesh.lightmap_coordinates.emplace_back(clamped(u), clamped(1 - down));
+    }
 }
 
 const std::vector<std::uint32_t>& GltfMeshes::meshes(std::uint32_t index, const GltfPose& pose) {

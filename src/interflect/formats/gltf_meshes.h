@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -32,9 +33,11 @@ class GltfMeshes {
     struct Vertices;
 
     void add(const GltfValue& primitive, const GltfPose& pose, std::vector<std::uint32_t>& result);
+    std::string texture_set_of(const GltfValue& primitive);
     Vertices vertices_of(const GltfValue& primitive);
     void open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices);
     void open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices);
+    void read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used, Mesh& mesh);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
     void require_room(std::uint64_t count, const GltfValue& primitive);

@@ -91,12 +91,14 @@ struct MgfMaterial {
     double ed = 0;                          ///< Exitance [lm/m^2].
     double rs_roughness = 0, ts_roughness = 0;
     MgfColour rd_colour, rs_colour, ts_colour, ed_colour;
-    MgfTexture rd_texture, ed_texture;
+    MgfTexture rd_texture, ts_texture, ed_texture;
     Location defined;                  ///< The last line that changed it.
     std::uint32_t fault = none;        ///< In MgfFaults: the first thing wrong with what defines it.
     std::uint32_t scene_index = none;  ///< In Scene::materials, once a face has used it as it is.
 
-    bool is_textured() const { return !rd_texture.path.empty() || !ed_texture.path.empty(); }
+    bool is_textured() const {
+        return !(rd_texture.path.empty() && ts_texture.path.empty() && ed_texture.path.empty());
+    }
 };
 
 /// MGF's vertex.

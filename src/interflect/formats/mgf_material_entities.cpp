@@ -99,11 +99,14 @@ void MgfReader::exitance(MgfWords words) {
 
 /// The image is read when a face uses the material.
 void MgfReader::texture(MgfWords words) {
-    if (words[0] != "rd" && words[0] != "ed")
-        throw MgfFault(fmt::format("a texture is one of rd or ed, not of '{}'", words[0]));
+    if (words[0] != "rd" && words[0] != "ts" && words[0] != "ed")
+        throw MgfFault(fmt::format("a texture is one of rd, ts or ed, not of '{}'", words[0]));
     const std::filesystem::path path = file_->source.path.parent_path() / words[1];
     MgfMaterial& material = changed_material();
-    (words[0] == "rd" ? material.rd_texture : material.ed_texture) = {path.string(), here()};
+    MgfTexture& texture = words[0] == "rd"   ? material.rd_texture
+                          : words[0] == "ts" ? material.ts_texture
+                                             : material.ed_texture;
+    texture = {path.string(), here()};
 }
 
 void MgfReader::refraction(MgfWords words) {

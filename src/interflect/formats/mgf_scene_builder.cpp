@@ -23,7 +23,8 @@ std::string identity(const Material& m) {
     std::string key = m.name;
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };
     for (const Rgb& c : {m.reflectance, m.exitance, m.transmittance, m.specular_reflectance}) append(c);
-    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture}) append(texture);
+    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture, m.transmittance_texture})
+        append(texture);
     return key;
 }
 
@@ -81,6 +82,13 @@ void MgfSceneBuilder::require_products(const Material& result, const MgfMaterial
     const std::string fault = exitance_fault(textured(result.exitance, result.exitance_texture, largest_texels_));
     if (const Location& where = material.ed_texture.where; !fault.empty())
         throw InputError(*where.file, where.line, "with the texture's largest texel, the " + fault);
+    if (result.transmittance_texture == none) return;
+    const Rgb sum = largest_sum(result, scene_.textures, largest_texels_);
+    if (const Location& where = material.ts_texture.where; !(largest_channel(sum) <= 1))
+        throw InputError(*where.file, where.line,
+                         fmt::format("rd, rs and ts times their textures are up to ({}, {}, {}) in sum; expected at "
+                                     "most 1",
+                                     sum.x, sum.y, sum.z));
 }
 
 Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Location& where) {
@@ -105,16 +113,18 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     const auto reflected = [&](const MgfColour& colour, double share) {
         return converted(colour, share, largest_reflectance, material.defined);
     };
+    const double most_transmitted = material.ts_texture.path.empty() ? largest_reflectance : 1;  // 1: a hole
     Material result{.name = std::string(name),
                     .reflectance = reflected(material.rd_colour, material.rd),
                     .exitance = emitted(material.ed_colour, material.ed, material.defined),
                     .reflectance_texture = texture(material.rd_texture),
                     .exitance_texture = texture(material.ed_texture),
-                    .transmittance = reflected(material.ts_colour, material.ts),
+                    .transmittance = converted(material.ts_colour, material.ts, most_transmitted, material.defined),
+                    .transmittance_texture = texture(material.ts_texture),
                     .specular_reflectance = is_mirror(material.rs, material.rs_roughness)
                                                 ? reflected(material.rs_colour, material.rs)
                                                 : Rgb(0)};
-    if (limit_sum(result))
+    if (result.transmittance_texture == none && limit_sum(result))
         warn("reflectance-clamped", "more light than arrives would leave this material: rs and ts are reduced",
              material.defined);
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())

@@ -34,7 +34,7 @@ class MgfSceneBuilder {
     V3f position(const Imath::V3d& world) const { return faces_.position(world); }
     /// Index of the vertex at `world` [m] with these texture coordinates, if it has some.
     std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate) {
-        return weld_.vertex(position(world), texture_coordinate);
+        return weld_.vertex(position(world), {.texture = texture_coordinate, .lightmap = {}});
     }
     /// What is emitted in a colour, in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);

@@ -17,7 +17,7 @@ struct Mesh {
     std::string name;                       ///< For messages: "mesh 3 'chair', primitive 0".
     std::vector<Imath::V3d> positions;      ///< Of the vertices.
     std::vector<V2f> texture_coordinates;   ///< One for each vertex, as Scene has them, or empty.
-    std::vector<V2f> lightmap_coordinates;  ///< Likewise.
+    std::vector<V2f> lightmap_coordinates;  ///< Likewise; in [0, 1].
     std::vector<std::uint32_t> indices;     ///< Of the corners of all faces, counter-clockwise seen from the front.
     std::vector<std::uint32_t> face_sizes;  ///< How many corners each face has, at least 3; empty: triangles alone.
     std::uint32_t material = 0;             ///< Index into Model::materials.
@@ -52,9 +52,13 @@ struct Model {
 };
 
 /// The scene that a model describes. All faces are two-sided, since light does not pass through walls whatever side
-/// they are seen from. Corners that coincide, texture coordinates included, are welded; pairs of triangles that form a
-/// planar, convex quadrilateral (and over which the texture coordinates are those of one linear map) become one patch.
-/// Faces without area are left out with a warning. Materials that no face shows are kept.
+/// they are seen from. Corners that coincide, their coordinates included, are welded; pairs of triangles that form a
+/// planar, convex quadrilateral (and over which the coordinates in textures and in the lightmap are those of one linear
+/// map each) become one patch. Faces without area are left out with a warning. Materials that no face shows are kept.
+///
+/// An object has one lightmap, in which its meshes with lightmap coordinates lie side by side; patches of its other
+/// meshes have none (NaN). Where such meshes are in several places, as copies of one mesh are, they would lie on each
+/// other: then the object's lightmap coordinates are ignored with a warning.
 /// @throws InputError  for an index out of range, a position that is not finite or too far away, a scene without a
 ///         face, or one that is too small or too bright, and as scene_faults() has it; TooManyPatches where it has more
 ///         than options.max_patches. Messages name the mesh.

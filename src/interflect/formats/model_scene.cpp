@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -38,6 +37,9 @@ std::string mesh_fault(const Mesh& mesh, const Model& model, const ReadOptions& 
     if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
         return fmt::format("it has {} texture coordinates for {} vertices", mesh.texture_coordinates.size(),
                            mesh.positions.size());
+    if (!mesh.lightmap_coordinates.empty() && mesh.lightmap_coordinates.size() != mesh.positions.size())
+        return fmt::format("it has {} lightmap coordinates for {} vertices", mesh.lightmap_coordinates.size(),
+                           mesh.positions.size());
     if (model.materials[mesh.material].is_textured() && mesh.texture_coordinates.empty())
         return fmt::format("its material '{}' has a texture, but it has no texture coordinates",
                            model.materials[mesh.material].name);
@@ -73,11 +75,29 @@ void require_valid(const Model& model, const ReadOptions& options) {
                                          faces, options.max_patches));
 }
 
+/// Which objects have lightmaps that the file has laid out: those whose meshes with lightmap coordinates are in one
+/// place. A second instance would use the same part of the lightmap again.
+std::vector<bool> objects_with_layouts(Model& model) {
+    std::vector<const MeshInstance*> first(model.objects.size(), nullptr);
+    std::vector<bool> has_layout(model.objects.size(), true);
+    for (const MeshInstance& instance : model.instances) {
+        if (model.meshes[instance.mesh].lightmap_coordinates.empty()) continue;
+        if (!first[instance.object]) first[instance.object] = &instance;
+        if (instance.to_world == first[instance.object]->to_world || !has_layout[instance.object]) continue;
+        has_layout[instance.object] = false;
+        model.warnings.add("lightmap-coordinates",
+                           "the lightmap coordinates of an object are ignored, since its instances would share them",
+                           fmt::format("{}: object '{}'", model.file.string(), model.objects[instance.object]));
+    }
+    return has_layout;
+}
+
 /// Adds the instances of a model's meshes to a scene.
 class InstanceAdder {
   public:
-    InstanceAdder(const Model& model, Scene& scene, const ReadOptions& options)
-        : model_(model), scene_(scene), faces_(scene, options), weld_(scene) {}
+    /// @param has_layout  For each object, whether its lightmap coordinates are used.
+    InstanceAdder(const Model& model, const std::vector<bool>& has_layout, Scene& scene, const ReadOptions& options)
+        : model_(model), has_layout_(has_layout), scene_(scene), faces_(scene, options), weld_(scene) {}
 
     /// Finds where the faces lie, without adding any.
     V3d suitable_origin() {
@@ -117,11 +137,14 @@ class InstanceAdder {
 
     std::vector<std::uint32_t> weld_vertices(const Mesh& mesh, const MeshInstance& instance) {
         const bool is_textured = model_.materials[mesh.material].is_textured();
+        const bool has_layout = !mesh.lightmap_coordinates.empty() && has_layout_[instance.object];
         std::vector<std::uint32_t> vertices;
         vertices.reserve(mesh.positions.size());
         for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-            const auto coordinate = is_textured ? std::optional(mesh.texture_coordinates[v]) : std::nullopt;
-            vertices.push_back(weld_.vertex(faces_.position(to_world(mesh.positions[v], instance)), coordinate));
+            VertexCoordinates coordinates;
+            if (is_textured) coordinates.texture = mesh.texture_coordinates[v];
+            if (has_layout) coordinates.lightmap = mesh.lightmap_coordinates[v];
+            vertices.push_back(weld_.vertex(faces_.position(to_world(mesh.positions[v], instance)), coordinates));
         }
         return vertices;
     }
@@ -140,8 +163,7 @@ class InstanceAdder {
             else
                 add_face(mesh, instance, where);
         });
-        for (const FaceVertices& merged :
-             merge_triangle_pairs(scene_.vertices, scene_.texture_coordinates, triangles)) {
+        for (const FaceVertices& merged : merge_triangle_pairs(scene_, triangles)) {
             face_.assign(merged.begin(), merged[3] == none ? merged.end() - 1 : merged.end());
             add_face(mesh, instance, where);
         }
@@ -173,6 +195,7 @@ class InstanceAdder {
     }
 
     const Model& model_;
+    const std::vector<bool>& has_layout_;
     Scene& scene_;
     SceneFaces faces_;
     VertexWeld weld_;
@@ -195,9 +218,10 @@ Luminaire placed(const PlacedLight& light, const V3d& origin) {
 
 Scene scene_of(Model&& model, const ReadOptions& options) {
     require_valid(model, options);
+    const std::vector<bool> has_layout = objects_with_layouts(model);
     Scene scene;
     scene.name = model.file.string();
-    scene.origin = InstanceAdder(model, scene, options).suitable_origin();
+    scene.origin = InstanceAdder(model, has_layout, scene, options).suitable_origin();
     scene.materials = model.materials;
     scene.textures = std::move(model.textures);
     scene.objects = std::move(model.objects);
@@ -205,7 +229,7 @@ Scene scene_of(Model&& model, const ReadOptions& options) {
     scene.files = std::move(model.files);
     scene.warnings = std::move(model.warnings);
     for (const PlacedLight& light : model.lights) scene.luminaires.push_back(placed(light, scene.origin));
-    InstanceAdder instances(model, scene, options);
+    InstanceAdder instances(model, has_layout, scene, options);
     for (const MeshInstance& instance : model.instances) instances.add(instance);
     instances.require_usable();
     require_no_faults(scene_faults(scene), "cannot read", scene);

@@ -14,7 +14,9 @@
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/formats/texture_limit.h"
 #include "interflect/scene/limits.h"
+#include "interflect/scene/texel_centre.h"
 
 namespace interflect::inline detail {
 
@@ -38,6 +40,16 @@ Rgb mtl_colour(std::span<const std::string_view> words) {
     if (std::min({result.x, result.y, result.z}) < 0)
         throw std::invalid_argument(fmt::format("{} is negative", words[0]));
     return result;
+}
+
+/// The key of the texture of the diffuse reflectance.
+constexpr std::string_view map_of_colours = "map_Kd";
+
+/// Masks have their values in their alpha, or as greys.
+bool has_transparency(const StoredImage& image) {
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        if (image.value(i, 3) < 1) return true;
+    return false;
 }
 
 /// How many words follow an option of a texture map at most; those of -o, -s and -t are numbers.
@@ -93,7 +105,8 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     if (key == "Kd") definition.diffuse = mtl_colour(words);
     if (key == "Ke") definition.emitted = mtl_colour(words);
     if (key == "Ks") definition.specular = mtl_colour(words);
-    if (key == "map_Kd" && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
+    if (key == map_of_colours && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
+    if (key == "map_d" && words.size() > 1) definition.mask = texture_path(words.subspan(1), where);
     if ((key == "d" || key == "Tr") && words.size() > 1) {
         const float value = mtl_number(words.back());
         if (!(value >= 0 && value <= 1))
@@ -135,9 +148,24 @@ std::uint32_t ObjMaterials::find(const std::string& name, const Location& where)
 std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& definition) {
     Material result;
     result.name = name;
-    result.reflectance = definition.diffuse * definition.opacity;
-    result.reflectance_texture = texture(definition);
     result.exitance = definition.emitted * static_cast<float>(std::numbers::pi);
+    result.reflectance = definition.diffuse;
+    const bool has_holes = !definition.mask.empty() && is_readable(definition.mask, "map_d", definition);
+    if (has_holes) {
+        cut_out(definition, result);
+    } else {
+        result.reflectance *= definition.opacity;
+        result.transmittance = Rgb(1 - definition.opacity);
+        result.reflectance_texture = texture(definition);
+    }
+    if (texels_ > most_texels) {
+        reduce_textures(model_.textures);
+        texels_ = texel_count(model_.textures);
+        warn("textures-reduced",
+             fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
+                         most_texels),
+             definition.where);
+    }
     bool limited = limit_reflectance(result.reflectance);
     if (result.reflectance_texture != none) {
         const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);
@@ -146,8 +174,7 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
             result.reflectance[c] = std::min(result.reflectance[c], most);
         }
     }
-    result.transmittance = Rgb(1 - definition.opacity);
-    limited |= limit_sum(result);
+    limited |= !has_holes && limit_sum(result);
     if (limited) warn("reflectance-clamped", "diffuse reflectance (Kd) above 0.99 is reduced", definition.where);
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
         throw definition.where.error(fmt::format("of the material '{}' the {}", name, fault));
@@ -157,28 +184,78 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
     return static_cast<std::uint32_t>(model_.materials.size() - 1);
 }
 
-std::uint32_t ObjMaterials::texture(const Definition& definition) {
-    if (definition.texture.empty()) return none;
-    const auto [entry, is_new] = textures_.try_emplace(definition.texture.string(), none);
-    if (!is_new) return entry->second;
+bool ObjMaterials::is_readable(const fs::path& texture, std::string_view key, const Definition& definition) {
     std::error_code ignored;
-    const std::string extension = lower_case_extension(definition.texture);
-    const std::array readable = {".png", ".exr", ".hdr"};
-    if (std::find(readable.begin(), readable.end(), extension) == readable.end() ||
-        !fs::exists(definition.texture, ignored)) {
-        warn("missing-texture", "texture (map_Kd) that is missing, or no PNG, EXR or HDR file, is left out",
-             definition.where);
-        return none;
-    }
+    const std::string extension = lower_case_extension(texture);
+    const bool is_photograph = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+    const bool is_known = is_photograph || (key == map_of_colours && (extension == ".exr" || extension == ".hdr"));
+    if (is_known && fs::exists(texture, ignored)) return true;
+    warn("missing-texture",
+         fmt::format("texture ({}) that is missing, or no {}, is left out", key,
+                     key == map_of_colours ? "PNG, JPEG, EXR or HDR file" : "PNG or JPEG file"),
+         definition.where);
+    return false;
+}
+
+Texture ObjMaterials::read_colours(const Definition& definition) {
+    if (definition.texture.empty() || !is_readable(definition.texture, map_of_colours, definition))
+        return {"", 1, 1, {Rgb(1)}};
     try {
         require_regular_file(definition.texture);
-        model_.textures.push_back(read_texture(definition.texture, most_texels - texels_));
+        Texture texture = read_texture(definition.texture);
+        model_.files.push_back(definition.texture.string());
+        return texture;
     } catch (const InputError& unreadable) {
         throw definition.where.error(fmt::format("the texture {}", unreadable.what()));
     }
-    texels_ += model_.textures.back().texels.size();
-    model_.files.push_back(definition.texture.string());
-    return entry->second = static_cast<std::uint32_t>(model_.textures.size() - 1);
+}
+
+StoredImage ObjMaterials::read_mask(const Definition& definition) {
+    try {
+        StoredImage mask = decode_stored_image(read_bytes(definition.mask), static_cast<std::int64_t>(most_texels));
+        model_.files.push_back(definition.mask.string());
+        return mask;
+    } catch (const std::runtime_error& unreadable) {
+        throw definition.where.error(
+            fmt::format("the texture '{}': {}", definition.mask.filename().string(), unreadable.what()));
+    }
+}
+
+std::uint32_t ObjMaterials::add_texture(Texture texture) {
+    texels_ += texture.texels.size();
+    model_.textures.push_back(std::move(texture));
+    return static_cast<std::uint32_t>(model_.textures.size() - 1);
+}
+
+std::uint32_t ObjMaterials::texture(const Definition& definition) {
+    if (definition.texture.empty()) return none;
+    const auto [entry, is_new] = textures_.try_emplace(definition.texture.string(), none);
+    if (is_new && is_readable(definition.texture, map_of_colours, definition))
+        entry->second = add_texture(read_colours(definition));
+    return entry->second;
+}
+
+void ObjMaterials::cut_out(const Definition& definition, Material& material) {
+    const StoredImage mask = read_mask(definition);
+    const bool has_alpha = has_transparency(mask);
+    const Texture colours = read_colours(definition);
+    Texture reflectance{
+        definition.mask.string(), static_cast<std::uint32_t>(mask.width), static_cast<std::uint32_t>(mask.height), {}};
+    Texture opening = reflectance, coverage = reflectance;
+    for (std::size_t i = 0; i < mask.pixel_count(); ++i) {
+        const float stored =
+            has_alpha ? mask.value(i, 3) : (mask.value(i, 0) + mask.value(i, 1) + mask.value(i, 2)) / 3;
+        const float there = definition.opacity * std::min(stored, 1.0f);
+        Rgb colour = texel_at(colours, texel_centre(reflectance, i));
+        for (int c = 0; c < 3; ++c) colour[c] = std::min(colour[c], 1.0f);
+        reflectance.texels.push_back(colour * there);
+        opening.texels.emplace_back(1 - there);
+        coverage.texels.emplace_back(there);
+    }
+    material.reflectance_texture = add_texture(std::move(reflectance));
+    material.transmittance = Rgb(1);
+    material.transmittance_texture = add_texture(std::move(opening));
+    if (largest_channel(material.exitance) > 0) material.exitance_texture = add_texture(std::move(coverage));
 }
 
 }  // namespace interflect::inline detail

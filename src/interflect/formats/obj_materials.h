@@ -10,6 +10,7 @@
 
 #include "interflect/formats/location.h"
 #include "interflect/formats/model.h"
+#include "interflect/image/stored_image.h"
 
 namespace interflect::inline detail {
 
@@ -31,15 +32,25 @@ class ObjMaterials {
     struct Definition {
         Rgb diffuse{0.5f, 0.5f, 0.5f}, emitted{0, 0, 0}, specular{0, 0, 0};
         float opacity = 1;
-        bool has_dissolve = false;  // d, which overrides Tr
-        std::filesystem::path texture;
+        bool has_dissolve = false;      // d, which overrides Tr
+        std::filesystem::path texture;  // of the diffuse reflectance
+        std::filesystem::path mask;     // of the opacity
         Location where;
         std::uint32_t material = none;  // index in Model::materials, once it is used
     };
     void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
+    /// Index in Model::textures of a material's texture; none where it has none that can be read, with a warning.
     std::uint32_t texture(const Definition& definition);
+    /// Its texture, read anew: white where it has none that can be read.
+    Texture read_colours(const Definition& definition);
+    StoredImage read_mask(const Definition& definition);
+    /// Whether there is a texture that can be read; else warns. @param key  What names it in the library.
+    bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
+    /// Gives a material the holes of its mask.
+    void cut_out(const Definition& definition, Material& material);
+    std::uint32_t add_texture(Texture texture);
     void warn(const std::string& kind, const std::string& message, const Location& where) {
         model_.warnings.add(kind, message, where.text());
     }

@@ -173,6 +173,7 @@ class MgfWriter {
         if (channel_sum(material.transmittance) > 0) put_colour("ts", RgbD(material.transmittance), smooth);
         if (channel_sum(material.exitance) > 0) put_colour("ed", RgbD(material.exitance));
         put_texture("rd", material.reflectance_texture);
+        put_texture("ts", material.transmittance_texture);
         put_texture("ed", material.exitance_texture);
     }
 

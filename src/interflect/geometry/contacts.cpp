@@ -86,7 +86,7 @@ class PieceWriter {
         const PatchGeometry geometry(scene_, patch);
         const auto new_vertex = [&](const Imath::V2d& position) {
             const V3f x = frame.in_space(position);
-            return weld_.vertex(x, coordinate_at(scene_, patch, geometry.parameters_of(x)));
+            return weld_.vertex(x, coordinates_at(scene_, patch, geometry.parameters_of(x)));
         };
         for (const PlanarPolygon& piece : cut.patches) {
             std::array<std::uint32_t, 4> vertices{none, none, none, none};

@@ -39,11 +39,11 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
 
 bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
 
-/// For each vertex one at the same position, the same for all that differ only in texture coordinates.
+/// For each vertex one at the same position, the same for all that differ only in coordinates.
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
     std::iota(joined.begin(), joined.end(), 0u);
-    if (scene.texture_coordinates.empty()) return joined;
+    if (scene.texture_coordinates.empty() && scene.lightmap_coordinates.empty()) return joined;
     Scene positions;
     VertexWeld weld(positions);
     for (std::size_t i = 0; i < joined.size(); ++i) joined[i] = weld.vertex(scene.vertices[i]);

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene/limits.h"
 
 namespace interflect::inline detail {
@@ -169,16 +170,15 @@ class Triangulation {
 
 /// The vertex for a point where loops meet: one of those that meet there if it is at that place, else a new one.
 std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours, const GLfloat* weights) {
-    V2f coordinate(0);
+    std::vector<std::uint32_t> vertices;
+    std::vector<float> weights_of_vertices;
     for (int i = 0; i < 4; ++i) {
         if (!neighbours[i]) continue;
-        const std::uint32_t v = *static_cast<std::uint32_t*>(neighbours[i]);
-        if ((position(scene_, v) - x).length() <= frame_.rounding) return v;
-        if (!scene_.texture_coordinates.empty()) coordinate += scene_.texture_coordinates[v] * weights[i];
+        vertices.push_back(*static_cast<std::uint32_t*>(neighbours[i]));
+        weights_of_vertices.push_back(weights[i]);
+        if ((position(scene_, vertices.back()) - x).length() <= frame_.rounding) return vertices.back();
     }
-    scene_.vertices.emplace_back(x);
-    if (!scene_.texture_coordinates.empty()) scene_.texture_coordinates.push_back(coordinate);
-    return static_cast<std::uint32_t>(scene_.vertices.size() - 1);
+    return add_vertex(scene_, V3f(x), interpolated(scene_, vertices, weights_of_vertices));
 }
 
 std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops) {

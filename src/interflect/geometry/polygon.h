@@ -27,8 +27,8 @@ enum class PolygonResult {
 /// @param loops     Indices into scene.vertices. The first loop is the outline, counter-clockwise seen from the front;
 ///                  it may touch itself along a seam that leads to a hole and back. The others are holes, of either
 ///                  direction. Where loops cross, a point is inside if it is inside an odd number of times, and the
-///                  crossings become new vertices of `scene`; otherwise no vertex is added. Texture
-///                  coordinates, if the scene has some, are interpolated there.
+///                  crossings become new vertices of `scene`; otherwise no vertex is added. Coordinates
+///                  in textures and lightmaps are interpolated there.
 /// @param two_sided Whether each patch gets its other_side.
 PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                           std::uint32_t object, bool two_sided);

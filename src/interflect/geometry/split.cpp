@@ -87,6 +87,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
     Scene split = scene;
     split.vertices.clear();
     split.texture_coordinates.clear();
+    split.lightmap_coordinates.clear();
     split.patches.clear();
     split.patches.reserve(static_cast<std::size_t>(count));
     VertexWeld weld(split);
@@ -98,7 +99,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
         const auto vertex = [&](std::uint64_t along_first, std::uint64_t along_last) {
             const Parameters p{static_cast<float>(along_first) / static_cast<float>(n.u),
                                static_cast<float>(along_last) / static_cast<float>(n.v)};
-            return weld.vertex(geometry.point(p), coordinate_at(scene, patch, p));
+            return weld.vertex(geometry.point(p), coordinates_at(scene, patch, p));
         };
         if (patch.is_triangle())
             split_triangle(split, patch, n, vertex);

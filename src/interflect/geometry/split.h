@@ -6,8 +6,8 @@ namespace interflect::inline detail {
 
 /// The scene with every patch divided into a grid of patches whose edges are at most `largest_edge` long: the fixed
 /// mesh of a method that does not refine by itself. Quadrilaterals become grids, triangles become n^2 triangles;
-/// patches that share an edge divide it alike. Sides stay neighbours, other_side included. Texture
-/// coordinates are interpolated.
+/// patches that share an edge divide it alike. Sides stay neighbours, other_side included. Coordinates in textures and
+/// lightmaps are interpolated.
 /// @param largest_edge  [m], > 0.
 /// @throws TooManyPatches where more than `max_patches` would result; InputError for another edge, and for a scene with
 /// faults.

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <optional>
-
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene.h"
 
 namespace interflect::inline detail {
@@ -11,14 +10,13 @@ namespace interflect::inline detail {
 /// @param scene  Has texture coordinates.
 V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p);
 
-/// The same; none where the scene has no texture coordinates.
-inline std::optional<V2f> coordinate_at(const Scene& scene, const Patch& patch, Parameters p) {
-    if (scene.texture_coordinates.empty()) return std::nullopt;
-    return texture_coordinate(scene, patch, p);
-}
+/// The coordinates of a vertex there, interpolated likewise: those that the scene has.
+VertexCoordinates coordinates_at(const Scene& scene, const Patch& patch, Parameters p);
 
-/// Reflectance and exitance [lm/m^2 or W/m^2] at a point of a patch: those of its material, times the texels there.
+/// Reflectance, exitance [lm/m^2 or W/m^2] and transmittance at a point of a patch: those of its material, times the
+/// texels there.
 Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p);
+Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p);
 
 }  // namespace interflect::inline detail

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/geometry/vertex_coordinates.h"
+
 namespace interflect::inline detail {
 
 namespace {
@@ -32,9 +34,8 @@ struct Edge {
 
 class PairFinder {
   public:
-    PairFinder(std::span<const V3f> vertices, std::span<const V2f> coordinates,
-               std::span<const std::uint32_t> triangles)
-        : vertices_(vertices), coordinates_(coordinates), triangles_(triangles), faces_(triangles.size() / 3) {
+    PairFinder(const Scene& scene, std::span<const std::uint32_t> triangles)
+        : scene_(scene), triangles_(triangles), faces_(triangles.size() / 3) {
         for (std::uint32_t t = 0; t < faces_.size(); ++t) faces_[t] = {corner(t, 0), corner(t, 1), corner(t, 2), none};
     }
 
@@ -49,7 +50,7 @@ class PairFinder {
 
   private:
     std::uint32_t corner(std::uint32_t triangle, std::uint32_t k) const { return triangles_[3 * triangle + k % 3]; }
-    V3d position(std::uint32_t vertex) const { return V3d(vertices_[vertex]); }
+    V3d position(std::uint32_t vertex) const { return V3d(scene_.vertices[vertex]); }
     bool is_single(std::uint32_t triangle) const { return faces_[triangle][0] != none && faces_[triangle][3] == none; }
     double squared_length(std::uint32_t triangle, std::uint32_t k) const {
         return (position(corner(triangle, k + 1)) - position(corner(triangle, k))).length2();
@@ -108,26 +109,27 @@ class PairFinder {
     }
 
     bool has_linear_coordinates(const FaceVertices& face) const {
-        if (coordinates_.empty()) return true;
         const V3d a = position(face[0]), along = position(face[2]) - a, up = position(face[3]) - a;
         const V3d normal = along.cross(up), b = position(face[1]) - a;
         const double s = b.cross(up).dot(normal) / normal.length2(), t = along.cross(b).dot(normal) / normal.length2();
-        const auto of = [&](int k) { return Imath::V2d(coordinates_[face[static_cast<std::size_t>(k)]]); };
-        const Imath::V2d linear = of(0) + s * (of(2) - of(0)) + t * (of(3) - of(0));
-        return (linear - of(1)).length() <= coordinate_tolerance;
+        const auto is_linear = [&](const std::vector<V2f>& coordinates) {
+            const auto of = [&](std::size_t k) { return Imath::V2d(coordinates[face[k]]); };
+            const Imath::V2d linear = of(0) + s * (of(2) - of(0)) + t * (of(3) - of(0));
+            return (linear - of(1)).length() <= coordinate_tolerance;
+        };
+        return (scene_.texture_coordinates.empty() || is_linear(scene_.texture_coordinates)) &&
+               (!coordinates_of(scene_, face[0]).lightmap || is_linear(scene_.lightmap_coordinates));
     }
 
-    std::span<const V3f> vertices_;
-    std::span<const V2f> coordinates_;
+    const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
     std::vector<FaceVertices> faces_;  // the first vertex is none where the face became part of another
 };
 
 }  // namespace
 
-std::vector<FaceVertices> merge_triangle_pairs(std::span<const V3f> vertices, std::span<const V2f> coordinates,
-                                               std::span<const std::uint32_t> triangles) {
-    return PairFinder(vertices, coordinates, triangles).find();
+std::vector<FaceVertices> merge_triangle_pairs(const Scene& scene, std::span<const std::uint32_t> triangles) {
+    return PairFinder(scene, triangles).find();
 }
 
 }  // namespace interflect::inline detail

@@ -8,23 +8,29 @@ namespace interflect::inline detail {
 
 namespace {
 
-std::uint64_t hash(const V3f& position, const V2f& coordinate) {
-    const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f)}; };
-    const V3f x = position + V3f(0);  // -0 + 0 = 0
-    const V2f uv = coordinate + V2f(0);
-    const std::uint64_t of_position = mix(bits(x.x) | bits(x.y) << 32, bits(x.z));
-    return uv == V2f(0) ? of_position : mix(of_position, bits(uv.x) | bits(uv.y) << 32);
+std::uint64_t bits(float f) {
+    return std::bit_cast<std::uint32_t>(f + 0.0f);  // -0 + 0 = 0
+}
+
+std::uint64_t bits(const V2f& v) { return bits(v.x) | bits(v.y) << 32; }
+
+std::uint64_t hash(const V3f& x, const VertexCoordinates& coordinates) {
+    const V2f texture = coordinates.texture.value_or(V2f(0));
+    std::uint64_t result = mix(bits(x.x) | bits(x.y) << 32, bits(x.z));
+    if (texture != V2f(0)) result = mix(result, bits(texture));
+    if (coordinates.lightmap) result = mix(result, bits(*coordinates.lightmap));
+    return result;
 }
 
 }  // namespace
 
 /// The slot that holds this vertex, or the empty one where it belongs.
-std::uint32_t& VertexWeld::slot_of(const V3f& position, const V2f& coordinate) {
+std::uint32_t& VertexWeld::slot_of(const V3f& position, const VertexCoordinates& coordinates) {
     const auto is_other = [&](std::uint32_t v) {
-        return scene_.vertices[v] != position || coordinate_of(v) != coordinate;
+        return scene_.vertices[v] != position || coordinates_of(scene_, v) != coordinates;
     };
     const std::size_t mask = slots_.size() - 1;
-    std::size_t i = hash(position, coordinate) & mask;
+    std::size_t i = hash(position, coordinates) & mask;
     while (slots_[i] != none && is_other(slots_[i])) i = (i + 1) & mask;
     return slots_[i];
 }
@@ -33,18 +39,14 @@ void VertexWeld::grow() {
     const std::vector<std::uint32_t> old = std::move(slots_);
     slots_.assign(2 * old.size(), none);
     for (const std::uint32_t vertex : old)
-        if (vertex != none) slot_of(scene_.vertices[vertex], coordinate_of(vertex)) = vertex;
+        if (vertex != none) slot_of(scene_.vertices[vertex], coordinates_of(scene_, vertex)) = vertex;
 }
 
-std::uint32_t VertexWeld::vertex(const V3f& position, const std::optional<V2f>& coordinate) {
+std::uint32_t VertexWeld::vertex(const V3f& position, const VertexCoordinates& coordinates) {
     if (2 * (used_ + 1) > slots_.size()) grow();
-    const V2f uv = coordinate.value_or(V2f(0));
-    std::uint32_t& slot = slot_of(position, uv);
+    std::uint32_t& slot = slot_of(position, coordinates);
     if (slot == none) {
-        slot = static_cast<std::uint32_t>(scene_.vertices.size());
-        if (coordinate) scene_.texture_coordinates.resize(scene_.vertices.size(), V2f(0));
-        scene_.vertices.push_back(position);
-        if (coordinate || !scene_.texture_coordinates.empty()) scene_.texture_coordinates.push_back(uv);
+        slot = add_vertex(scene_, position, coordinates);
         ++used_;
     }
     return slot;

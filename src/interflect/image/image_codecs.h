@@ -16,7 +16,8 @@ namespace interflect::inline detail::codecs {
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
 
-std::string encode_png(const Image& image);
+/// @param opacity  Of each pixel, in [0, 1]; none: the file has no alpha.
+std::string encode_png(const Image& image, std::span<const float> opacity = {});
 std::string encode_jpeg(const Image& image);
 Image decode_png(std::string_view bytes, std::int64_t most_pixels);
 Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels);

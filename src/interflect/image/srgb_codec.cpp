@@ -1,5 +1,7 @@
 // PNG and JPEG: written through stb. stored_image.cpp reads them.
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -19,12 +21,13 @@ namespace {
 constexpr int channels = 3;
 constexpr int jpeg_quality = 95;  // of 100: no blocks that the eye would see on smooth walls
 
-std::vector<std::uint8_t> srgb_bytes(const Image& image) {
+std::vector<std::uint8_t> srgb_bytes(const Image& image, std::span<const float> opacity = {}) {
     std::vector<std::uint8_t> bytes;
-    bytes.reserve(channels * image.pixels.size());
-    for (const Rgb& pixel : image.pixels) {
-        const Rgb shown = is_finite(pixel) ? pixel : Rgb(1, 0, 1);
+    bytes.reserve((channels + 1) * image.pixels.size());
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const Rgb shown = is_finite(image.pixels[i]) ? image.pixels[i] : Rgb(1, 0, 1);
         for (int c = 0; c < channels; ++c) bytes.push_back(srgb_byte(shown[c]));
+        if (!opacity.empty()) bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * opacity[i])));
     }
     return bytes;
 }
@@ -42,10 +45,11 @@ void append(void* text, void* data, int size) {
 
 }  // namespace
 
-std::string encode_png(const Image& image) {
+std::string encode_png(const Image& image, std::span<const float> opacity) {
+    const int all_channels = opacity.empty() ? channels : channels + 1;
     std::string file;
-    if (!stbi_write_png_to_func(append, &file, image.width, image.height, channels, srgb_bytes(image).data(),
-                                channels * image.width))
+    if (!stbi_write_png_to_func(append, &file, image.width, image.height, all_channels,
+                                srgb_bytes(image, opacity).data(), all_channels * image.width))
         throw std::runtime_error("cannot encode the image as PNG: out of memory");
     return file;
 }

@@ -133,8 +133,8 @@ Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, c
     float left = place.distance;
     for (int passed = 0; passed <= Panes::most_in_a_row; ++passed) {
         if (hit.patch == place.patch || (place.patch == none && hit.distance > left)) return transmittance;
-        if (!panes.has(hit.patch)) return Rgb(0);
-        transmittance *= panes.transmittance(hit.patch);
+        transmittance *= panes.transmittance(ray, hit);
+        if (!(largest_channel(transmittance) > 0)) return Rgb(0);
         left -= hit.distance;
         ray = panes.behind(ray, hit);
         ray_caster.trace({&ray, 1}, {&hit, 1});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/texture_mapping.h"
 
 namespace interflect::inline detail {
 
@@ -11,6 +12,15 @@ Panes::Panes(const Scene& scene, const RayCaster& ray_caster)
       ray_caster_(ray_caster),
       any_(std::any_of(scene.materials.begin(), scene.materials.end(),
                        [](const Material& m) { return largest_channel(m.transmittance) > 0; })) {}
+
+Rgb Panes::transmittance(const Ray& ray, const Hit& hit) const {
+    if (!any_ || hit.patch == none) return Rgb(0);
+    const Patch& patch = scene_.patches[hit.patch];
+    const Material& material = scene_.materials[patch.material];
+    if (material.transmittance_texture == none) return material.transmittance;
+    const V3f x = ray.origin + hit.distance * ray.direction;
+    return transmittance_at(scene_, patch, PatchGeometry(scene_, patch).parameters_of(x));
+}
 
 Ray Panes::behind(const Ray& ray, const Hit& hit) const {
     const PatchGeometry geometry(scene_, scene_.patches[hit.patch]);
@@ -21,33 +31,29 @@ Ray Panes::behind(const Ray& ray, const Hit& hit) const {
 void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const {
     behind.clear();
     if (!any_) return;
-    for (std::uint32_t i = 0; i < rays.size(); ++i)
-        if (has(hits[i].patch)) behind.push_back({i, Rgb(1), hits[i]});
-    std::vector<Ray> rest;
+    std::vector<HitBehind> passing;  // rays that go on, with all panes so far
+    std::vector<Ray> rest;           // of each of them
+    const auto pass = [&](std::uint32_t ray, const Rgb& so_far, const Hit& hit) {
+        const Rgb through = so_far * transmittance(rays[ray], hit);
+        if (!(largest_channel(through) > 0)) return;
+        passing.push_back({ray, through, {}});
+        rest.push_back(this->behind(rays[ray], hit));
+    };
+    for (std::uint32_t i = 0; i < rays.size(); ++i) pass(i, Rgb(1), hits[i]);
     std::vector<Hit> found;
-    std::size_t first = 0;  // of those that the last round has found
-    const std::size_t panes_hit = behind.size();
-    for (int round = 0; round < most_in_a_row && first < behind.size(); ++round) {
-        const std::size_t end = behind.size();
-        std::vector<std::size_t> passed;
-        rest.clear();
-        for (std::size_t k = first; k < end; ++k) {
-            if (!has(behind[k].hit.patch)) continue;
-            passed.push_back(k);
-            rest.push_back(this->behind(rays[behind[k].ray], behind[k].hit));
-        }
+    for (int round = 0; round < most_in_a_row && !passing.empty(); ++round) {
         found.resize(rest.size());
         ray_caster_.trace(rest, found);
-        for (std::size_t k = 0; k < passed.size(); ++k) {
-            const HitBehind before = behind[passed[k]];
-            const Ray& ray = rays[before.ray];
-            Hit hit = found[k];
-            hit.distance += (rest[k].origin - ray.origin).dot(ray.direction);
-            behind.push_back({before.ray, before.transmittance * transmittance(before.hit.patch), hit});
+        for (std::size_t k = 0; k < passing.size(); ++k) {
+            const Ray& ray = rays[passing[k].ray];
+            passing[k].hit = found[k];
+            passing[k].hit.distance += (rest[k].origin - ray.origin).dot(ray.direction);
         }
-        first = end;
+        const std::size_t first = behind.size();
+        behind.insert(behind.end(), passing.begin(), passing.end());
+        passing.clear(), rest.clear();
+        for (std::size_t k = first; k < behind.size(); ++k) pass(behind[k].ray, behind[k].transmittance, behind[k].hit);
     }
-    behind.erase(behind.begin(), behind.begin() + static_cast<std::ptrdiff_t>(panes_hit));
     std::stable_sort(behind.begin(), behind.end(), [](const auto& a, const auto& b) { return a.ray < b.ray; });
 }
 

@@ -10,18 +10,15 @@
 
 namespace interflect::inline detail {
 
-/// What lies behind panes of thin glass, through which rays go straight on (Material::transmittance). Refers to the
-/// scene and its ray caster. Immutable, shared by all threads.
+/// What lies behind panes, through which rays go straight on: thin glass, and faces with holes
+/// (Material::transmittance). Refers to the scene and its ray caster. Immutable, shared by all threads.
 class Panes {
   public:
     Panes(const Scene& scene, const RayCaster& ray_caster);
 
     bool empty() const { return !any_; }
-    /// Whether light goes through a patch; none is no patch.
-    bool has(std::uint32_t patch) const { return any_ && patch != none && largest_channel(transmittance(patch)) > 0; }
-    const Rgb& transmittance(std::uint32_t patch) const {
-        return scene_.materials[scene_.patches[patch].material].transmittance;
-    }
+    /// Where a ray has hit: 0 where it escapes, and for what is no pane.
+    Rgb transmittance(const Ray& ray, const Hit& hit) const;
 
     /// The rest of a ray that has hit a pane: it starts behind that.
     Ray behind(const Ray& ray, const Hit& hit) const;

@@ -120,15 +120,15 @@ void PathWavefront::split_paths() {
             const Material& m = s_.material(hit.patch);
             const Ray ray = rays_[i];
             Path path = paths_[i];
-            if (s_.panes.has(hit.patch)) {
+            if (const Rgb through = s_.panes.transmittance(ray, hit); largest_channel(through) > 0) {
                 path.travelled += hit.distance;
-                add_path(s_.panes.behind(ray, hit), path, m.transmittance, m.reflectance);
+                add_path(s_.panes.behind(ray, hit), path, through, reflectance_of_hit(ray, hit));
             }
             if (vertex_ > 1 || !s_.options.mirrors || largest_channel(m.specular_reflectance) <= 0) continue;
             const V3f n = s_.geometry[hit.patch].normal();
             const V3f mirrored = ray.direction - 2 * n.dot(ray.direction) * n;
             add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, paths_[i],
-                     m.specular_reflectance, m.reflectance);
+                     m.specular_reflectance, reflectance_of_hit(ray, hit));
         }
         hits_.resize(rays_.size());
         s_.ray_caster.trace(std::span(rays_).subspan(end), std::span(hits_).subspan(end));
@@ -144,6 +144,11 @@ void PathWavefront::add_path(const Ray& ray, const Path& path, const Rgb& share,
     if (largest_channel(added.throughput) < least_throughput) return;
     rays_.push_back(ray);
     paths_.push_back(added);
+}
+
+Rgb PathWavefront::reflectance_of_hit(const Ray& ray, const Hit& hit) const {
+    const Parameters p = s_.geometry[hit.patch].parameters_of(ray.origin + hit.distance * ray.direction);
+    return reflectance_at(s_.scene, s_.scene.patches[hit.patch], p);
 }
 
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
@@ -325,11 +330,13 @@ void PathWavefront::pass_panes() {
         passing.clear(), rest.clear();
         for (std::size_t i = 0; i < connections_.size(); ++i) {
             Connection& c = connections_[i];
-            if (hits_[i].patch == c.patch || !s_.panes.has(hits_[i].patch)) continue;
+            if (hits_[i].patch == c.patch) continue;
             if (c.patch == none && hits_[i].distance > c.distance) continue;
+            const Rgb through = s_.panes.transmittance(shadow_rays_[i], hits_[i]);
+            if (!(largest_channel(through) > 0)) continue;
             passing.push_back(i);
             rest.push_back(s_.panes.behind(shadow_rays_[i], hits_[i]));
-            c.radiance *= s_.panes.transmittance(hits_[i].patch);
+            c.radiance *= through;
             c.distance -= hits_[i].distance;
         }
         if (passing.empty()) return;

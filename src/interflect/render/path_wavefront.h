@@ -122,6 +122,7 @@ class PathWavefront {
     void split_paths();
     /// A path that splits off another; where its throughput would not count it is not added.
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
+    Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
     /// What happens where a ray hits; afterwards `ray` and `path` are the reflected ones. @return Whether it goes on.
     bool interact(const Hit& hit, Ray& ray, Path& path);
     /// Joins `ray.origin`, on a surface with `path.normal`, to the light, and chooses the direction in which the path

@@ -122,8 +122,8 @@ class LightAround {
             Hit hit;
             ray_caster_.trace({&ray, 1}, {&hit, 1});
             if (hit.patch == none || hit.distance >= distance) return through;
-            if (!panes_.has(hit.patch)) break;
-            through *= panes_.transmittance(hit.patch);
+            through *= panes_.transmittance(ray, hit);
+            if (!(largest_channel(through) > 0)) break;
             distance -= hit.distance;
             ray = panes_.behind(ray, hit);
         }

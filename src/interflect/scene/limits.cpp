@@ -72,6 +72,18 @@ std::vector<Rgb> largest_texels(const Scene& scene) {
     return largest;
 }
 
+Rgb largest_sum(const Material& m, const std::vector<Texture>& textures, const std::vector<Rgb>& largest) {
+    const std::uint32_t r = m.reflectance_texture, t = m.transmittance_texture;
+    if (r == none || t == none || textures[r].width != textures[t].width || textures[r].height != textures[t].height)
+        return textured(m.reflectance, r, largest) + textured(m.transmittance, t, largest) + m.specular_reflectance;
+    Rgb sum(0);
+    for (std::size_t i = 0; i < textures[r].texels.size(); ++i) {
+        const Rgb here = m.reflectance * textures[r].texels[i] + m.transmittance * textures[t].texels[i];
+        for (int c = 0; c < 3; ++c) sum[c] = std::max(sum[c], here[c]);
+    }
+    return sum + m.specular_reflectance;
+}
+
 float brightest_source(const Scene& scene) {
     const std::vector<Rgb> largest = largest_texels(scene);
     float strongest = 0;

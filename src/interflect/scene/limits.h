@@ -50,6 +50,11 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
     return texture == none ? factor : factor * largest[texture];
 }
 
+/// The largest sum, over a textured surface, of the shares of light that a material reflects, mirrors and lets through.
+/// Exact where the textures of its reflectance and transmittance have the same size; else an upper bound.
+/// @param largest  largest_texels() of `textures`.
+Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
+
 /// Largest channel of what materials, times their textures, and luminaires are rated by, each in its unit; 0 where none
 /// emits. @param scene  Its materials' textures exist. O(texels).
 float brightest_source(const Scene& scene);

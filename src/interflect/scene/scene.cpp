@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "interflect/error.h"
 #include "interflect/scene/environment_maps.h"
@@ -59,7 +60,7 @@ void check_points(const Scene& scene, Faults& faults) {
 }
 
 void check_material(const Scene& scene, const Material& m, Faults& faults) {
-    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture})
+    for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture, m.transmittance_texture})
         faults.check(texture == none || texture < scene.textures.size(),
                      [&] { return fmt::format("material '{}': there is no texture {}", m.name, texture); });
     const Rgb& r = m.reflectance;
@@ -67,7 +68,8 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
-    faults.check(is_share(t) && is_share(s) && largest_channel(Rgb(r + t + s)) <= 1, [&] {
+    const bool are_added = m.transmittance_texture == none;  // else check_products() does, texel by texel
+    faults.check(is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), [&] {
         return fmt::format(
             "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
             "more than 1 with the reflectance",
@@ -77,7 +79,8 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
 }
 
 /// @param largest  Of all textures, as largest_texels().
-void check_products(const Material& m, const std::vector<Rgb>& largest, Faults& faults) {
+void check_products(const Material& m, const std::vector<Texture>& textures, const std::vector<Rgb>& largest,
+                    Faults& faults) {
     const Rgb r = textured(m.reflectance, m.reflectance_texture, largest);
     faults.check(is_reflectance(r), [&] {
         return fmt::format("material '{}': reflectance times its texture is up to ({}, {}, {}), not in [0, 1)", m.name,
@@ -85,6 +88,14 @@ void check_products(const Material& m, const std::vector<Rgb>& largest, Faults& 
     });
     faults.add(exitance_fault(textured(m.exitance, m.exitance_texture, largest)),
                [&] { return fmt::format("material '{}' times its texture: ", m.name); });
+    if (m.transmittance_texture == none) return;
+    const Rgb sum = largest_sum(m, textures, largest);
+    faults.check(largest_channel(sum) <= 1, [&] {
+        return fmt::format(
+            "material '{}': reflectance and transmittance, times their textures, are up to ({}, {}, {}) in sum; "
+            "expected at most 1",
+            m.name, sum.x, sum.y, sum.z);
+    });
 }
 
 void check_textures(const Scene& scene, Faults& faults) {
@@ -106,12 +117,38 @@ void check_textures(const Scene& scene, Faults& faults) {
                    [&] { return fmt::format("vertex {} ", i); });
 }
 
+bool is_missing(const V2f& c) { return std::isnan(c.x) && std::isnan(c.y); }
+
+void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
+    const std::vector<V2f>& all = scene.lightmap_coordinates;
+    if (all.empty()) return;
+    faults.check(all.size() == scene.vertices.size(), [&] {
+        return fmt::format("there are {} vertices and {} lightmap coordinates", scene.vertices.size(), all.size());
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const V2f& c = all[i];
+        const bool is_inside = c.x >= 0 && c.x <= 1 && c.y >= 0 && c.y <= 1;
+        faults.check(is_inside || is_missing(c), [&] {
+            return fmt::format("vertex {} has the lightmap coordinates ({}, {}); expected 0 to 1, or NaN for none", i,
+                               c.x, c.y);
+        });
+    }
+}
+
+/// @param patch  Has vertices of the scene.
+bool has_some_lightmap_coordinates_only(const Scene& scene, const Patch& patch) {
+    if (scene.lightmap_coordinates.size() != scene.vertices.size()) return false;
+    const auto count = std::count_if(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(),
+                                     [&](std::uint32_t v) { return is_missing(scene.lightmap_coordinates[v]); });
+    return count != 0 && count != patch.vertex_count();
+}
+
 void check_materials(const Scene& scene, Faults& faults) {
     for (const Material& m : scene.materials) check_material(scene, m, faults);
     if (!faults.empty()) return;
     const std::vector<Rgb> largest = largest_texels(scene);
     for (const Material& m : scene.materials)
-        if (m.is_textured()) check_products(m, largest, faults);
+        if (m.is_textured()) check_products(m, scene.textures, largest, faults);
     faults.add(brightness_fault(brightest_source(scene)), [] { return std::string("the scene "); });
 }
 
@@ -132,6 +169,8 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
     faults.check(p.material >= scene.materials.size() || !scene.materials[p.material].is_textured() ||
                      !scene.texture_coordinates.empty(),
                  [&] { return fmt::format("patch {} has a texture, but no texture coordinates", i); });
+    faults.check(!has_vertices(scene, p) || !has_some_lightmap_coordinates_only(scene, p),
+                 [&] { return fmt::format("patch {} has lightmap coordinates at some of its vertices only", i); });
     faults.check(p.object < scene.objects.size(),
                  [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
     const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
@@ -148,6 +187,7 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     const auto the_scene = [] { return std::string("the scene "); };
     check_points(scene, faults);
     check_textures(scene, faults);
+    check_lightmap_coordinates(scene, faults);
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     faults.add(sky_count_fault(scene), the_scene);
     check_materials(scene, faults);

@@ -10,6 +10,7 @@
 #include "interflect/base/random.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/tangent_frame.h"
+#include "interflect/geometry/texture_mapping.h"
 #include "interflect/scene/core.h"
 
 namespace interflect::inline detail {
@@ -67,8 +68,9 @@ bool FaceSurroundings::stays_within(float extent, const Start& start) const {
             reached.extendBy(x);
             if (reached.size().length() > extent) return false;
             const Patch& patch = scene_.patches[hit.patch];
-            const bool is_glass = largest_channel(scene_.materials[patch.material].transmittance) > 0;
-            const V3f out = (is_glass ? -1.0f : 1.0f) * PatchGeometry(scene_, patch).normal();
+            const PatchGeometry geometry(scene_, patch);
+            const bool is_glass = largest_channel(transmittance_at(scene_, patch, geometry.parameters_of(x))) > 0;
+            const V3f out = (is_glass ? -1.0f : 1.0f) * geometry.normal();
             ray = {x + ray_caster_.ray_offset(hit.patch) * out,
                    is_glass ? ray.direction : direction(out, path * reflections + k)};
         }

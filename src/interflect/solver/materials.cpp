@@ -51,6 +51,7 @@ Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
                 const MeanSurface mean = elements_.of_patch(patches[i], PatchGeometry(scene, patch));
                 own.reflectance = mean.reflectance;
                 own.exitance = mean.exitance;
+                own.transmittance = mean.transmittance;
             } else {
                 own.exitance *= exitance_share[patches[i]];
             }

@@ -42,7 +42,7 @@ class Materials {
         if (!elements_.empty() && element != patch)
             if (const MeanSurface* known = elements_.find(element)) return *known;
         const Material& m = material(patch);
-        return {m.reflectance, m.exitance};
+        return {m.reflectance, m.exitance, m.transmittance};
     }
     float mean_reflectance(std::uint32_t patch, std::uint32_t element) const {
         return channel_sum(surface(patch, element).reflectance) / 3;

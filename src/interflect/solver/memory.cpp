@@ -17,10 +17,8 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
         constexpr std::size_t per_texel = sizeof(Rgb) + sizeof(RgbD) / 8;  // the latter for TextureIntegral
         need.scene += texture.texels.size() * per_texel;
     }
-    if (!scene.texture_coordinates.empty()) {
-        need.scene += scene.texture_coordinates.size() * sizeof(V2f);
-        need.per_element += sizeof(MeanSurface) + 1;
-    }
+    need.scene += (scene.texture_coordinates.size() + scene.lightmap_coordinates.size()) * sizeof(V2f);
+    if (!scene.texture_coordinates.empty()) need.per_element += sizeof(MeanSurface) + 1;
     need.ray_tracer = ray_caster.memory();
     need.patches = scene.patches.size() * sizeof(PatchGeometry);
     need.rest = program;

@@ -21,8 +21,8 @@ PowerBalance power_balance(const Scene& scene, const Solution& solution) {
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
         const std::uint32_t patch = forest.patch(e);
-        const RgbD kept =
-            RgbD(1) - RgbD(materials.surface(patch, e).reflectance + materials.material(patch).transmittance);
+        const MeanSurface surface = materials.surface(patch, e);
+        const RgbD kept = RgbD(1) - RgbD(surface.reflectance + surface.transmittance);
         balance.absorbed += kept * RgbD(solution.irradiance[e]) * static_cast<double>(forest.area(e));
     }
     return balance;

@@ -22,7 +22,8 @@ MeanSurface TexturedElements::mean(std::uint32_t patch, const PatchGeometry& geo
     const Patch& p = scene_->patches[patch];
     const Material& material = scene_->materials[p.material];
     MeanSurface surface{material.reflectance * means_->mean(material.reflectance_texture, p, geometry, cell),
-                        material.exitance * means_->mean(material.exitance_texture, p, geometry, cell)};
+                        material.exitance * means_->mean(material.exitance_texture, p, geometry, cell),
+                        material.transmittance * means_->mean(material.transmittance_texture, p, geometry, cell)};
     if (!exitance_share_.empty()) surface.exitance *= exitance_share_[patch];
     return surface;
 }

@@ -14,10 +14,11 @@ namespace interflect::inline detail {
 struct MeanSurface {
     Rgb reflectance{0, 0, 0};
     Rgb exitance{0, 0, 0};  ///< [lm/m^2 or W/m^2]
+    Rgb transmittance{0, 0, 0};
 };
 
-/// Mean reflectances and exitances of the elements of textured patches; 24 bytes for each of these elements, and one
-/// for any. Empty where no patch is textured.
+/// The mean surfaces of the elements of textured patches; 36 bytes for each of these elements, and one for any. Empty
+/// where no patch is textured.
 class TexturedElements {
   public:
     /// @param scene           Without faults; must outlive this.
