@@ -9,10 +9,12 @@ import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
 import zlib
+from pathlib import Path
 
 from command import BAD_INPUT, VIEWS, CommandTest, room
 
 AREA = 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1  # of room(): walls with two sides, and a lamp with one [m^2]
+FAR_VIEW = ("--eye", "3000000.3,-1999999.8,1.6", "--look-at", "3000001.2,-1999997,1")
 FACES = AREA / 2 + 0.5  # of the faces alone
 
 
@@ -91,46 +93,30 @@ class Meshes(Exported):
         for channel in emission[0]:
             self.assertAlmostEqual(float(channel), 1000 / math.pi, places=3)
 
-    def test_vtu_opens_in_vtk_with_the_numbers_of_the_solution(self):
-        self.export("room.vtu")
-        script = """if True:
-            import h5py, numpy
-            from vtkmodules.util.numpy_support import vtk_to_numpy
-            from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
-            from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
-            reader = vtkXMLUnstructuredGridReader()
-            reader.SetFileName("room.vtu")
-            reader.Update()
-            grid = reader.GetOutput()
-            cells = grid.GetCellData()
-            element = vtk_to_numpy(cells.GetArray("element"))
-            with h5py.File("room.h5") as file:
-                names = ("irradiance", "standard_error", "discretisation_error", "rays", "view_importance",
-                         "indirect_importance")
-                for name in names:
-                    stored = file["solution"][name][:][element]
-                    assert numpy.array_equal(vtk_to_numpy(cells.GetArray(name)), stored), name
-                patches, vertices = file["scene/patches"][:], file["scene/vertices"][:]
-            patch = vtk_to_numpy(cells.GetArray("patch"))
-            assert numpy.array_equal(vtk_to_numpy(cells.GetArray("material")), patches[patch, 4])
-            level = vtk_to_numpy(cells.GetArray("level"))
-            assert ((level == 0) == (element < len(patches))).all()
-            assert len(set(element)) == len(element)
-            sizes = vtkCellSizeFilter()
-            sizes.SetInputData(grid)
-            sizes.Update()
-            a, b, c = (vertices[patches[patch, k]] for k in range(3))  # of rectangles
-            areas = numpy.linalg.norm(numpy.cross(b - a, c - b), axis=1) / 4.0**level
-            found = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Area"))
-            assert numpy.allclose(found, areas, rtol=1e-4), "cells are not the elements that they tell of"
-            illuminance = vtk_to_numpy(grid.GetPointData().GetArray("illuminance"))
-            assert (illuminance >= 0).all() and illuminance.max() > 0
-            print(grid.GetNumberOfCells(), *grid.GetBounds())
-            """
-        command = ["/usr/bin/python3", "-c", script]
+    def check_vtk(self, solution, *grids):
+        """Of each grid that the two files of VTK's formats hold: how many cells it has, its bounds, its area."""
+        for name in grids:
+            self.interflect("export", solution, "-o", name)
+        command = ["/usr/bin/python3", "-B", Path(__file__).parent / "check_vtk.py", solution, *grids]
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(list(map(float, result.stdout.split())), [self.leaves, 0, 2, 0, 3, 0, 2.5])
+        return [list(map(float, line.split())) for line in result.stdout.splitlines()]
+
+    def test_vtk_reads_the_numbers_of_the_solution(self):
+        for cells, *bounds, area_of_cells in self.check_vtk("room.h5", "room.vtu", "room.vtkhdf"):
+            self.assertEqual([cells, *bounds], [self.leaves, 0, 2, 0, 3, 0, 2.5])
+            self.assertAlmostEqual(area_of_cells, AREA, places=3)
+        self.interflect("export", "room.h5", "-o", "again.vtkhdf")
+        self.assertEqual(self.bytes("again.vtkhdf"), self.bytes("room.vtkhdf"))
+
+    def test_vtk_reads_world_coordinates_of_a_room_far_away(self):
+        bulb = "v bulb =\n\tp 1 1 1\nlight point bulb 3\n"  # in none of the groups that are named
+        self.write("far.mgf", "xf -t 3e6 -2e6 0\n" + room() + bulb + "xf\n")
+        self.interflect("solve", "far.mgf", "-o", "far.h5", "--rays", "5k", *FAR_VIEW, "--group", "lamp=lamp")
+        for _, *bounds, area_of_cells in self.check_vtk("far.h5", "far.vtu", "far.vtkhdf"):
+            for found, expected in zip(bounds, (3e6, 3e6 + 2, -2e6, -2e6 + 3, 0, 2.5)):
+                self.assertAlmostEqual(found, expected, places=5)
+            self.assertAlmostEqual(area_of_cells, AREA, places=3)
 
     def test_probes_fill_the_room(self):
         probes = json.loads(self.export("probes.json", "--probe-spacing", "1", "--probe-rays", "200"))

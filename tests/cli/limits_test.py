@@ -118,14 +118,5 @@ class Views(CommandTest):
                 self.interflect("render", "room.mgf", "-o", "room.exr", *eye, *fast)
 
 
-class Work(CommandTest):
-    def test_files_that_include_each_other_many_times_end(self):
-        for level in range(9):
-            self.write(f"f{level}.mgf", f"i f{level + 1}.mgf\n" * 40)
-        self.write("f9.mgf", "# nothing\n")
-        result = self.interflect("info", "f0.mgf", exit_code=BAD_INPUT)
-        self.assertRegex(result.stderr, r"f\d\.mgf:\d+: arrays and includes repeat")
-
-
 if __name__ == "__main__":
     unittest.main()

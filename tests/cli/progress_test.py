@@ -50,10 +50,9 @@ class Progress(CommandTest):
         draw = ("render", "out.h5", "-o", "out.png", *VIEW, "--shading", "smooth", "--size")
         result = self.interflect(*draw, "32x18")
         self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
-        size = 128
-        seconds = 0
+        size, seconds = 64, 0.25
         while seconds < 3:  # of a picture that takes long enough on this machine
-            size *= 2
+            size = int(size * min(4, (4.5 / seconds) ** 0.5))
             start = time.monotonic()
             said = self.interflect(*draw, f"{size}x{size}").stderr
             seconds = time.monotonic() - start
@@ -74,7 +73,7 @@ class Progress(CommandTest):
 
     # Seen to fail when each report of the whole work has a line, and when the first batch is said to have no error.
     def test_path_tracing_to_an_error(self):
-        path = ("--shading", "path", "--size", "128x72", "--until", "2%", "--max-samples", "4096")
+        path = ("--shading", "path", "--size", "64x36", "--until", "2%", "--max-samples", "4096")
         start = time.monotonic()
         *shown, summary, _ = self.interflect("render", "room.mgf", "-o", "out.exr", *VIEW, *path).stderr.splitlines()
         seconds = time.monotonic() - start

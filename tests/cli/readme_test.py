@@ -38,6 +38,8 @@ class Readme(CommandTest):
             arguments = shlex.split(example)
             if arguments[0] == "bench":
                 arguments += ["--rays", "100k", "--rounds", "1"]
+            if arguments[0] == "report":
+                arguments += ["--samples", "32"]
             if arguments[0] in ("render", "report") and "--size" not in arguments:
                 arguments += shlex.split(SMALL)
             subcommands.add(arguments[0])

@@ -170,7 +170,7 @@ class FalseColours(RenderTest):
     def test_pictures_differ_by_scale_and_lines(self):
         self.solve()
         lux = ("--false-colour", "lux")
-        size = ("--size", "240x160", "--samples", "4")
+        size = ("--size", "240x160", "--samples", "4", "--shading", "flat")
         choices = ((), ("--logarithmic",), ("--scale", "10..2000"), ("--scale", "10..2000", "--logarithmic"),
                    ("--isolines", "auto"), ("--isolines", "60,100"))
         pictures = [self.render("out.png", *lux, *more, source="room.h5", size=size) for more in choices]
@@ -266,7 +266,7 @@ class Methods(RenderTest):
         render = ("render", "room.mgf", *SMALL, "--view", "door", "--mesh-size", "0.5", "-o")
         self.interflect(*render, "reference.exr", "--rays", "2M", "--seed", "9")
         for method in methods():
-            self.interflect(*render, "out.exr", "--rays", "500k", "--method", method)
+            self.interflect(*render, "out.exr", "--rays", "200k", "--method", method)
             difference = self.json("compare", "out.exr", "reference.exr")
             self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.05, msg=method)
 

@@ -22,7 +22,7 @@ options = "--method ihsrr --epsilon 1e-4"
 name = "without importance"
 options = "--method hsrr --epsilon 1e-4"
 [reference]
-paths = 64
+paths = 16
 seed = 99
 """
 RUNS = 2 * (2 + 2 + 1)
@@ -64,7 +64,7 @@ class Figure(CommandTest):
             self.assertEqual(row["version"], "0.1.0")
             self.assertIn(row["command"].split()[0:3], [["interflect", "solve", "maze:1"]])
             self.assertIn(f"--rays {row['rays']} --seed {row['seed']}", row["command"])
-            self.assertEqual(row["reference"], "--shading path --no-mirrors --samples 64 --seed 99")
+            self.assertEqual(row["reference"], "--shading path --no-mirrors --samples 16 --seed 99")
             self.assertTrue(0 < float(row["reference_noise"]) < 0.1, row["reference_noise"])
             self.assertRegex(row["machine"], r"\w.*, \d+ cores")
             self.assertGreater(int(row["threads"]), 0)
@@ -122,7 +122,7 @@ class Figure(CommandTest):
         self.assertIn("matplotlib is missing: install it with scripts/setup", messages)
 
     def test_a_failing_run_is_told_with_its_command(self):
-        self.write("tiny.toml", CONFIG.replace("--method hsrr", "--method none-such"))
+        self.write("tiny.toml", CONFIG.replace("--method ihsrr", "--method none-such"))
         messages = self.run_experiment(exit_code=1)
         self.assertIn("interflect solve maze:1", messages)
         self.assertIn("none-such", messages)

@@ -62,12 +62,13 @@ INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
 TEST_P(EverySky, CausesItsIrradiance) {
     const KnownSky& sky = GetParam();
     const Scene scene = under({sky.luminaire});
+    std::vector<double> irradiance;
+    for (const V3f& n : normals) irradiance.push_back(sky.irradiance(V3d(n.normalized())));
     for (const bool is_gathered : {false, true})
         for (const auto sampling : {EmitterSampling::combined, EmitterSampling::lights, EmitterSampling::directions}) {
             const auto found = measured(scene, sampling, 1 << 14, is_gathered);
             for (std::size_t i = 0; i < normals.size(); ++i) {
-                const double expected = sky.irradiance(V3d(normals[i].normalized()));
-                const double error = static_cast<double>(found[i].standard_error.x);
+                const double expected = irradiance[i], error = static_cast<double>(found[i].standard_error.x);
                 EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3)
                     << i << " " << static_cast<int>(sampling);
                 if (sampling != EmitterSampling::directions) {
@@ -75,9 +76,9 @@ TEST_P(EverySky, CausesItsIrradiance) {
                 }
             }
         }
-    const double up = sky.irradiance({0, 0, 1});
     if (const auto* dome = std::get_if<SkyDome>(&sky.luminaire.kind); dome && dome->zenith.z > 0) {
-        EXPECT_NEAR(up / static_cast<double>(rating(sky.luminaire).x), 1, 1e-3) << "the illuminance that was asked for";
+        EXPECT_NEAR(irradiance[0] / static_cast<double>(rating(sky.luminaire).x), 1, 1e-3)
+            << "the illuminance that was asked for";
     }
 }
 

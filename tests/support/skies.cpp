@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 
 namespace interflect::testing_support {
 
@@ -18,12 +20,16 @@ SkyDome dome(int type, const V3f& zenith = {0, 0, 1}, const V3f& towards_sun = V
     return {cie_standard_sky(type), {illuminance, 8000, 7000}, zenith, towards_sun, ground};
 }
 
-/// Scaled so that it causes `illuminance` on a horizontal surface; `ground` below the horizon.
+/// Scaled so that it causes `illuminance` on a horizontal surface; `ground` below the horizon. The factor, a long sum,
+/// is found when the sky is first looked at: each test of a program makes all skies, and hardly one looks at them.
 std::function<double(const V3d&)> scaled(const std::function<double(const V3d&)>& relative, const V3d& zenith,
                                          double ground = 0) {
     const auto of_sky = [=](const V3d& d) { return d.dot(zenith) > 0 ? relative(d) : 0; };
-    const double factor = static_cast<double>(illuminance) / irradiance_of(of_sky, zenith);
-    return [=](const V3d& d) { return d.dot(zenith) > 0 ? factor * relative(d) : ground; };
+    const auto factor = std::make_shared<std::optional<double>>();
+    return [=](const V3d& d) {
+        if (!*factor) *factor = static_cast<double>(illuminance) / irradiance_of(of_sky, zenith);
+        return d.dot(zenith) > 0 ? **factor * relative(d) : ground;
+    };
 }
 
 double chi(const V3d& d) { return std::acos(std::clamp(d.dot(sun), -1.0, 1.0)); }

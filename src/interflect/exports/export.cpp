@@ -27,6 +27,8 @@ constexpr std::array formats{
     ExportFormat{".ply", "PLY", false, make_ply},
     ExportFormat{".obj", "Wavefront OBJ", false, make_obj},
     ExportFormat{".vtu", "VTK unstructured grid", false, make_vtu},
+    ExportFormat{".vtkhdf", "VTK unstructured grid in HDF5", false, make_vtkhdf},
+    ExportFormat{".hdf", "the same, for ParaView 5.11 and older", false, make_vtkhdf},
     ExportFormat{".json", "irradiance probes", false, make_probes_json},
     ExportFormat{".exr", "irradiance probes as an image", false, make_probes_exr},
 };

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "interflect/exports/checksums.h"
@@ -44,19 +45,30 @@ class Hdf5Reader {
     Hdf5Handle file_;
 };
 
-/// A new HDF5 file of arrays, without time stamps, so that equal contents are equal bytes. Types and errors as above.
+/// A new HDF5 file of arrays, without time stamps, so that equal contents are equal bytes. Types and errors as above;
+/// T may be std::int64_t or std::uint8_t, too.
 class Hdf5Writer {
   public:
     /// @param user_block  Bytes left free at the beginning of the file.
     Hdf5Writer(const std::filesystem::path& path, std::uint64_t user_block);
+    /// A file in memory, whose bytes `image` has.
+    Hdf5Writer();
 
     /// Writes rows of `columns` numbers each. @return Where they are in the file.
     template <class T>
     FileRange write(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
+    /// The same in chunks, each compressed without loss (shuffle and deflate).
+    template <class T>
+    void write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
+    /// Gives the group `group` an attribute: an array of whole numbers, or ASCII text of fixed length.
+    void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
+    void write_attribute(const std::string& group, const char* name, std::string_view text);
     /// Writes the parts, one after the other, as one array.
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
     /// To be called last.
     void flush();
+    /// The bytes of the file, of one in memory. To be called last.
+    std::string image();
 
   private:
     Hdf5Handle file_;
