@@ -90,7 +90,8 @@ class UnfoldedLightmap : public testing::TestWithParam<UnfoldedCase> {
 // Fails where smooth surfaces are not joined.
 TEST_P(UnfoldedLightmap, HasFewCharts) {
     EXPECT_LE(charts_.size(), GetParam().most_charts);
-    std::size_t patches = 0 for (const LightmapChart& chart : charts_) patches += chart.patches.size();
+    std::size_t patches = 0;
+    for (const LightmapChart& chart : charts_) patches += chart.patches.size();
     EXPECT_EQ(patches, scene_.patches.size());
 }
 
