@@ -61,8 +61,8 @@ class Export(CommandTest):
         (self.folder / "flat.gltf").write_text(json.dumps(scene))
         self.interflect("solve", "flat.gltf", "--rays", "100k", "-o", "scene.h5")
         export = ("export", "scene.h5", "--lightmap", "-o", "out.gltf")
-        self.assertIn("the lightmap layout of object", self.interflect(*export).stderr)
-        self.assertNotIn("the lightmap layout of object", self.interflect(*export, "--own-charts").stderr)
+        self.assertIn("the object's lightmap layout", self.interflect(*export).stderr)
+        self.assertNotIn("the object's lightmap layout", self.interflect(*export, "--own-charts").stderr)
 
     def test_refusals(self):
         self.solve()

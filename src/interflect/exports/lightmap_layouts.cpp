@@ -27,6 +27,20 @@ FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     return flat;
 }
 
+/// A layout that fills less of its rectangle costs more texels than it is worth: such is an object's part of a map that
+/// many objects share.
+constexpr double least_filled = 0.1;
+
+bool is_mostly_empty(const FlatPatches& layout) {
+    Imath::Box2d box;
+    double area = 0;
+    for (const FlatPatch& flat : layout) {
+        box.extendBy(flat.box());
+        area += std::abs(flat.signed_area());
+    }
+    return area < least_filled * box.size().x * box.size().y;
+}
+
 bool overlaps_itself(const FlatPatches& layout) {
     const auto box_of = [](const FlatPatch& flat) {
         const Imath::Box2d box = flat.box();
@@ -55,6 +69,7 @@ const char* fault_of(const FlatPatches& layout) {
     };
     if (std::any_of(layout.begin(), layout.end(), has_no_area)) return "gives a face no area";
     if (overlaps_itself(layout)) return "overlaps itself";
+    if (is_mostly_empty(layout)) return "is mostly empty";
     return nullptr;
 }
 
@@ -83,8 +98,9 @@ std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool
     for (auto& [object, layout] : layout_of_object) {
         if (const char* fault = fault_of(layout)) {
             if (warnings)
-                warnings->add("lightmap-layout", fmt::format("the lightmap layout of object '{}' {}: it gets a new one",
-                                                             scene.objects[object], fault));
+                warnings->add("lightmap-layout",
+                              fmt::format("the object's lightmap layout {}: it gets a new one", fault),
+                              scene.objects[object]);
             continue;
         }
         scale(scene, layout);
