@@ -142,6 +142,27 @@ INSTANTIATE_TEST_SUITE_P(Faults, UnusableLightmapLayout,
                                                         "is mostly empty"}),
                          [](const auto& test) { return test.param.name; });
 
+// The front keeps its place, the back of the same coordinates gets a chart. Fails where both are laid out.
+TEST(LightmapLayout, IsThatOfTheFrontWhereBothSidesAreLit) {
+    Scene scene;
+    const std::uint32_t screen = add_rectangle(scene, V3f(0), V3f(2, 0, 0), V3f(0, 1, 0),
+                                               testing_support::add_material(scene, Rgb(0.5f), Rgb(0)), 1, 1, true);
+    scene.objects = {"screen"};
+    lay_out(scene, screen, {0.2f, 0.1f}, {0.6f, 0}, {0, 0.3f});
+    Warnings warnings;
+    ExportOptions options = at(20);
+    options.warnings = &warnings;
+    const Solution solution = of_each_patch(scene);
+    const Lightmap lightmap = make_lightmap(scene, solution, options);
+    EXPECT_TRUE(warnings.entries().empty());
+    EXPECT_EQ(lightmap.charts.size(), 2);
+    for (std::uint32_t p = 0; p < 2; ++p)
+        for (std::uint64_t i = 0; i < 100; ++i) {
+            const Parameters place = random_place(solution.forest->geometry(p), i);
+            ASSERT_NEAR(sample(lightmap, p, place).x, 100.0f * static_cast<float>(1 + p), 0.1f) << p;
+        }
+}
+
 // Neighbours that share an edge in the map do not overlap.
 TEST(LightmapLayout, MayTouchItself) {
     Scene scene = corner_with_layout();

@@ -91,7 +91,9 @@ std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool
     std::map<std::uint32_t, FlatPatches> layout_of_object;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
-        if (shown[p] && !std::isnan(scene.lightmap_coordinates[patch.vertices[0]].x))
+        const bool is_second_side =
+            patch.other_side < p && shown[patch.other_side];  // of which the first has the place
+        if (shown[p] && !is_second_side && !std::isnan(scene.lightmap_coordinates[patch.vertices[0]].x))
             layout_of_object[patch.object].push_back(given_layout(scene, p));
     }
     std::vector<FlatPatches> layouts;

@@ -9,9 +9,9 @@
 namespace interflect::inline detail {
 
 /// The layouts that objects bring along (Scene::lightmap_coordinates), of their shown patches that have coordinates: to
-/// the right and down [m], so that the patches of an object have the same area in it as in space. Ignored is the
-/// layout of an object of which a patch has no area in it, or two patches overlap, as the two sides of a face do, or
-/// that leaves most of its rectangle empty.
+/// the right and down [m], so that the patches of an object have the same area in it as in space. Of a face whose two
+/// sides are shown, the first is in it. Ignored is the layout of an object of which a patch has no area in it, or two
+/// patches overlap, or that leaves most of its rectangle empty.
 /// @param warnings  Gets the objects whose layouts are ignored; may be null.
 std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool>& shown, Warnings* warnings);
 

@@ -169,8 +169,8 @@ class Unfolding {
             const std::uint32_t neighbour = piece_of_[edge[other] / 4];
             if (neighbour == none || layout_of_[neighbour] != number) continue;
             const FlatPatch& there = layout_[place_in_layout_.at(edge[other] / 4)];
-            const FlatPatch& here = *std::find_if(pieces_[piece].begin(), pieces_[piece].end(),
-                                                  [&](const FlatPatch& f) { return f.patch == edge[own] / 4; });
+            const auto is_here = [patch = edge[own] / 4](const FlatPatch& flat) { return flat.patch == patch; };
+            const FlatPatch& here = *std::find_if(pieces_[piece].begin(), pieces_[piece].end(), is_here);
             pairs.emplace_back(on_edge(here, edge[own], from[own]), on_edge(there, edge[other], to[other]));
             pairs.emplace_back(on_edge(here, edge[own], to[own]), on_edge(there, edge[other], from[other]));
         }
