@@ -9,13 +9,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Twice the area over the squared size, from which a face counts for where the scene lies, and from which it is no
-/// sliver of which rounding may leave nothing.
-constexpr double least_shape = 1e-6, least_shape_of_lost = 1e-3;
+/// Twice the area over the squared size, from which a face counts for where the scene lies.
+constexpr double least_shape = 1e-6;
 
-/// Size of a face that may be lost to rounding, over the reach of the scene: 60 steps of a float there. Smaller ones
-/// are litter that real files have anywhere.
-constexpr double largest_lost_size = 0x1p-16;
+/// Width of a face that may be lost to rounding, over the reach of the scene: 60 steps of a float there. Narrower ones
+/// are slivers and litter that real files have anywhere.
+constexpr double largest_lost_width = 0x1p-16;
 
 }  // namespace
 
@@ -40,9 +39,9 @@ void SceneFaces::place(std::span<const Imath::V3d> outline) {
         if (i > 1) doubled_area += (outline[i - 1] - outline[0]).cross(outline[i] - outline[0]);
     }
     const double size = box.size().length();
-    const double shape = size > 0 ? doubled_area.length() / (size * size) : 0;
-    placed_ = {shape > least_shape_of_lost ? size : 0, box.center(), {}};
-    if (shape > least_shape && sample_.wants_next()) sample_.add({box.center(), size});
+    const double width = size > 0 ? doubled_area.length() / size : 0;
+    placed_ = {width, box.center(), {}};
+    if (width > least_shape * size && sample_.wants_next()) sample_.add({box.center(), size});
 }
 
 void SceneFaces::add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
@@ -58,7 +57,7 @@ void SceneFaces::add(std::span<const std::vector<std::uint32_t>> loops, std::uin
             where);
     if (result == PolygonResult::degenerate) {
         leave_out("face without area is left out", where);
-        if (placed_.size > lost_.size) lost_ = {placed_.size, placed_.centre, where};
+        if (placed_.width > lost_.width) lost_ = {placed_.width, placed_.centre, where};
     }
     for (std::size_t i = before; i < scene_.patches.size(); ++i)
         if (const std::string fault = patch_fault(scene_, scene_.patches[i]); !fault.empty())
@@ -72,12 +71,12 @@ void SceneFaces::leave_out(const std::string& message, const Location& where) {
 
 void SceneFaces::require_precision() const {
     const Core core = core_of(sample_.faces());
-    if (lost_.size <= largest_lost_size * core.reach) return;
+    if (lost_.width <= largest_lost_width * core.reach) return;
     const Imath::V3d &x = lost_.centre, &middle = core.middle;
     throw lost_.where.error(
         fmt::format("this face, {:.3g} m wide at ({:.10g}, {:.10g}, {:.10g}), is lost to rounding: it is {:.3g} m from "
                     "the middle of the scene, ({:.10g}, {:.10g}, {:.10g}), and coordinates have seven digits",
-                    lost_.size, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
+                    lost_.width, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
 }
 
 /// That the scene is not too small: by the faces as they were, where rounding left nothing of them.

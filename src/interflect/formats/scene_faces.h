@@ -46,7 +46,7 @@ class SceneFaces {
   private:
     /// A face of which rounding leaves nothing.
     struct LostFace {
-        double size = 0;  // [m]
+        double width = 0;  // across its longest extent [m]
         Imath::V3d centre{0, 0, 0};
         Location where;
     };
@@ -61,7 +61,7 @@ class SceneFaces {
     Scene& scene_;
     std::uint64_t max_patches_;
     FaceSample sample_;
-    LostFace placed_;  // the face that is added next; size 0 where its shape leaves nothing even before rounding
+    LostFace placed_;  // the face that is added next; width 0 where its shape has no area even before rounding
     LostFace lost_;    // the largest of them
     LeftOut first_left_out_;
     std::uint64_t left_out_ = 0;
