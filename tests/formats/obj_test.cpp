@@ -101,11 +101,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Finish{"DissolveBeforeTransparency", "Kd .4 .4 .4\nTr 1\nd 1\n", Rgb(.4f), Rgb(0), Rgb(0)}),
     [](const auto& finish) { return finish.param.name; });
 
-/// A triangle 3 mm long and 3 um wide, six steps of a float there, beside a floor of 8 x 8 m: litter, not a face that
+/// A triangle 2 mm long and 3 um wide, six steps of a float there, beside a floor of 8 x 8 m: litter, not a face that
 /// the scene's coordinates are too coarse for. Seen to be refused where its length counts.
 TEST(Obj, SliversThatRoundingFlattensAreLeftOut) {
     const Scene scene = read(
-        "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 7.1 7.3 2\nv 7.1029 7.3 2\nv 7.1014 7.300003 2\nf 1 2 3 4\nf 5 6 7\n");
+        "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 7.1 7.3 2\nv 7.102 7.3 2\nv 7.101 7.300003 2\nf 1 2 3 4\nf 5 6 7\n");
     EXPECT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(scene.warnings.entries().at(0).kind, "degenerate-face");
 }
