@@ -11,6 +11,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/split.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -92,6 +93,23 @@ TEST(Contacts, ALegOnAFloor) {
                 EXPECT_NEAR(patch_area(cut, patch), 0.02, 1e-6);
             }
         }
+}
+
+/// As that of a lamp which emits on one side. Seen to fail where backs get the material of their fronts.
+TEST(Contacts, BacksKeepTheirMaterial) {
+    Scene scene;
+    const std::uint32_t front = add_material(scene, Rgb(0.5f), Rgb(9)), back = add_material(scene, Rgb(0.5f), Rgb(0));
+    add_rectangle(scene, V3f(0), V3f(4, 0, 0), V3f(0, 4, 0), front, 1, 1, true);
+    scene.patches[1].material = back;
+    add_box(scene, V3f(1, 1, 0), V3f(1.1f, 1.2f, 0.7f), add_material(scene, Rgb(0.5f), Rgb(0)));
+    for (const Scene& made : {cut_at_contacts(scene, any_aspect), split_patches(scene, 0.7f, 10'000)}) {
+        EXPECT_GE(count_of_material(made, front), 5u);
+        EXPECT_EQ(count_of_material(made, back), count_of_material(made, front));
+        for (const Patch& patch : made.patches)
+            if (patch.material == front) {
+                EXPECT_EQ(made.patches[patch.other_side].material, back);
+            }
+    }
 }
 
 TEST(Contacts, RectanglesStayRectangles) {

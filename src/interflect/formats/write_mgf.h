@@ -17,10 +17,10 @@ namespace interflect::inline detail {
 /// luminous quantity (`rd`, `ed`); their channels come back to within 1e-6 of the largest, reflectances above 0.99 as
 /// 0.99. Texture coordinates and textures come back exactly, but for the textures' names.
 ///
-/// What does not come back: vertices and materials that no patch uses; lightmap coordinates, and vertices that lie at
-/// one position apart from each other; patches that add_polygon() takes for degenerate; views, for which there is
-/// write_view_list(); characters that the format has no room for: white space, control characters and '\' in a name
-/// become '_', so do a
+/// What does not come back: vertices and materials that no patch uses; lightmap coordinates, vertices that lie at
+/// one position apart from each other; materials of their own on the backs of faces; patches that add_polygon() takes
+/// for degenerate; views, for which there is write_view_list(); characters that the format has no room for: white
+/// space, control characters and '\' in a name become '_', so do a
 /// '-' at the start of a material's and an empty part of an object's.
 ///
 /// @param scene     Without scene_faults(). Time is linear in the patches, memory in the vertices (4 bytes each).

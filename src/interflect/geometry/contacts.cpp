@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "interflect/base/parallel.h"
+#include "interflect/geometry/add_face.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/contact_finder.h"
 #include "interflect/geometry/face_cutter.h"
@@ -101,18 +102,10 @@ class PieceWriter {
 
   private:
     void add_patch(std::uint32_t face, const std::array<std::uint32_t, 4>& vertices) {
-        const auto index = static_cast<std::uint32_t>(result_.patches.size());
         Patch front = scene_.patches[face];
-        const bool is_two_sided = front.other_side != none;
         front.vertices = vertices;
         front.surface = surfaces_[face];
-        front.other_side = is_two_sided ? index + 1 : none;
-        result_.patches.push_back(front);
-        if (!is_two_sided) return;
-        Patch back = front;
-        back.other_side = index;
-        std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
-        result_.patches.push_back(back);
+        add_face(result_, front, back_material(scene_, scene_.patches[face]));
     }
 
     const Scene& scene_;

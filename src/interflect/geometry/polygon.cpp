@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "interflect/geometry/add_face.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene/limits.h"
@@ -109,19 +110,12 @@ class PatchAdder {
     }
 
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = none) {
-        const auto index = static_cast<std::uint32_t>(scene_.patches.size());
         Patch front = front_;
         front.vertices = {a, b, c, d};
         // In single precision, as all later computations.
         if (!(patch_area(scene_, front) >= smallest_face_area)) return;
-        if (two_sided_) front.other_side = index + 1;
-        scene_.patches.push_back(front);
+        add_face(scene_, front, two_sided_ ? front.material : none);
         added_ = true;
-        if (!two_sided_) return;
-        Patch back = front;
-        back.vertices = d == none ? std::array{a, c, b, none} : std::array{a, d, c, b};
-        back.other_side = index;
-        scene_.patches.push_back(back);
     }
 
     PolygonResult result() const { return added_ ? PolygonResult::added : PolygonResult::degenerate; }

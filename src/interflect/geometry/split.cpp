@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "interflect/error.h"
+#include "interflect/geometry/add_face.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/geometry/vertex_weld.h"
@@ -37,35 +38,20 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
 
-/// Adds one piece of `patch`, and that of its other side where it has one.
-void add_piece(Scene& split, const Patch& patch, std::array<std::uint32_t, 4> vertices) {
-    const auto index = static_cast<std::uint32_t>(split.patches.size());
-    Patch front = patch;
-    front.vertices = vertices;
-    front.other_side = patch.other_side == none ? none : index + 1;
-    split.patches.push_back(front);
-    if (patch.other_side == none) return;
-    Patch back = front;
-    back.other_side = index;
-    std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
-    split.patches.push_back(back);
-}
-
 /// @param vertex  Of the piece that is the i-th along the first edge, the j-th along the last.
-template <class Vertex>
-void split_quadrilateral(Scene& split, const Patch& patch, Pieces n, const Vertex& vertex) {
+template <class Vertex, class AddPiece>
+void split_quadrilateral(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
     for (std::uint64_t j = 0; j < n.v; ++j)
         for (std::uint64_t i = 0; i < n.u; ++i)
-            add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+            add_piece({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
 }
 
-template <class Vertex>
-void split_triangle(Scene& split, const Patch& patch, Pieces n, const Vertex& vertex) {
+template <class Vertex, class AddPiece>
+void split_triangle(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
     for (std::uint64_t j = 0; j < n.u; ++j)
         for (std::uint64_t i = 0; i + j < n.u; ++i) {
-            add_piece(split, patch, {vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), none});
-            if (i + j + 1 < n.u)
-                add_piece(split, patch, {vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1), none});
+            add_piece({vertex(i, j), vertex(i + 1, j), vertex(i, j + 1), none});
+            if (i + j + 1 < n.u) add_piece({vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1), none});
         }
 }
 
@@ -101,10 +87,15 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
                                static_cast<float>(along_last) / static_cast<float>(n.v)};
             return weld.vertex(geometry.point(p), coordinates_at(scene, patch, p));
         };
+        const auto add_piece = [&, back = back_material(scene, patch)](const std::array<std::uint32_t, 4>& vertices) {
+            Patch piece = patch;
+            piece.vertices = vertices;
+            add_face(split, piece, back);
+        };
         if (patch.is_triangle())
-            split_triangle(split, patch, n, vertex);
+            split_triangle(n, vertex, add_piece);
         else
-            split_quadrilateral(split, patch, n, vertex);
+            split_quadrilateral(n, vertex, add_piece);
     }
     return split;
 }

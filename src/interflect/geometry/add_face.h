@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "interflect/scene.h"
+
+namespace interflect::inline detail {
+
+/// The material on the back of a patch's face, which may be another one, as that of a lamp which emits on one side;
+/// none where the face is one-sided.
+inline std::uint32_t back_material(const Scene& scene, const Patch& patch) {
+    return patch.other_side == none ? none : scene.patches[patch.other_side].material;
+}
+
+/// Adds a face to a scene: its front, and its back, with the vertices the other way round, where that has a material.
+inline void add_face(Scene& scene, Patch patch, std::uint32_t back_material) {
+    const auto index = static_cast<std::uint32_t>(scene.patches.size());
+    patch.other_side = back_material == none ? none : index + 1;
+    scene.patches.push_back(patch);
+    if (back_material == none) return;
+    patch.material = back_material;
+    patch.other_side = index;
+    std::reverse(patch.vertices.begin() + 1, patch.vertices.begin() + patch.vertex_count());
+    scene.patches.push_back(patch);
+}
+
+}  // namespace interflect::inline detail
