@@ -49,6 +49,15 @@ class Info(CommandTest):
         self.assertEqual(report["files_outside"], ["rooms/../parts/paint.mgf"])
         self.assertIn("rooms/../parts/paint.mgf", self.interflect("info", "rooms/room.mgf").stdout)
 
+    def test_a_texture_that_is_missing_beside_a_scene_named_without_folder_is_a_warning(self):
+        """Seen to be refused as outside of the folder."""
+        self.write("leaf.mtl", "newmtl leaf\nmap_Kd missing.png\n")
+        self.write("leaf.obj", "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl leaf\nf 1/1 2/1 3/1\n")
+        self.assertIn("texture (map_Kd) that is missing", self.interflect("info", "leaf.obj").stderr)
+        self.write("leaf.mtl", "newmtl leaf\nmap_Kd ../missing.png\n")
+        result = self.interflect("info", "leaf.obj", exit_code=BAD_INPUT)
+        self.assertIn("lies outside the scene's folder", result.stderr)
+
     def test_what_is_left_out_is_reported_once_a_kind_with_file_and_line(self):
         shiny = vertices((0.5, 1, 1), (0.5, 2, 1), (1.5, 2, 1)) + "m shiny =\n\trs .2 0\n\trd .3\nf v0 v1 v2\n"
         self.write("room.mgf", room() + shiny + "glow a\nglow b\n")

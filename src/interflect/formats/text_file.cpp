@@ -42,8 +42,12 @@ void require_regular_file(const fs::path& path) {
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     std::error_code error;
-    const fs::path place = fs::weakly_canonical(path, error);
-    const fs::path home = error ? fs::path() : fs::weakly_canonical(folder.empty() ? "." : folder, error);
+    const auto resolved = [&](const fs::path& given) {  // a relative path of which nothing exists would stay relative
+        const fs::path whole = fs::absolute(given, error);
+        return error ? fs::path() : fs::weakly_canonical(whole, error);
+    };
+    const fs::path place = resolved(path);
+    const fs::path home = error ? fs::path() : resolved(folder.empty() ? "." : folder);
     if (error) return false;
     const auto [end, ignored] = std::mismatch(home.begin(), home.end(), place.begin(), place.end());
     return end == home.end();
