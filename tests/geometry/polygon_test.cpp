@@ -89,10 +89,11 @@ TEST(Polygon, EveryTriangleOfATwoSidedPolygonIsFollowedByItsOtherSide) {
     for (std::uint32_t i = 0; i < 8; i += 2) EXPECT_EQ(l.scene.patches[i].other_side, i + 1);
 }
 
-TEST(Polygon, SlightlyWarpedQuadrilateralStaysStronglyWarpedIsTriangulated) {
-    // The corners are 1/4 of the offset off the mean plane; the limit is 1% of the diagonal, 0.014.
-    EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.04f}, {0, 1, 0}}).scene.patches.size(), 1u);
-    EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.08f}, {0, 1, 0}}).scene.patches.size(), 2u);
+TEST(Polygon, QuadrilateralStaysWithinRoundingAndIsTriangulatedWhereWarped) {
+    // The corners are 1/4 of the offset off the mean plane; the limit is 2^-19 of the largest coordinate, 1.9e-6.
+    EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {1, 1, 7e-6f}, {0, 1, 0}}).scene.patches.size(), 1u);
+    EXPECT_EQ(offer({{0, 0, 0}, {1, 0, 0}, {1, 1, 9e-6f}, {0, 1, 0}}).scene.patches.size(), 2u);
+    EXPECT_EQ(offer({{100, 0, 0}, {101, 0, 0}, {101, 1, 7e-4f}, {100, 1, 0}}).scene.patches.size(), 1u);
 }
 
 TEST(Polygon, ConcaveQuadrilateralIsTriangulated) {

@@ -5,6 +5,7 @@
 
 #include "interflect/geometry/bounds.h"
 #include "interflect/scene/patch_area.h"
+#include "interflect/scene/planarity.h"
 
 namespace interflect::inline detail {
 
@@ -50,9 +51,7 @@ std::vector<Facet> facets_of(const Scene& scene) {
         if (patch.other_side < i) continue;
         const auto& v = patch.vertices;
         const Facet whole(scene, i, std::span(v).first(static_cast<std::size_t>(patch.vertex_count())));
-        const bool is_flat = std::all_of(whole.corners.begin(), whole.corners.begin() + static_cast<long>(whole.count),
-                                         [&](const V3d& x) { return std::abs(whole.height(x)) <= whole.detail(); });
-        if (is_flat) {
+        if (patch.is_triangle() || is_planar(scene, v)) {
             facets.push_back(whole);
         } else {  // as Embree does
             facets.emplace_back(scene, i, std::array{v[0], v[1], v[3]});

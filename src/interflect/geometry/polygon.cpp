@@ -12,6 +12,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene/limits.h"
+#include "interflect/scene/planarity.h"
 
 namespace interflect::inline detail {
 
@@ -19,9 +20,6 @@ namespace {
 
 using Imath::V3d;
 using Loop = std::vector<std::uint32_t>;
-
-/// Largest distance of a vertex from a quadrilateral's plane that still makes one patch, relative to its diagonal.
-constexpr double planarity = 0.01;
 
 /// A height below this many units in the last place of the largest coordinate is noise: one for each vertex of a
 /// triangle and one for the differences.
@@ -87,15 +85,13 @@ struct OutlinePlane {
     }
 };
 
-bool is_convex_near_planar_quadrilateral(const Scene& scene, const Loop& loop, const OutlinePlane& frame) {
-    if (loop.size() != 4) return false;
-    const V3d centre = 0.25 * (position(scene, loop[0]) + position(scene, loop[1]) + position(scene, loop[2]) +
-                               position(scene, loop[3]));
+bool is_convex_planar_quadrilateral(const Scene& scene, const Loop& loop, const OutlinePlane& frame) {
+    if (loop.size() != 4 || !is_planar(scene, {loop[0], loop[1], loop[2], loop[3]})) return false;
     for (std::size_t i = 0; i < 4; ++i) {
         const V3d x = position(scene, loop[i]);
         const V3d in = x - position(scene, loop[(i + 3) % 4]), out = position(scene, loop[(i + 1) % 4]) - x;
         const bool turns_left = in.cross(out).dot(frame.normal) > frame.rounding * std::max(in.length(), out.length());
-        if (!turns_left || std::abs((x - centre).dot(frame.normal)) > planarity * frame.size) return false;
+        if (!turns_left) return false;
     }
     return true;
 }
@@ -217,7 +213,7 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
     PatchAdder patches(scene, material, object, two_sided);
     if (clean.size() == 1 && outline.size() == 3) {
         patches.add(outline[0], outline[1], outline[2]);
-    } else if (clean.size() == 1 && is_convex_near_planar_quadrilateral(scene, outline, frame)) {
+    } else if (clean.size() == 1 && is_convex_planar_quadrilateral(scene, outline, frame)) {
         patches.add(outline[0], outline[1], outline[2], outline[3]);
     } else {
         const std::vector<std::uint32_t> corners = Triangulation(scene, frame, outline[0])(clean);

@@ -15,10 +15,10 @@ enum class PolygonResult {
     self_crossing,  ///< Nothing was added: its outline crosses itself, and the areas cancel, so that it has no front.
 };
 
-/// Adds a polygon, as a file gives it, to `scene`: a triangle as one patch, a convex quadrilateral that is planar to 1%
-/// of its size as one, anything else (concave, more than four vertices, with holes, self-intersecting, strongly warped)
-/// as triangles. Patches keep the order of the vertices, so their front is the polygon's; a two-sided polygon gives
-/// after each patch its other side, which starts at the same vertex and goes the other way round.
+/// Adds a polygon, as a file gives it, to `scene`: a triangle as one patch, a convex planar quadrilateral (planarity.h)
+/// as one, anything else (concave, more than four vertices, with holes, self-intersecting, warped) as triangles.
+/// Patches keep the order of the vertices, so their front is the polygon's; a two-sided polygon gives after each patch
+/// its other side, which starts at the same vertex and goes the other way round.
 ///
 /// Successive vertices at one position count as one. A triangle counts as having no area, and is left out, where its
 /// height is below four roundings of its largest coordinate in single precision: its normal would be noise. There is no

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "interflect/geometry/vertex_coordinates.h"
+#include "interflect/scene/planarity.h"
 
 namespace interflect::inline detail {
 
@@ -14,8 +15,6 @@ namespace {
 
 using Imath::V3d;
 
-/// How far the fourth corner may be from the plane of the others, relative to the diagonal: the rounding of vertices.
-constexpr double pair_planarity = 1e-4;
 /// Sine of the angle by which the outline must turn at each end of the shared edge.
 constexpr double least_turn = 0.1;
 /// How far texture coordinates may be from those of the linear map.
@@ -101,7 +100,7 @@ class PairFinder {
     bool is_planar_and_convex(const FaceVertices& face) const {
         const V3d a = position(face[0]), b = position(face[1]), c = position(face[2]), d = position(face[3]);
         const V3d normal = (c - a).cross(d - a).normalized();
-        if (!(std::abs((b - a).dot(normal)) <= pair_planarity * (c - a).length())) return false;
+        if (!is_planar(scene_, face)) return false;
         const auto turns = [&](const V3d& in, const V3d& out) {
             return in.cross(out).dot(normal) > least_turn * in.length() * out.length();
         };

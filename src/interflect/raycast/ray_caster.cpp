@@ -14,14 +14,14 @@
 #include "interflect/error.h"
 #include "interflect/raycast/embree.h"
 #include "interflect/scene/geometry_fingerprint.h"
+#include "interflect/scene/planarity.h"
 
 namespace interflect {
 
 namespace {
 
-/// Of a face's largest coordinate: faces closer than this coincide. It is 16 steps of a float; what transforms have
-/// moved off its plane is well below it, and from there on Embree tells the distances apart.
-constexpr float relative_tolerance = 0x1p-19f;
+/// Distance within which faces coincide, relative to the largest coordinate. Embree distinguishes larger distances.
+constexpr auto relative_tolerance = static_cast<float>(relative_planarity);
 
 /// The offset of a ray from its patch, over the tolerance within which others coincide with it.
 constexpr float offset_over_tolerance = 4;
@@ -31,7 +31,8 @@ constexpr float relative_hit_error = 0x1p-20f;
 
 float largest_coordinate(const V3f& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Of each patch, from its own corners [m]; > 0 also where all of them are subnormal or 0.
+/// Computes the tolerance of each patch from its corners [m]. It is > 0 also for corners that are subnormal or 0, and
+/// at least the warp of a quadrilateral. Only callers of the library make warped patches.
 std::vector<float> tolerances(const Scene& scene) {
     constexpr std::size_t at_once = 4096;
     std::vector<float> tolerance(scene.patches.size());
@@ -43,6 +44,8 @@ std::vector<float> tolerances(const Scene& scene) {
                     largest,
                     largest_coordinate(scene.vertices[scene.patches[i].vertices[static_cast<std::size_t>(k)]]));
             tolerance[i] = relative_tolerance * largest;
+            if (!scene.patches[i].is_triangle())
+                tolerance[i] = std::max(tolerance[i], static_cast<float>(warp(scene, scene.patches[i].vertices)));
         }
     });
     return tolerance;

@@ -1,6 +1,7 @@
 #include <ImathBox.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -60,6 +61,7 @@ struct LineBundle {
     /// Of each line, how much farther than the patch that it crossed last something may be and still coincide with it
     /// [m]; infinite before the first.
     std::vector<float> slack;
+    std::vector<std::uint32_t> crossed;  ///< Last patch of each line, or none.
     std::vector<Hit> hits, seen;
     std::vector<LineSegment> segments;
 };
@@ -68,6 +70,7 @@ struct LineBundle {
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
+    bundle.crossed.assign(bundle.lines.size(), none);
     const auto& [a, b, c, d] = bundle.points.coordinate;
     constexpr float turn = 2 * std::numbers::pi_v<float>;
     for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
@@ -80,8 +83,9 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
     }
 }
 
-/// Finds the next patch that faces each line, and what that sees when it looks back along the line. Lines that meet
-/// none are dropped, the others go on behind the patch.
+/// Finds the next patch that faces each line, and the first patch in the opposite direction. Moves each line behind its
+/// patch. Drops lines that meet no patch. Also drops a line that meets the same patch again, which rounding may cause:
+/// a line crosses a flat patch once.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, LineBundle& bundle) {
     constexpr float offsets_apart = 4;  // at most, what coincides; as RayCaster::ray_offset()
     bundle.segments.clear();
@@ -90,7 +94,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, Lin
     ray_caster.trace(bundle.lines, bundle.hits);
     for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
         const auto [patch, distance] = bundle.hits[i];
-        if (patch == none) continue;
+        if (patch == none || patch == bundle.crossed[i]) continue;
         const V3f direction = bundle.lines[i].direction;
         const PatchGeometry& geometry = forest.geometry(patch);
         // On the patch, as where rays start elsewhere: what the hit is off by may be more than the ray offset.
@@ -101,6 +105,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, Lin
         bundle.lines[kept] = {x - offset, direction};
         bundle.hits[kept].distance = distance + bundle.slack[i];
         bundle.slack[kept] = offsets_apart * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
+        bundle.crossed[kept] = patch;
         bundle.segments.push_back({patch, none, true});
     }
     bundle.lines.resize(bundle.segments.size());
@@ -211,16 +216,23 @@ class GlobalLines final : public Passes {
         // Lines of their own for each bounce: the product of bounces is unbiased where they are independent.
         const std::uint64_t key = mix(mix(state.options.seed, line_purpose), steps_);
         PerThread<LineBundle> bundles;
+        std::atomic<bool> is_cut_short{false};
         const auto trace_some = [&](std::size_t begin, std::size_t end) {
             LineBundle& bundle = bundles.local();
             bundle.lines.resize(end - begin);
             make_lines(domain_, state.options.experimental.points, key, begin, bundle);
-            while (!bundle.lines.empty()) {
+            // A line crosses each of the flat patches at most once.
+            for (std::uint32_t i = 0; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
+                if (is_cut_short || state.stop.is_due()) {
+                    is_cut_short = true;
+                    return;
+                }
                 find_segments(forest, state.ray_caster, bundle);
                 for (const LineSegment& segment : bundle.segments) sums.add(segment);
             }
         };
         parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop, trace_some);
+        if (is_cut_short) throw Interrupted();
         ++steps_;
         state.has_traced_step = true;
         Received received = sums.received(forest);
