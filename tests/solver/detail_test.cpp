@@ -153,8 +153,8 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     interflect::SolverState state(scene, ray_caster, options);
     state.solution.view_importance.assign(state.forest->size(), 1.0f);
     state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // of luminance 0.02, but what is reflected has 0.4
-    EXPECT_LE(error_weight(state, 0), 0.8 * 0.8);
-    EXPECT_GE(error_weight(state, 0), 0.1 * 0.1);
+    EXPECT_LE(error_weight(state, ErrorMeasure::pictures, 0), 0.8 * 0.8);
+    EXPECT_GE(error_weight(state, ErrorMeasure::pictures, 0), 0.1 * 0.1);
 }
 
 class Risk : public testing::TestWithParam<double> {};

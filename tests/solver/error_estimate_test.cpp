@@ -101,6 +101,47 @@ TEST_P(ErrorEstimate, IsTheErrorOfReflectedLightInThePicture) {
     }
 }
 
+/// Estimated over true error of a view of a scene, whose truth is a long run's picture: roots of mean squares over
+/// runs.
+double estimate_over_truth(const Scene& scene, const WeightedView& view, std::int64_t rays) {
+    constexpr int runs = 4;
+    const RayCaster ray_caster(scene);
+    const auto solved = [&](std::int64_t count, std::uint64_t seed) {
+        SolveOptions options = options_for("ihsrr", false, count, seed);
+        options.views = {view};
+        return solve(scene, ray_caster, options);
+    };
+    const Solution reference = solved(40 * rays, 99);
+    const Image truth = picture(scene, ray_caster, reference, reference.irradiance);
+    double mean = 0, estimate = 0, error = 0;
+    for (const Rgb& pixel : truth.pixels)
+        mean += static_cast<double>(luminance(pixel)) / static_cast<double>(truth.pixels.size());
+    for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+        const Solution s = solved(rays, seed);
+        estimate += std::pow(s.iterations.back().error_estimate, 2) / runs;
+        const Image found = picture(scene, ray_caster, s, s.irradiance);
+        for (std::size_t i = 0; i < truth.pixels.size(); ++i)
+            error += std::pow(static_cast<double>(luminance(found.pixels[i]) - luminance(truth.pixels[i])) / mean, 2) /
+                     static_cast<double>(runs * truth.pixels.size());
+    }
+    return std::sqrt(estimate / error);
+}
+
+/// A floor and a lamp from above; most pixels show no surface.
+TEST(ErrorEstimateOfAnOpenView, CountsThePixelsThatShowNothing) {
+    Scene scene;
+    scene.materials = {{"floor", Rgb(0.5f), Rgb(0)}, {"lamp", Rgb(0), Rgb(300)}};
+    add_rectangle(scene, {0, 0, 0}, {2, 0, 0}, {0, 1.3f, 0}, 0);
+    add_rectangle(scene, {0.9f, 0.8f, 0}, {0, 0.4f, 0}, {0, 0, 0.5f}, 0, 1, 1, true);
+    add_rectangle(scene, {0.4f, 0.3f, 1.1f}, {0, 0.1f, 0}, {0.1f, 0, 0}, 1);
+    WeightedView above;
+    above.view = {"above", {1, 0.7, 4}, {1, 0.71, 0}, {0, 1, 0}, 50};
+    above.pixel_rows = height;
+    const double ratio = estimate_over_truth(scene, above, 300'000);
+    EXPECT_GT(ratio, 0.8);
+    EXPECT_LT(ratio, 1.25);
+}
+
 TEST(MeshByVariance, IsTheSameWithTheLampInThePictureAndOutsideIt) {
     const Scene scene = room();
     const RayCaster ray_caster(scene);

@@ -1,5 +1,5 @@
 // Passes that follow light from the emitters bounce by bounce: each is an unbiased estimate of all bounces on the mesh
-// as it is, and what a pass leaves unshot is handed on to the next. Against dense solutions, which are exact in an
+// as it is, and random walks follow its light to the end. Against dense solutions, which are exact in an
 // empty box; in a furnace, where irradiance is M / (1 - rho) everywhere. Correct code fails a test with a chance of
 // 0.001 (statistics.h) unless it says otherwise; seeds are fixed.
 //

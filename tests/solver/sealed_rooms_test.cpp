@@ -71,7 +71,7 @@ TEST_P(SealedRooms, LeakWithoutCuts) {
     constexpr double min_area = 0.25;  // [m^2]
     EXPECT_GT(leak(GetParam().rooms, false), 5 * leak(GetParam().rooms, true));
     if (GetParam().rooms.turn != 0) {
-        EXPECT_GT(leak(GetParam().rooms, false, min_area), 0.01);
+        EXPECT_GT(leak(GetParam().rooms, false, min_area), 0.005) << "leaves reflect some light where they receive it";
     }
     EXPECT_LT(leak(GetParam().rooms, true, min_area), 0.001);
 }

@@ -82,18 +82,24 @@ Totals all_carried(const TransportStep& step, const RayAllocation& allocation, c
 struct Units {
     FixedPoint power, square, importance;
 
-    explicit Units(const Totals& all) : power(channel_sum(all.power)), square(all.square), importance(all.importance) {}
+    /// @param visits  Upper bound of the number of elements that receive the same power by reflection; >= 1.
+    Units(const Totals& all, double visits)
+        : power(channel_sum(all.power) * visits), square(all.square * visits), importance(all.importance) {}
+
+    /// Contribution of a particle without importance.
+    Arrivals::Contribution contribution_of(const RgbD& particle) const {
+        Arrivals::Contribution contribution{};
+        const FixedPoint::Value of_power = power.from(particle);
+        std::copy(of_power.begin(), of_power.end(), contribution.begin());
+        contribution[3] = square.from(std::pow(luminance(particle), 2));
+        return contribution;
+    }
 
     /// @param transmittance  Of what the ray has come through.
     Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source,
                                         const Rgb& transmittance = Rgb(1)) const {
         Arrivals::Contribution contribution{};
-        if (step.carries_power()) {
-            const RgbD carried_power = carried.power(source) * RgbD(transmittance);
-            const FixedPoint::Value of_power = power.from(carried_power);
-            std::copy(of_power.begin(), of_power.end(), contribution.begin());
-            contribution[3] = square.from(std::pow(luminance(carried_power), 2));
-        }
+        if (step.carries_power()) contribution = contribution_of(carried.power(source) * RgbD(transmittance));
         if (step.carries_importance())
             contribution[Arrivals::importance_term] =
                 importance.from(carried.importance(source) * channel_sum(transmittance) / 3);

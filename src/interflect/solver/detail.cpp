@@ -67,8 +67,9 @@ float left_of_siblings_by_pixels(float area, float pixel_area) {
 }
 
 /// What is left of the squared error of siblings' differences where it counts.
-float left_of_siblings(const SolverState& state, std::uint32_t first) {
-    return state.view.empty() ? 1 : left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
+float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
+    if (measure == ErrorMeasure::surfaces) return 1;
+    return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
 /// Mean square errors of every element; bias may be negative.
@@ -76,21 +77,23 @@ struct ElementErrors {
     std::vector<float> noise, bias;
 };
 
-/// @param of_pixels  Of what a view shows of the element in its pixels, rather than of the element itself.
-ElementErrors element_errors(const SolverState& state, bool of_pixels) {
+/// @param measure  Errors of the pixels that show an element, or of the element itself.
+ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     const ElementForest& forest = *state.forest;
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
     for (std::uint32_t root = 0; root < forest.patch_count(); ++root) {
-        const float left = of_pixels ? left_of_patches_by_pixels(forest.area(root), pixel_area(state, root)) : 1;
+        const float left = measure == ErrorMeasure::pictures
+                               ? left_of_patches_by_pixels(forest.area(root), pixel_area(state, root))
+                               : 1;
         const float rays = std::max(state.history[root], 1.0f);
         errors.noise[root] = left * state.noise.variance(forest, state.solution.irradiance, root, rays);
     }
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const auto [noise, bias] = added_error(state, first);
         const std::uint32_t parent = forest.parent(first);
-        const float left = of_pixels ? left_of_siblings(state, first) : 1;
+        const float left = left_of_siblings(state, measure, first);
         for (std::uint32_t e = first; e < first + 4; ++e) {
             errors.noise[e] = errors.noise[parent] + left * noise;
             errors.bias[e] = errors.bias[parent] + left * bias;
@@ -134,6 +137,7 @@ struct ErrorSums {
 RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
+    const ErrorMeasure measure = default_measure(state);
     const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
         return luminance(irradiance[e]) - luminance(irradiance[forest.parent(e)]);
     };
@@ -145,7 +149,7 @@ RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
                 const Detail detail = detail_of(state, first);
                 if (detail.noise == unknown) continue;
                 const std::uint32_t parent = forest.parent(first);
-                const double w = left_of_siblings(state, first) * error_weight(state, parent);
+                const double w = left_of_siblings(state, measure, first) * error_weight(state, measure, parent);
                 if (!(w > 0)) continue;
                 double product = 0;
                 for (std::uint32_t e = first; e < first + 4; ++e)
@@ -165,13 +169,13 @@ double decay_of(const ErrorSums& sums) {
     return std::clamp(sums.signal / sums.signal_of_parent, least_decay, most_decay);
 }
 
-ErrorSums sum_errors(const SolverState& state, const ElementErrors& errors) {
+ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
     return parallel_sum(forest.size(), elements_at_once, ErrorSums(), [&](std::size_t begin, std::size_t end) {
         ErrorSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
-            const double w = error_weight(state, e) * forest.area(e);
+            const double w = error_weight(state, measure, e) * forest.area(e);
             if (!(w > 0)) continue;
             const float h = luminance(state.solution.irradiance[e]);
             sums.weight += w;
@@ -179,7 +183,8 @@ ErrorSums sum_errors(const SolverState& state, const ElementErrors& errors) {
             sums.bias += w * errors.bias[e];
             sums.noise_of_patches += w * errors.noise[forest.patch(e)];
             // What varies within a pixel is no error of the picture.
-            const double resolved = state.view.empty() ? 1 : std::max(0.0f, 1 - pixel_area(state, e) / forest.area(e));
+            const double resolved =
+                measure == ErrorMeasure::surfaces ? 1 : std::max(0.0f, 1 - pixel_area(state, e) / forest.area(e));
             if (e < forest.patch_count()) {
                 sums.assumed += w * resolved * std::pow(assumed_variation * h, 2);
                 continue;
@@ -238,7 +243,8 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
 }
 
 void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t rays) {
-    const auto weight = [&](std::uint32_t e) { return error_weight(state, e) * state.forest->area(e); };
+    const ErrorMeasure measure = default_measure(state);
+    const auto weight = [&](std::uint32_t e) { return error_weight(state, measure, e) * state.forest->area(e); };
     if (uses_shrinkage(state) && state.noise.is_known()) {
         constexpr double long_enough = 0.25;  // share of what was averaged before
         const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
@@ -250,36 +256,43 @@ void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t
 
 double SolutionError::total() const { return std::hypot(noise, discretisation); }
 
-SolutionError solution_error(const SolverState& state) {
+ErrorMeasure default_measure(const SolverState& state) {
+    return state.view.empty() ? ErrorMeasure::surfaces : ErrorMeasure::pictures;
+}
+
+SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double mean = error_reference(state);
+    const double mean = error_reference(state, measure);
     if (!state.noise.is_known() || !(mean > 0)) return {infinity, infinity};
-    const ErrorSums sums = sum_errors(state, element_errors(state, !state.view.empty()));
+    const ErrorSums sums = sum_errors(state, measure, element_errors(state, measure));
     if (!(sums.weight > 0)) return {infinity, infinity};
-    const double total_weight = state.view.empty() ? sums.weight : 1;
+    const double total_weight = measure == ErrorMeasure::surfaces ? sums.weight : 1;
     const double decay = decay_of(sums);
     const double within_leaves = std::max(0.0, sums.within) * decay / (1 - decay) + sums.assumed;
     const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
     const double all = sums.noise_of_patches + of_details + within_leaves;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
-    return {std::sqrt(sums.noise / total_weight) / mean, std::sqrt(discretisation / total_weight) / mean};
+    // Pixels that show no surface have no error, but they are part of the picture and of its mean.
+    const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
+    const double scale = 1 / (mean * std::sqrt(total_weight * shown));
+    return {std::sqrt(sums.noise) * scale, std::sqrt(discretisation) * scale};
 }
 
-double error_reference(const SolverState& state) {
+double error_reference(const SolverState& state, ErrorMeasure measure) {
     const ElementForest& forest = *state.forest;
-    const bool has_view = !state.view.empty();
+    const bool of_pictures = measure == ErrorMeasure::pictures;
     double sum = 0, weight = 0;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
-        const double w = has_view ? static_cast<double>(state.solution.view_importance[i]) : 1.0;
+        const double w = of_pictures ? static_cast<double>(state.solution.view_importance[i]) : 1.0;
         const Rgb& h = state.solution.irradiance[i];
-        sum += w * forest.area(i) * luminance(has_view ? Rgb(state.materials.reflectance(i) * h) : h);
+        sum += w * forest.area(i) * luminance(of_pictures ? Rgb(state.materials.reflectance(i) * h) : h);
         weight += w * forest.area(i);
     }
     return weight > 0 ? sum / weight : 0;
 }
 
-double error_weight(const SolverState& state, std::uint32_t element) {
-    if (state.view.empty()) return 1;
+double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element) {
+    if (measure == ErrorMeasure::surfaces) return 1;
     const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
     Rgb h = state.solution.irradiance[element];
     for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences may be less than none
@@ -305,7 +318,7 @@ void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) 
 void finish_solution(SolverState& state) {
     const ElementForest& forest = *state.forest;
     Solution& solution = state.solution;
-    const ElementErrors errors = element_errors(state, false);
+    const ElementErrors errors = element_errors(state, ErrorMeasure::surfaces);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {

@@ -41,15 +41,21 @@ struct SolutionError {
     double total() const;
 };
 
-/// @return infinities where nothing is known yet, or nothing that counts is lit.
-SolutionError solution_error(const SolverState& state);
+/// Domain of the error: the pictures of the views, or all surfaces.
+enum class ErrorMeasure { pictures, surfaces };
+/// Pictures where a run has views.
+ErrorMeasure default_measure(const SolverState& state);
 
-/// The weight of a unit of squared error of the luminance of an element's irradiance, per area: with a view, by how
-/// much of the picture it fills, times the squared luminance of what it reflects; without a view, 1.
-double error_weight(const SolverState& state, std::uint32_t element);
+/// @return infinities where nothing is known yet, or nothing that counts is lit.
+SolutionError solution_error(const SolverState& state, ErrorMeasure measure);
+inline SolutionError solution_error(const SolverState& state) { return solution_error(state, default_measure(state)); }
+
+/// Weight of the squared error of an element's irradiance (luminance), per area. Pictures: view importance times the
+/// squared luminance of the reflectance; surfaces: 1.
+double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element);
 
 /// What errors are relative to: the weighted mean of the luminance of reflected light, or of irradiance.
-double error_reference(const SolverState& state);
+double error_reference(const SolverState& state, ErrorMeasure measure);
 
 /// Completes the solution: reduces the differences of siblings by their noise where that is asked for, and tells what
 /// is known of each element beside its irradiance.

@@ -23,6 +23,7 @@ RayMaker::RayMaker(const ElementForest& forest, const RayCaster& ray_caster, con
     : forest_(forest),
       elements_(forest.size()),
       emission_(step.emission),
+      start_points_(step.start_points),
       streams_(streams),
       ray_caster_(ray_caster),
       allocation_(step.q, step.rays, random_double(stream_key(streams, Purpose::allocation, 0), streams.allocations)) {}
@@ -51,9 +52,10 @@ void RayMaker::shoot_from_leaf(std::uint32_t leaf, std::uint64_t skipped, std::s
     const std::uint32_t patch = forest_.patch(leaf);
     const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
     const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
+    const std::span<const StartPoint> starts = start_points_ ? start_points_->of(leaf) : std::span<const StartPoint>();
     shoot_rays(forest_.geometry(patch), forest_.cell(leaf), ray_caster_.ray_offset(patch), streams_.points,
                stream_key(streams_, Purpose::sampling, place), used + skipped, batch.points,
-               std::span(batch.rays).subspan(offset, length), std::span(batch.origins).subspan(offset, length));
+               std::span(batch.rays).subspan(offset, length), std::span(batch.origins).subspan(offset, length), starts);
 }
 
 void RayMaker::shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::size_t offset, std::size_t length,

@@ -47,6 +47,7 @@ class RayMaker {
     const ElementForest& forest_;
     const std::uint32_t elements_;
     const Emission* emission_;
+    const StartPoints* start_points_;
     const SampleStreams& streams_;
     const RayCaster& ray_caster_;
     RayAllocation allocation_;

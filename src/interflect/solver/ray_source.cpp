@@ -29,7 +29,8 @@ inline CosSin cos_sin_of_turn(float turn) {
 }  // namespace
 
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
-                std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins) {
+                std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins,
+                std::span<const StartPoint> starts) {
     const V3f normal = patch.normal();
     const TangentFrame frame(normal);
     for (std::size_t begin = 0; begin < rays.size(); begin += PointBlock::capacity) {
@@ -43,7 +44,8 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, Poin
                 frame.s * (radius * turn.cosine) + frame.t * (radius * turn.sine) + normal * height;
         }
         for (std::size_t i = 0; i < count; ++i) {
-            origins[begin + i] = patch.uniform_parameters(a[i], b[i], {cell.u, cell.v}, cell.size);
+            origins[begin + i] = starts.empty() ? patch.uniform_parameters(a[i], b[i], {cell.u, cell.v}, cell.size)
+                                                : StartPoints::choose(starts, a[i]);
             rays[begin + i].origin = patch.point(origins[begin + i]) + normal * offset;
         }
     }

@@ -14,10 +14,13 @@ void Receiver::take(std::uint32_t source, const Arrivals::Contribution& contribu
     bool path_is_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
-            for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
-            ++escaped_.rays;
+            count_escaped(contribution);
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
             buffer_.add(hits[r].patch, carried, true, true);
+            if (step_.reflects_where_received(hits[r].patch)) {
+                const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
+                note_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
+            }
             if (gathered_) gather(left, hits[r].patch, hits[r].patch);
         } else {
             while (open_count_ == lanes) advance();
@@ -152,6 +155,13 @@ void Receiver::send(std::size_t i) {
     if (step_.carries_power()) buffer_.add(of_power, source, true, together);
     if (!step_.carries_power() || !together) buffer_.add(of_importance, source, false, true);
     if (gathered_) gather(left, patch, leaf);
+    if (step_.reflects_where_received(leaf))
+        note_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(source));
+}
+
+void Receiver::note_start_point(std::uint32_t leaf, const Parameters& at, const Arrivals::Contribution& contribution) {
+    const auto power = static_cast<float>(contribution[0] + contribution[1] + contribution[2]);
+    if (power > 0) start_points_.push_back({leaf, power, at});
 }
 
 inline void Receiver::gather(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {

@@ -66,6 +66,18 @@ class Receiver {
     void prefetch(const Hit& hit) const;
     /// To be called at the end of a task: rays must not wait for those of another.
     void finish_batch();
+    /// Adds power that arrived at a leaf in another way.
+    void deposit(std::uint32_t leaf, const Arrivals::Contribution& contribution,
+                 std::span<const std::int64_t> of_groups) {
+        buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
+    }
+    /// Adds power that escaped.
+    void count_escaped(const Arrivals::Contribution& contribution) {
+        for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
+        ++escaped_.rays;
+    }
+    /// Points of the leaves that reflect where they receive, in any order.
+    const std::vector<StartPoint>& start_points() const { return start_points_; }
     /// To be called at the end. @return What escaped from this thread's rays.
     Escaped finish();
 
@@ -88,6 +100,7 @@ class Receiver {
     void look_up_receiver(std::size_t i);
     void subdivide_on_demand(std::size_t i);
     void send(std::size_t i);
+    void note_start_point(std::uint32_t leaf, const Parameters& at, const Arrivals::Contribution& contribution);
     void gather(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf);
 
     const Materials& materials_;
@@ -97,6 +110,7 @@ class Receiver {
     bool refines_, needs_leaf_, may_grow_;
     Arrivals::ScatterBuffer buffer_;
     Escaped escaped_;
+    std::vector<StartPoint> start_points_;
     GatheredImportance* gathered_;
     struct Left {
         std::uint32_t source;

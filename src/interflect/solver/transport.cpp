@@ -8,6 +8,7 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/arrivals.h"
@@ -16,10 +17,17 @@
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_maker.h"
 #include "interflect/solver/receiving.h"
+#include "interflect/solver/walks.h"
 
 namespace interflect::inline detail {
 
 namespace {
+
+/// Key of the random numbers of a step's walks.
+std::uint64_t walk_key(const SampleStreams& streams) {
+    constexpr std::uint64_t purpose = 0x77616c6b;  // no other stream of the run has this one
+    return mix(mix(streams.seed, purpose), streams.allocations);
+}
 
 /// Rays of one task: enough to hide the cost of a task, few enough to stay in the second-level cache.
 constexpr std::size_t batch_rays = 1024;
@@ -42,6 +50,15 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
+/// Upper bound of the number of visits of a random walk. The expected number is at most 1 / (1 - rho); the factor
+/// covers chance and panes, and leaves 2^49 units for the expected power.
+double most_visits(const Scene& scene) {
+    constexpr double headroom = 0x1p12;
+    double rho = 0;
+    for (const Material& m : scene.materials) rho = std::max(rho, static_cast<double>(largest_channel(m.reflectance)));
+    return headroom / (1 - rho);
+}
+
 /// The rays of a step and what they carry. Refers to the step.
 struct Shooting {
     Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
@@ -49,7 +66,7 @@ struct Shooting {
         : rays(forest, ray_caster, step, streams),
           carried(materials, forest, step, rays.allocation().q_sum()),
           all(all_carried(step, rays.allocation(), carried)),
-          units(all),
+          units(all, step.to_the_end ? most_visits(materials.scene()) : 1),
           panes(materials.scene(), ray_caster) {}
 
     RayMaker rays;
@@ -67,6 +84,7 @@ struct Batch {
     std::vector<Hit> hits;
     std::vector<Panes::HitBehind> behind;
     std::vector<std::int64_t> group_terms;  // of one source
+    Walkers walkers;
     Receiver receiver;
 };
 
@@ -226,7 +244,7 @@ void receive_behind(const TransportStep& step, const Shooting& shooting, const S
 
 /// What the rays of a batch carry arrives at elements, which may be made for that.
 void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) {
-    auto& [shot, hits, all_behind, group_terms, receiver] = batch;
+    auto& [shot, hits, all_behind, group_terms, walkers, receiver] = batch;
     std::span<const Panes::HitBehind> behind = all_behind;
     std::size_t fetched = 0;
     for (const SourceRays& rays : shot.sources) {
@@ -244,6 +262,31 @@ void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) 
         behind = behind.subspan(own);
     }
     receiver.finish_batch();
+}
+
+/// Continues the rays of a batch as random walks. @param task  Index of the first ray.
+void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
+    Walkers& walkers = batch.walkers;
+    const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
+        if (hit.patch == none) return;
+        walks.add(batch.shot.rays[ray], hit, shooting.carried.power(source) * RgbD(transmittance), walkers);
+        for (std::size_t g = 0; g < step.groups.size(); ++g)
+            walkers.received_groups.push_back(shooting.carried.power(source, g) * RgbD(transmittance));
+    };
+    auto behind = batch.behind.begin();
+    for (const auto [source, first, last] : batch.shot.sources) {
+        for (std::uint32_t ray = first; ray < last; ++ray) add(source, ray, batch.hits[ray], Rgb(1));
+        for (; behind != batch.behind.end() && behind->ray < last; ++behind)
+            add(source, behind->ray, behind->hit, behind->transmittance);
+    }
+    walks.follow(task, walkers, batch.receiver);
+}
+
+/// All points that the threads noted; their order has no meaning.
+StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
+    std::vector<StartPoint> all;
+    for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
+    return StartPoints(std::move(all));
 }
 
 /// Turns arrivals into what elements receive. @param step  What has served makes room for what is received.
@@ -281,6 +324,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
 
     arrivals.begin(old_size);
     std::optional<GatheredImportance> gathered = gathered_by(step, materials, forest);
+    const Walks walks(materials, forest, ray_caster, shooting.panes, step, shooting.units, old_size, walk_key(streams));
     PerThread<Batch> batches([&] {
         return Batch({materials, forest, step, old_size, arrivals, gathered ? &*gathered : nullptr});
     });
@@ -290,6 +334,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
                                 Batch& batch = batches.local();
                                 trace(shooting, ray_caster, begin, end, batch);
                                 receive(step, shooting, batch);
+                                if (step.to_the_end) walk(step, shooting, walks, begin, batch);
                             });
     } catch (const Interrupted&) {
         arrivals.clear(forest.size());
@@ -297,8 +342,14 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         throw;
     }
     Escaped escaped;
-    for (Batch& batch : batches) escaped += batch.receiver.finish();
-    return commit(step, shooting, forest, streams, arrivals, gathered, escaped);
+    std::vector<std::vector<StartPoint>> start_points;
+    for (Batch& batch : batches) {
+        escaped += batch.receiver.finish();
+        start_points.push_back(batch.receiver.start_points());
+    }
+    Received received = commit(step, shooting, forest, streams, arrivals, gathered, escaped);
+    received.start_points = start_points_of(start_points);
+    return received;
 }
 
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,

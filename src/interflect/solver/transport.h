@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interflect/base/points.h"
@@ -14,6 +15,7 @@
 #include "interflect/solver/oracle.h"
 #include "interflect/solver/quanta.h"
 #include "interflect/solver/radiosity.h"
+#include "interflect/solver/start_points.h"
 #include "interflect/solver/stop_request.h"
 
 namespace interflect::inline detail {
@@ -50,6 +52,15 @@ struct TransportStep {
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;  ///< Importance is received by whole patches, not by leaves.
     Oracle oracle;
+    /// Random walks complete the transport of the step's power: no later step reflects it (Walks).
+    bool to_the_end = false;
+    /// Nonzero for each element that reflects light from the points that receive it; empty: none does. The step returns
+    /// these points (Received::start_points); all other leaves reflect uniformly.
+    std::span<const std::uint8_t> reflecting_where_received;
+    bool reflects_where_received(std::uint32_t leaf) const {
+        return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
+    }
+    const StartPoints* start_points = nullptr;  ///< Origins of `light`; null: uniform.
     /// Storage that what is received may take once all rays are traced, such as that of what `light` refers to; may be
     /// null.
     std::vector<Rgb>* spent = nullptr;
@@ -73,6 +84,7 @@ struct Received {
     /// Of every part of the luminaires, empty unless the step carried importance: its rays, and the sum of the
     /// importance per area, rho psi, that they found where they arrived.
     std::vector<PartImportance> part_importance;
+    StartPoints start_points;     ///< Points on the leaves in reflecting_where_received.
     Quanta quanta;                ///< What its rays carried, one by one.
     RgbD shot_power{0, 0, 0};     ///< What all rays carried together [lm or W]: the sum of what arrived and escaped.
     RgbD escaped_power{0, 0, 0};  ///< What the rays that hit nothing carried.

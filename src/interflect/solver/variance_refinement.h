@@ -12,4 +12,8 @@ namespace interflect::inline detail {
 /// To be called between iterations.
 void refine_by_variance(SolverState& state);
 
+/// Leaves that reflect light where they receive it (StartPoints), one entry an element; empty unless
+/// refine_by_variance() makes the mesh.
+std::vector<std::uint8_t> leaves_that_blur(const SolverState& state);
+
 }  // namespace interflect::inline detail

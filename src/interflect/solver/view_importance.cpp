@@ -59,8 +59,9 @@ void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaste
             if (patch == none) continue;
             const V3f y = rays[r].origin + hits[r].distance * rays[r].direction;
             points_.push_back({patch, forest.geometry(patch).parameters_of(y), share, patch});
-            shares_ += share;
+            hit_shares_ += static_cast<double>(share);
         }
+        shares_ += static_cast<double>(share) * static_cast<double>(rays.size());
         add_points_behind(forest, panes, rays, hits, share);
         rays_ += rays_per_view;
     }
@@ -72,6 +73,7 @@ void ViewImportance::archive(StateArchive& archive) {
     archive("view/rounds", rounds_);
     archive("view/rays", rays_);
     archive("view/shares", shares_);
+    archive("view/hit_shares", hit_shares_);
 }
 
 bool ViewImportance::fits(const ElementForest& forest) const {
@@ -88,7 +90,7 @@ std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at
         });
     std::vector<float> v(forest.size(), 0.0f);
     for (const Point& p : points_) v[at_patches ? p.patch : p.leaf] += p.share;
-    const double per_share = 1 / shares_;
+    const double per_share = 1 / hit_shares_;
     parallel_for_ranges(v.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             v[e] = static_cast<float>(v[e] * per_share / forest.area(e));

@@ -29,6 +29,8 @@ class ViewImportance {
     bool empty() const { return points_.empty(); }  ///< No view shows anything.
     std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
     std::int64_t views() const { return std::ssize(views_); }
+    /// Share of the pictures that shows surfaces, in [0, 1].
+    double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
     /// v = V / A of every element [1/m^2]: V is the share of the picture that shows the element,
     /// weighted over the views; sum of V over what all views hit = 1, and what is seen through panes of glass counts
     /// as much as comes through. Inner elements have the mean of their children.
@@ -54,7 +56,7 @@ class ViewImportance {
     std::uint64_t seed_;
     std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
-    double shares_ = 0;
+    double shares_ = 0, hit_shares_ = 0;  // total weight of the camera rays, and of the rays that hit a surface
     std::vector<Point> points_;
 };
 

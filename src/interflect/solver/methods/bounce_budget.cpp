@@ -7,11 +7,13 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A pass ends when the next bounce would get fewer rays; the next pass shoots what is left.
-constexpr double fewest_rays_of_bounce = 16;
-/// Or when what is left, with all its bounces, is less than this share of the pass: every bounce takes time for every
+/// Random walks take the place of bounces when the next bounce would get fewer rays.
+constexpr double fewest_rays_of_bounce = 2;
+/// Or when the remaining bounces would trace less than this share of the pass: every bounce takes time for every
 /// element.
 constexpr double least_share_left = 0.05;
+/// Fewer walks would make the total power of small passes noisy. The rays beyond the plan are not counted.
+constexpr std::int64_t fewest_walks = 32;
 /// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
 constexpr double assumed_bounces = 2;
 /// What is left to shoot is expected to fall by such factors from one bounce to the next: before it is known; where it
@@ -20,26 +22,28 @@ constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay
 
 }  // namespace
 
-BounceBudget::BounceBudget(std::int64_t rays, double bounces, bool is_final)
-    : rays_(rays),
-      left_(rays),
-      bounces_(bounces > 0 ? bounces : assumed_bounces),
-      fewest_(is_final ? 1 : fewest_rays_of_bounce),
-      least_left_(is_final ? 0 : least_share_left * bounces_) {}
+BounceBudget::BounceBudget(std::int64_t rays, double bounces)
+    : rays_(rays), left_(rays), bounces_(bounces > 0 ? bounces : assumed_bounces), is_known_(bounces > 0) {}
 
-std::int64_t BounceBudget::next(double unshot) {
-    const double left = static_cast<double>(left_), all = static_cast<double>(rays_);
-    // If all bounces to come decay alike, they must do with what is left.
+BounceRays BounceBudget::next(double unshot) {
+    const double left = static_cast<double>(left_);
     const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = fall < 1 ? std::min(highest_decay, fall) : decay_while_it_grows;
     last_unshot_ = unshot;
-    const double share = all * unshot / bounces_;
-    is_last_ = share < fewest_ || left < fewest_ || unshot < (1 - fall) * least_left_;
-    const double rays = is_last_ ? left : std::min(share, std::max(1.0, (1 - decay_) * left));
-    const std::int64_t taken = std::min<std::int64_t>(left_, std::llround(rays));
-    left_ -= taken;
+    // Unshot power of this bounce and all later ones: as in the previous pass, or a geometric series.
+    const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
+    // What the previous pass did not have must not take the rays of this one: later bounces keep a tenth.
+    const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
+    const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / bounces_);
+    const double to_walk = std::max(planned, geometric);
+    is_last_ = share < fewest_rays_of_bounce || share + 1 > left || to_walk < least_share_left * bounces_;
+    const double starting = is_last_ ? left * unshot / to_walk : share;  // a walk has to_walk / unshot rays
+    const std::int64_t fewest = is_last_ ? fewest_walks : 1;
+    const std::int64_t started = std::max<std::int64_t>(fewest, std::llround(starting));
+    const std::int64_t expected = is_last_ ? left_ : started;
+    left_ -= expected;
     unshot_sum_ += unshot;
-    return taken;
+    return {started, expected};
 }
 
 }  // namespace interflect::inline detail

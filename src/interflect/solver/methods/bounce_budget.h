@@ -7,17 +7,22 @@
 
 namespace interflect::inline detail {
 
+/// Rays of one bounce of a pass.
+struct BounceRays {
+    std::int64_t started = 0;   ///< Rays to trace.
+    std::int64_t expected = 0;  ///< Expected number, including random walks.
+};
+
 /// Shares the rays of a pass among its bounces.
 class BounceBudget {
   public:
     BounceBudget() = default;
-    /// @param bounces   Sum over all bounces of what is left to shoot, relative to the first; 0: not known.
-    /// @param is_final  No other pass will shoot what this one leaves.
-    BounceBudget(std::int64_t rays, double bounces, bool is_final);
+    /// @param bounces  Sum over all bounces of the unshot power, relative to the first; 0: not known.
+    BounceBudget(std::int64_t rays, double bounces);
 
-    /// @param unshot  What is left to shoot, relative to the first bounce.
-    /// @return        The rays of the next bounce; all that are left if it is the last; 0 if there are none.
-    std::int64_t next(double unshot);
+    /// @param unshot  Power that is left to shoot, relative to the first bounce.
+    /// @return        The rays of the next bounce. Random walks complete the last bounce.
+    BounceRays next(double unshot);
     bool is_last() const { return is_last_ || left_ == 0; }
     /// Of this pass; what the bounces that it lacks would have to shoot is extrapolated.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
@@ -26,18 +31,18 @@ class BounceBudget {
         archive(name + "/rays", rays_);
         archive(name + "/left", left_);
         archive(name + "/bounces", bounces_);
-        archive(name + "/fewest", fewest_);
-        archive(name + "/least_left", least_left_);
         archive(name + "/last_unshot", last_unshot_);
         archive(name + "/unshot_sum", unshot_sum_);
         archive(name + "/decay", decay_);
+        archive(name + "/is_known", is_known_);
         archive(name + "/is_last", is_last_);
     }
 
   private:
     std::int64_t rays_ = 0, left_ = 0;
-    double bounces_ = 1, fewest_ = 1, least_left_ = 0;
+    double bounces_ = 1;
     double last_unshot_ = 0, unshot_sum_ = 0, decay_ = 0;
+    bool is_known_ = false;  // bounces_, by the pass before
     bool is_last_ = false;
 };
 

@@ -57,11 +57,11 @@ std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + s
 void Passes::start_importance(SolverState& state, std::int64_t rays) {
     Solution& solution = state.solution;
     ImportanceStart& start = importance_;
-    if (!start.is_under_way) start = {true, solution.view_importance, BounceBudget(rays, 0, true), 1};
+    if (!start.is_under_way) start = {true, solution.view_importance, BounceBudget(rays, 0), 1};
     while (start.left > negligible_importance && !start.budget.is_last()) {
         BounceBudget budget = start.budget;
         TransportStep step = importance_step(state.materials, solution, Importance(start.unshot),
-                                             std::max<std::int64_t>(1, budget.next(start.left)));
+                                             std::max<std::int64_t>(1, budget.next(start.left).expected));
         const std::int64_t traced = step.rays;
         start.unshot = run_step(state, std::move(step)).importance;
         start.budget = budget;
@@ -76,19 +76,15 @@ void Passes::start_importance(SolverState& state, std::int64_t rays) {
     start = {};
 }
 
-void Passes::begin_pass(SolverState& state, std::int64_t rays) {
+void Passes::begin_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     pass_ = {};
     pass_.is_under_way = true;
     escaped_power_ = RgbD(0, 0, 0);
-    pass_.budget = BounceBudget(rays, bounces_, is_final_);
+    pass_.budget = BounceBudget(rays, bounces_);
     pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
-    pass_.unshot = std::exchange(unshot_, {});
-    if (pass_.unshot.empty()) pass_.unshot.assign(state.forest->size(), Rgb(0));
-    const auto factor = static_cast<float>(unshot_rays_ / static_cast<double>(rays));
-    for (Rgb& h : pass_.unshot) h *= factor;
-    pass_.unshot_groups = std::exchange(unshot_groups_, {});
-    if (pass_.unshot_groups.empty()) pass_.unshot_groups.assign(state.groups.size(), pass_.unshot);
-    scale(pass_.unshot_groups, factor);
+    pass_.unshot.assign(state.forest->size(), Rgb(0));
+    pass_.unshot_groups.assign(state.groups.size(), pass_.unshot);
+    if (!oracle_refines) pass_.reflecting_where_received = leaves_that_blur(state);
     state.quanta = {};
 }
 
@@ -104,9 +100,13 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     if (pass_.emits) pass_.first_power = bounce.power, pass_.first_weighted_power = bounce.weighted_power;
     BounceBudget budget = pass_.budget;
     const double weight = unshot_weight(bounce, pass_, state.options.experimental.beta);
-    const std::int64_t traced = bounce.power > 0 ? budget.next(weight) : 0;
+    const BounceRays rays_of_bounce = bounce.power > 0 ? budget.next(weight) : BounceRays();
+    const std::int64_t traced = rays_of_bounce.expected;
     TransportStep& step = bounce.step;
-    step.rays = traced;
+    step.rays = rays_of_bounce.started;
+    step.to_the_end = budget.is_last();
+    step.reflecting_where_received = pass_.reflecting_where_received;
+    step.start_points = &pass_.start_points;
     step.groups = group_radiosity(state, pass_.unshot_groups, pass_.emits);
     step.known_light = Radiosity(state.materials, solution.irradiance);
     step.leaves_only = !oracle_refines;
@@ -115,7 +115,8 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     step.spent = &pass_.unshot;
     const std::uint32_t before = state.forest->size();
     Received received;
-    if (traced > 0) received = trace(state, std::move(step));
+    // Random walks end a pass whatever traces its bounces.
+    if (traced > 0) received = step.to_the_end ? run_step(state, std::move(step)) : trace(state, std::move(step));
 
     pass_.budget = budget;
     pass_.emits = false;
@@ -136,6 +137,7 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     add(pass_.fresh, received);
     if (carries_importance)
         merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = traced});
+    pass_.start_points = std::move(received.start_points);
     pass_.unshot = std::move(received.irradiance);
     pass_.unshot_groups = std::move(received.groups);
     return traced;
@@ -143,7 +145,7 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
 
 /// @param oracle_refines  Whether pairs are refined by Eq. 14, 15 on the way; else the mesh stays as it is.
 FreshEstimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    if (!pass_.is_under_way) begin_pass(state, rays);
+    if (!pass_.is_under_way) begin_pass(state, rays, oracle_refines);
     while (!pass_.budget.is_last() && trace_bounce(state, rays, oracle_refines) > 0) {
     }
     FreshEstimate fresh = std::move(pass_.fresh);
@@ -151,9 +153,6 @@ FreshEstimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool ora
         fresh = {std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f),
                  GroupLight(state.groups.size(), std::vector<Rgb>(state.forest->size(), Rgb(0)))};
     bounces_ = pass_.budget.bounces();
-    unshot_ = std::move(pass_.unshot);
-    unshot_groups_ = std::move(pass_.unshot_groups);
-    unshot_rays_ = static_cast<double>(rays);
     pass_ = {};
     if (oracle_refines) return fresh;
     pull(*state.forest, fresh.irradiance), pull_variance(*state.forest, fresh.variance);
@@ -171,8 +170,6 @@ void Passes::prepare(SolverState& state) {
     for (const Stage pass : {Stage::coarse_pass, Stage::refining_pass}) {
         if (stage_ != pass) continue;
         if (state.options.method.refines) set_estimate(state, trace_pass(state, rays, pass == Stage::refining_pass));
-        unshot_.clear();
-        unshot_groups_.clear();
         stage_ = pass == Stage::coarse_pass ? Stage::refining_pass : Stage::report;
     }
     if (stage_ == Stage::report) {
@@ -184,8 +181,6 @@ void Passes::prepare(SolverState& state) {
 
 void Passes::make_first_estimate(SolverState& state) {
     prepare(state);
-    if (state.power_rays > 0 && !pass_.is_under_way) return;
-    is_final_ = true;
     set_estimate(state, trace_pass(state, state.schedule.start_rays(), false));
     state.schedule.began_with(0, rays_so_far(state));
     report(state, 0, escaped_power_);
@@ -266,16 +261,10 @@ void Passes::adapt_to_views(SolverState& state) {
         ratio[i] = std::exp(share * std::log(here) + (1 - share) * std::log(there));
     }
     for (std::uint32_t e = 0; e < state.history.size(); ++e) state.history[e] *= ratio[state.forest->patch(e)];
-    for (std::uint32_t e = 0; e < unshot_.size(); ++e) unshot_[e] *= ratio[state.forest->patch(e)];
     state.noise.scale_by_patch(*state.forest, ratio);
 }
 
-void Passes::scale_group(SolverState& state, std::size_t group, float factor) {
-    pass_ = {};
-    if (unshot_groups_.empty()) return;
-    for (Rgb& h : unshot_groups_[group]) h *= factor;
-    unshot_ = sum_of(unshot_groups_, state.solution.dimming);
-}
+void Passes::scale_group(SolverState&, std::size_t /*group*/, float /*factor*/) { pass_ = {}; }
 
 void Passes::archive(StateArchive& archive) {
     archive("passes/stage", stage_);
@@ -295,17 +284,15 @@ void Passes::archive(StateArchive& archive) {
     pass_.budget.archive(archive, "passes/pass/budget");
     archive("passes/pass/first_power", pass_.first_power);
     archive("passes/pass/first_weighted_power", pass_.first_weighted_power);
-    archive("passes/unshot", unshot_);
-    archive("passes/unshot_rays", unshot_rays_);
+    archive("passes/pass/reflecting_where_received", pass_.reflecting_where_received);
+    pass_.start_points.archive(archive, "passes/pass/start_points");
     archive_groups(archive, "passes/pass/groups", pass_.fresh.groups);
     archive_groups(archive, "passes/pass/unshot_groups", pass_.unshot_groups);
-    archive_groups(archive, "passes/unshot_groups", unshot_groups_);
     archive("passes/bounces", bounces_);
     archive("passes/finds_importance", finds_importance_);
     archive("passes/old_q", old_q_);
     archive("passes/old_importance", old_importance_);
     archive("passes/rays_before_adaptation", rays_before_adaptation_);
-    archive("passes/is_final", is_final_);
     archive("passes/escaped_power", escaped_power_);
     archive("passes/importance_step_is_done", importance_step_is_done_);
     archive("passes/rays_before", rays_before_);
@@ -326,8 +313,9 @@ bool Passes::fits(const SolverState& state) const {
     const bool importance_fits = !importance_.is_under_way || importance_.unshot.size() == forest.size();
     return stage_ >= Stage::importance && stage_ <= Stage::done && pass_fits && importance_fits &&
            is_whole(pass_.fresh.irradiance) && is_whole(pass_.fresh.variance) && is_whole(pass_.weights.elements) &&
-           has_groups(pass_.fresh.groups) && has_groups(pass_.unshot_groups) && has_groups(unshot_groups_) &&
-           is_whole(unshot_) && old_q_.size() <= forest.size() &&
+           has_groups(pass_.fresh.groups) && has_groups(pass_.unshot_groups) &&
+           is_whole(pass_.reflecting_where_received) && pass_.start_points.fit(forest.size()) &&
+           old_q_.size() <= forest.size() &&
            (old_q_.empty() ||
             (old_q_.size() >= forest.patch_count() && old_importance_.size() == forest.patch_count())) &&
            (pass_.weights.nearby.empty() || pass_.weights.nearby.size() == forest.patch_count()) &&
@@ -353,7 +341,6 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         importance_step_is_done_ = true;
     }
     if (plan.rays > for_importance) {
-        is_final_ = plan.is_final;
         const bool by_power = state.options.method.refines && !refines_by_variance(state.options);
         const FreshEstimate fresh = trace_pass(state, plan.rays - for_importance, by_power);
         plan.rays = std::max<std::int64_t>(1, rays_so_far(state) - rays_before_);
@@ -363,10 +350,7 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
         merge_escaped_power(state, escaped_power_, plan);
         update_history(state, plan, elements_before_);
         if (state.options.method.refines && !by_power && state.noise.is_known()) {
-            const std::uint32_t size = state.forest->size();
             refine_by_variance(state);
-            inherit(*state.forest, size, unshot_);
-            inherit(*state.forest, size, unshot_groups_);
         }
     }
     importance_step_is_done_ = false;

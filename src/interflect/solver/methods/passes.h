@@ -17,6 +17,8 @@ struct Pass {
     FreshEstimate fresh;      ///< What all bounces so far brought.
     std::vector<Rgb> unshot;  ///< Of that, what is to be shot next.
     GroupLight unshot_groups;
+    std::vector<std::uint8_t> reflecting_where_received;  ///< leaves_that_blur().
+    StartPoints start_points;                             ///< Origins of the next bounce.
     ImportanceWeights weights;
     BounceBudget budget;
     double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce, see PowerStep.
@@ -48,7 +50,7 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// A first estimate for iterations of another kind: prepare(), then a pass if that traced no power.
+    /// A first estimate for iterations of another kind: prepare(), then a pass on the mesh of that.
     void make_first_estimate(SolverState& state);
 
   protected:
@@ -59,7 +61,7 @@ class Passes : public IterationMethod {
     void start_importance(SolverState& state, std::int64_t rays);
     void adapt_to_views(SolverState& state);
     FreshEstimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
-    void begin_pass(SolverState& state, std::int64_t rays);
+    void begin_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
     std::int64_t trace_bounce(SolverState& state, std::int64_t rays, bool oracle_refines);
 
     /// What is done before the first iteration, in this order.
@@ -67,17 +69,11 @@ class Passes : public IterationMethod {
     Stage stage_ = Stage::importance;
     ImportanceStart importance_;
     Pass pass_;
-    /// Irradiance that was received and not shot when the last pass ended, as many rays as it had, by element: the next
-    /// one shoots it too, so that the mean of all lacks nothing.
-    std::vector<Rgb> unshot_;
-    GroupLight unshot_groups_;
-    double unshot_rays_ = 0;
     /// Sum over the bounces of the last pass of what was left to shoot, relative to its first bounce; 0: not known yet.
     double bounces_ = 0;
     bool finds_importance_ = false;              // before the next iteration: the views have changed
     std::vector<float> old_q_, old_importance_;  // how rays were shared before, and by what, of patches
     std::int64_t rays_before_adaptation_ = 0;
-    bool is_final_ = false;        // no other pass will shoot what this one leaves
     RgbD escaped_power_{0, 0, 0};  // of the last pass
     bool importance_step_is_done_ = false;
     std::int64_t rays_before_ = 0;  // this iteration

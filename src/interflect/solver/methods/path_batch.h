@@ -14,6 +14,7 @@
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
+#include "interflect/raycast/panes.h"
 #include "interflect/solver/ray_allocation.h"
 #include "interflect/solver/ray_source.h"
 #include "interflect/solver/solver_state.h"
@@ -50,6 +51,7 @@ struct Payload {
     std::vector<Rgb> emitted;      ///< What leaves a source at first: W [lm or W], or rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
     std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
+    bool is_grey = false;          ///< Importance: panes transmit the mean of their channels.
 };
 
 /// What a batch of paths brought, as integers, so that the order of arrival does not matter.
@@ -60,8 +62,9 @@ struct PathSums {
     std::vector<std::int64_t> started;  ///< Rays that left every patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    explicit PathSums(const Payload& payload)
-        : unit(sum_headroom * most_expected(payload)),
+    /// @param hits  Most hits of a ray: more than one where it passes through panes.
+    PathSums(const Payload& payload, double hits)
+        : unit(sum_headroom * hits * most_expected(payload)),
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
@@ -86,6 +89,7 @@ struct Wavefront {
     std::vector<Ray> rays;
     std::vector<Parameters> origins;
     std::vector<Hit> hits;
+    std::vector<Panes::HitBehind> behind;
     PointBlock points;
 
     void make_room_for_rays() {
@@ -103,12 +107,13 @@ class PathBatch {
         : forest_(*state.forest),
           emission_(state.emission),
           ray_caster_(state.ray_caster),
+          panes_(state.scene, state.ray_caster),
           stop_(state.stop),
           first_points_(state.options.experimental.points),
           payload_(payload),
           paths_(paths),
           key_(key),
-          sums_(payload) {
+          sums_(payload, panes_.empty() ? 1 : 1 + Panes::most_in_a_row) {
         const auto weight = [&](std::size_t i) {
             return static_cast<double>(channel_sum(payload.emitted[i])) * payload.density[i];
         };
@@ -136,6 +141,7 @@ class PathBatch {
         emit(begin, end, w);
         for (std::uint64_t bounce = 1; !w.particles.empty(); ++bounce) {
             ray_caster_.trace(w.rays, w.hits);
+            panes_.trace(w.rays, w.hits, w.behind);
             score(w);
             survive(random_double(sub_key(key_, WalkPurpose::survival, task), bounce), w);
             reflect(mix(sub_key(key_, WalkPurpose::reflection, task), bounce), w);
@@ -164,25 +170,35 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
-    /// Adds every particle to what the patch that it hit receives, and lists what that reflects.
+    /// Adds the power of every particle to its first patch, and the filtered power to the patches behind panes. Lists
+    /// the power that each of these patches reflects.
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
+        std::int64_t escaped_rays = 0;
         w.reflected.clear();
-        for (std::size_t i = 0; i < w.particles.size(); ++i) {
-            const auto& [source, power] = w.particles[i];
-            const std::uint32_t patch = w.hits[i].patch;
+        const auto arrive = [&](std::uint32_t patch, const Rgb& power) {
             const FixedPoint::Value term = sums_.unit.from(RgbD(power));
-            if (source < sums_.started.size()) add_concurrently(sums_.started[source], 1);
             if (patch == none) {
                 for (std::size_t c = 0; c < 3; ++c) escaped[c] += term[c];
-                continue;
+                ++escaped_rays;
+                return;
             }
             add_concurrently(sums_.received[patch], term);
             w.reflected.push_back({patch, payload_.reflectance[patch] * power});
+        };
+        auto behind = w.behind.begin();
+        for (std::size_t i = 0; i < w.particles.size(); ++i) {
+            const auto& [source, power] = w.particles[i];
+            if (source < sums_.started.size()) add_concurrently(sums_.started[source], 1);
+            arrive(w.hits[i].patch, power);
+            for (; behind != w.behind.end() && behind->ray == i; ++behind) {
+                const Rgb& t = behind->transmittance;
+                arrive(behind->hit.patch, power * (payload_.is_grey ? Rgb(channel_sum(t) / 3) : t));
+            }
         }
         add_concurrently(sums_.escaped, escaped);
         add_concurrently(sums_.rays, static_cast<std::int64_t>(w.particles.size()));
-        add_concurrently(sums_.escaped_rays, static_cast<std::int64_t>(w.particles.size() - w.reflected.size()));
+        add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
     /// Russian roulette and splitting: what is reflected goes on as a random number of copies whose mean is n, each
@@ -214,6 +230,7 @@ class PathBatch {
     const ElementForest& forest_;
     const Emission& emission_;
     const RayCaster& ray_caster_;
+    const Panes panes_;
     const StopRequest& stop_;
     PointSet first_points_;
     const Payload& payload_;

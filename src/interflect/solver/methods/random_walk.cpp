@@ -113,6 +113,7 @@ Payload light(const SolverState& state) {
 
 Payload importance_from_cameras(const SolverState& state) {
     Payload payload;
+    payload.is_grey = true;
     for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) {
         const float rho = state.materials.mean_reflectance(i);
         payload.emitted.emplace_back(rho * state.solution.view_importance[i] * state.forest->area(i));

@@ -17,7 +17,8 @@ struct PathSeries {
 
 /// Solves Eq. 1 of Prikryl et al. 2000 by random walks of particles (Pattanaik and Mudur 1992): a particle leaves an
 /// emitter, adds its power to what every patch that it hits receives, and goes on from there, uniformly on the patch,
-/// with the probability that the reflectance gives. All channels travel together; survival keeps their sum.
+/// with the probability that the reflectance gives. Behind a pane the transmitted part of the power goes straight on.
+/// All channels travel together; survival keeps their sum.
 ///
 /// With importance (Pattanaik and Mudur 1993, 1995) psi is found by random walks from the cameras, with the share alpha
 /// of the rays, and the particles are made proportional to power times psi: an emitter sends more of them, each with

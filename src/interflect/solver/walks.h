@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/base/points.h"
+#include "interflect/elements/forest.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/solver/carried.h"
+#include "interflect/solver/materials.h"
+#include "interflect/solver/receiving.h"
+#include "interflect/solver/transport.h"
+
+namespace interflect::inline detail {
+
+/// Power that a leaf is about to reflect.
+struct ReflectedPower {
+    std::uint32_t leaf, patch;
+    Parameters at;  ///< Where the leaf received it.
+    RgbD power;     ///< [lm or W]
+};
+
+/// The particles of one task; one a thread, reused.
+struct Walkers {
+    std::vector<ReflectedPower> received, reflected;
+    std::vector<RgbD> received_groups, reflected_groups;  ///< The power of each light group, particle by particle.
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    std::vector<Panes::HitBehind> behind;
+    std::vector<std::int64_t> group_terms;
+    PointBlock points;
+};
+
+/// Random walks complete the transport of a pass (TransportStep::to_the_end). A surface reflects a particle with a
+/// probability equal to its reflectance. Unlike a bounce, a walk costs no time for elements that it does not visit.
+class Walks {
+  public:
+    /// @param elements  Of the forest when the step began: deeper ones receive through their ancestors.
+    /// @param key       Of the random numbers of the step's walks.
+    Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
+          const TransportStep& step, const Units& units, std::uint32_t elements, std::uint64_t key);
+
+    /// Adds a particle at the hit point of a ray. The caller appends its power by light group to `received_groups`.
+    void add(const Ray& ray, const Hit& hit, const RgbD& power, Walkers& walkers) const;
+    /// Traces all added particles until they are absorbed or escape. @param task  Key of the random numbers.
+    void follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) const;
+
+  private:
+    void survive(double offset, Walkers& walkers) const;
+    void shoot(std::uint64_t key, Walkers& walkers) const;
+    void receive(Walkers& walkers, Receiver& receiver) const;
+    void deposit(const Ray& ray, const Hit& hit, const Rgb& transmittance, std::size_t walker, Walkers& walkers,
+                 Receiver& receiver) const;
+
+    const Materials& materials_;
+    const ElementForest& forest_;
+    const RayCaster& ray_caster_;
+    const Panes& panes_;
+    const TransportStep& step_;
+    const Units& units_;
+    std::uint32_t elements_;
+    std::uint64_t key_;
+};
+
+}  // namespace interflect::inline detail
