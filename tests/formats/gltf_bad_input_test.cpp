@@ -145,6 +145,10 @@ INSTANTIATE_TEST_SUITE_P(
                   const int places = f.add_view(std::string("\x03\0", 2)), values = f.add_view(std::string(12, '\0'));
                   f.file["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", places}, {"componentType", 5123}}}, {"values", {{"bufferView", values}}}};
               }, "element 3 is replaced, but there are 3"},
+        Fault{"SparseOutOfOrder", [](GltfBuilder& f) {
+                  const int places = f.add_view(std::string("\x01\0\x01\0", 4)), values = f.add_view(std::string(24, '\0'));
+                  f.file["accessors"][0]["sparse"] = {{"count", 2}, {"indices", {{"bufferView", places}, {"componentType", 5123}}}, {"values", {{"bufferView", values}}}};
+              }, "index 1 follows 1; indices must ascend"},
         Fault{"SparseOfNoComponents", [](GltfBuilder& f) { f.file["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 1}}}, {"values", {{"bufferView", 0}}}}; }, "its componentType is unknown"},
         Fault{"SparseOfTerabytes", [](GltfBuilder& f) {
                   f.file["accessors"][0].erase("bufferView");

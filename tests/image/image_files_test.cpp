@@ -34,6 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 using testing_support::TemporaryFolder;
 
 /// Colours in [0, 1] that are smooth over the picture, with stretches of one colour and of many.
@@ -342,6 +343,19 @@ TEST(ImageFiles, RadianceOfAnotherLayoutIsRefused) {
     EXPECT_THAT(refusal(folder.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234")),
                 HasSubstr("32-bit_rle_xyze"));
     EXPECT_THAT(refusal(folder.write("b.hdr", "#?RADIANCE\n\n+Y 1 +X 1\n1234")), HasSubstr("'+Y 1 +X 1'"));
+    EXPECT_THAT(refusal(folder.write("c.hdr", "#?RADIANCE\n\nSecret 1\n1234")), Not(HasSubstr("Secret")));
+    EXPECT_THAT(refusal(folder.write("d.hdr", "#?RADIANCE\nFORMAT=Secret\n\n-Y 1 +X 1\n1234")),
+                Not(HasSubstr("Secret")));
+}
+
+TEST(ImageFiles, RadianceWithAnImpossibleExposureIsRefused) {
+    const TemporaryFolder folder;
+    const auto file = [&](const std::string& exposure) {
+        return folder.write("a.hdr", "#?RADIANCE\nEXPOSURE=" + exposure + "\n\n-Y 1 +X 1\n" + "\x10\x10\x10\x80");
+    };
+    for (const char* exposure : {"0", "-1", "nan", "inf", "", "x", "1e-99"})
+        EXPECT_THAT(refusal(file(exposure)), HasSubstr("EXPOSURE is no number above 0")) << exposure;
+    EXPECT_EQ(read_image(file(" 2.5")).width, 1);
 }
 
 TEST(ImageFiles, FormatIsThatOfTheExtension) {

@@ -138,6 +138,8 @@ const std::string& GltfAccessors::sparse(std::uint32_t index, const GltfElements
     const GltfElements values = in_view(with, shape);
     for (std::uint64_t i = 0; i < places.count; ++i) {
         const std::uint32_t place = places.whole_number(i);
+        if (i > 0 && place <= places.whole_number(i - 1))
+            at.fail(fmt::format("index {} follows {}; indices must ascend", place, places.whole_number(i - 1)));
         if (place >= base.count) at.fail(fmt::format("element {} is replaced, but there are {}", place, base.count));
         std::memcpy(bytes.data() + place * size, values.first + i * values.stride, size);
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "interflect/error.h"
+#include "interflect/formats/foreign_text.h"
 #include "interflect/formats/ies.h"
 #include "interflect/scene/view.h"
 
@@ -102,15 +104,25 @@ std::shared_ptr<const PhotometricWeb> GltfLights::web(std::uint32_t profile) {
     std::shared_ptr<const PhotometricWeb>& result = webs_[profile];
     if (result) return result;
     const GltfValue& owner = profiles_[profile];
+    const bool has_uri = owner.has("uri");
     const std::string text =
-        owner.has("uri") ? asset_.read_uri(owner.text("uri"), owner)
-                         : std::string(buffers_.view(owner.required_index("bufferView", buffers_.view_count())).bytes);
+        has_uri ? asset_.read_uri(owner.text("uri"), owner)
+                : std::string(buffers_.view(owner.required_index("bufferView", buffers_.view_count())).bytes);
     if (text.size() > asset_.options().max_photometric_bytes)
         owner.fail(fmt::format("it has {} bytes, more than {} (max_photometric_bytes)", text.size(),
                                asset_.options().max_photometric_bytes));
     const std::filesystem::path name = asset_.path().string() + ": " + owner.place();
-    return result =
-               std::make_shared<PhotometricWeb>(read_ies_text(text, name, asset_.options(), asset_.model.warnings));
+    const bool is_foreign = has_uri && !owner.text("uri").starts_with("data:");
+    Warnings warnings;
+    try {
+        result = std::make_shared<PhotometricWeb>(
+            read_enclosed_ies(text, name, asset_.path().parent_path(), asset_.options(), warnings));
+    } catch (const InputError& fault) {
+        throw is_foreign ? InputError(without_quotes(fault.what(), name.string().size())) : fault;
+    }
+    for (const Warnings::Entry& w : warnings.entries())
+        asset_.model.warnings.add(w.kind, is_foreign ? without_quotes(w.message) : w.message, w.where);
+    return result;
 }
 
 /// The nadir, where both angles of the measurement are 0, is along -z, C0 along x and C90 along y.

@@ -72,8 +72,9 @@ LuminousOpening opening_of(const Dimensions& d, bool& is_known) {
 
 class IesReader {
   public:
-    IesReader(std::string_view text, const fs::path& path, const ReadOptions& options, Warnings& warnings)
-        : path_(path), options_(options), warnings_(warnings), text_(text, path_, ",") {}
+    IesReader(std::string_view text, const fs::path& path, const fs::path& folder, const ReadOptions& options,
+              Warnings& warnings)
+        : path_(path), folder_(folder), options_(options), warnings_(warnings), text_(text, path_, ",") {}
 
     PhotometricWeb read();
 
@@ -94,6 +95,7 @@ class IesReader {
     void warn(const char* kind, const std::string& message) { warnings_.add(kind, message, text_.where()); }
 
     const fs::path& path_;
+    const fs::path& folder_;  // of its TILT file
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
@@ -146,13 +148,26 @@ void IesReader::read_tilt(std::string_view tilt) {
         return;
     }
     if (tilt.empty()) text_.refuse("expected TILT=NONE, TILT=INCLUDE or TILT=FILE");
-    const fs::path path = path_.parent_path() / tilt;
+    if (options_.max_include_depth < 1) text_.refuse("no other file may be read (max_include_depth is 0)");
+    const fs::path path = folder_ / tilt;
+    if (!options_.outside_files && !is_within(path, folder_))
+        text_.refuse(
+            fmt::format("the TILT file '{}' lies outside the folder of this file, which is not allowed (outside_files)",
+                        path.string()));
+    std::string content;
     try {
-        const std::string content = read_photometric_text(path, options_);
-        PhotometricText text(content, path, ",");
-        factor_ *= tilt_factor(text);
+        content = read_photometric_text(path, options_);
     } catch (const InputError& unreadable) {
         text_.refuse(fmt::format("the TILT file {}", unreadable.what()));
+    }
+    PhotometricText text(content, path, ",");
+    try {
+        factor_ *= tilt_factor(text);
+    } catch (const InputError&) {  // whose message quotes the file
+        text_.refuse(
+            fmt::format("the TILT file {} has no TILT data: expected the lamp's geometry (1 to 3), the number of "
+                        "angles, the angles, and as many factors of at least 0",
+                        text.where()));
     }
 }
 
@@ -309,8 +324,13 @@ PhotometricWeb read_ies(const fs::path& path, const ReadOptions& options, Warnin
 
 PhotometricWeb read_ies_text(std::string_view text, const fs::path& path, const ReadOptions& options,
                              Warnings& warnings) {
-    require_text(text, path);
-    return IesReader(text, path, options, warnings).read();
+    return read_enclosed_ies(text, path, path.parent_path(), options, warnings);
+}
+
+PhotometricWeb read_enclosed_ies(std::string_view text, const fs::path& name, const fs::path& folder,
+                                 const ReadOptions& options, Warnings& warnings) {
+    require_text(text, name);
+    return IesReader(text, name, folder, options, warnings).read();
 }
 
 }  // namespace interflect::inline detail

@@ -18,10 +18,17 @@ namespace interflect::inline detail {
 /// "ies-negative", a negative intensity, read as 0; "ies-opening", an opening of unknown shape, read as a box;
 /// "ies-reserved", a factor that LM-63-2002 does not use; "ies-trailing", words after the last intensity.
 /// @throws InputError with file and line, for what is not as above, and beyond the limits of `options`.
+///
+/// A TILT file lies in the folder of the file or below, unless `outside_files` is set; no message quotes it.
 PhotometricWeb read_ies(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 
 /// The same from memory. @param path  Name for messages; its folder is where TILT files are looked for.
 PhotometricWeb read_ies_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,
                              Warnings& warnings);
+
+/// The same of a file within another or named by another. @param name    For messages.
+/// @param folder  Folder of its TILT file; with `outside_files` that may lie elsewhere.
+PhotometricWeb read_enclosed_ies(std::string_view text, const std::filesystem::path& name,
+                                 const std::filesystem::path& folder, const ReadOptions& options, Warnings& warnings);
 
 }  // namespace interflect::inline detail

@@ -1,7 +1,5 @@
 #include "interflect/formats/mgf_faults.h"
 
-#include "interflect/error.h"
-
 namespace interflect::inline detail {
 
 std::uint32_t MgfFaults::add(const Location& where, const std::string& message) {
@@ -14,7 +12,7 @@ std::uint32_t MgfFaults::add(const Location& where, const std::string& message) 
 void MgfFaults::refuse(std::uint32_t fault) const {
     if (fault == none) return;
     const auto& [where, message] = faults_[fault];
-    throw InputError(*where.file, where.line, message);
+    throw where.error(message);
 }
 
 void MgfFaults::refuse_faults_of(const MgfMaterial& material) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "interflect/error.h"
+#include "interflect/formats/foreign_text.h"
 #include "interflect/formats/mgf_reader.h"
 #include "interflect/load_luminaire.h"
 
@@ -98,9 +99,12 @@ std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_vie
     std::shared_ptr<const PhotometricWeb>& web = webs_[path.string()];
     if (web) return web;
     try {
-        web = std::make_shared<PhotometricWeb>(load_photometric_web(path, options_, scene_.warnings()));
+        Warnings warnings;
+        web = std::make_shared<PhotometricWeb>(load_photometric_web(path, options_, warnings));
+        for (const Warnings::Entry& w : warnings.entries())
+            scene_.warnings().add(w.kind, without_quotes(w.message), w.where);
     } catch (const InputError& unreadable) {
-        throw MgfFault(fmt::format("the luminaire {}", unreadable.what()));
+        throw MgfFault(fmt::format("the luminaire {}", without_quotes(unreadable.what(), path.string().size())));
     }
     scene_.add_file(path);
     return web;

@@ -95,9 +95,9 @@ void MgfReader::read_lines() {
                                            options_.max_line_length));
             read_line(file_->lines.words());
         } catch (const PatchLimit& fault) {
-            throw TooManyPatches(file_->source.path, file_->lines.line(), fault.what());
+            throw here().error<TooManyPatches>(fault.what());
         } catch (const MgfFault& fault) {
-            throw InputError(file_->source.path, file_->lines.line(), fault.what());
+            throw here().error(fault.what());
         }
 }
 
@@ -134,7 +134,7 @@ void MgfReader::apply(const Entity& entity, MgfWords arguments) {
 /// Records a fault with the colour or material that has it, and warns in case that no face uses it.
 void MgfReader::defer(Defines defines, const std::string& message) {
     if (unused_fault_.empty())
-        unused_fault_ = "fault in a colour or material that no face uses is ignored, such as: " + message;
+        unused_fault_ = "fault in a colour or material that no face uses is ignored, such as: " + here().shown(message);
     scene_.warn("unused-fault", unused_fault_, here());
     const std::uint32_t fault = faults_.add(here(), message);
     if (defines == Defines::colour) {

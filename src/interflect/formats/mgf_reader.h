@@ -77,7 +77,7 @@ class MgfReader {
     void defer(Defines defines, const std::string& message);
     void close_all();
     void refuse_recursion(const SourceFile& source) const;
-    Location here() const { return {&file_->source.path, file_->lines.line()}; }
+    Location here() const { return {&file_->source.path, file_->lines.line(), {}, file_->includer != nullptr}; }
     void count_repeated(std::uint64_t words);
 
     // Entities, as in the table.

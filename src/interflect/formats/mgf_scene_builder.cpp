@@ -40,7 +40,7 @@ MgfSceneBuilder::MgfSceneBuilder(const std::filesystem::path& file, const ReadOp
 }
 
 void MgfSceneBuilder::warn(const std::string& kind, const std::string& message, const Location& where) {
-    scene_.warnings.add(kind, message, where.text());
+    scene_.warnings.add(kind, where.shown(message), where.text());
 }
 
 Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double largest, const Location& where) {

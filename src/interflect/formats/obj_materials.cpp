@@ -84,7 +84,7 @@ void ObjMaterials::read_text(std::string_view text, const fs::path& path) {
     Definition* current = nullptr;
     for (LineReader lines(text); lines.next();) {
         const auto words = lines.words();
-        const Location here{&libraries_.back(), lines.line()};
+        const Location here{&libraries_.back(), lines.line(), {}, true};
         if (words[0] == "newmtl") {
             std::string name(lines.rest());
             if (name.size() > options_.max_name_length) throw here.error("the name of this material is too long");
@@ -129,8 +129,10 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     std::replace(name.begin(), name.end(), '\\', '/');
     fs::path path = where.file->parent_path() / name;
     if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
-        throw std::invalid_argument(fmt::format(
-            "the texture '{}' lies outside the scene's folder, which is not allowed (outside_files)", name));
+        throw InputError(*where.file, where.line,
+                         fmt::format("the texture '{}' lies outside the scene's folder, which is not allowed "
+                                     "(outside_files)",
+                                     name));
     return path;
 }
 
@@ -177,7 +179,8 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
     limited |= !has_holes && limit_sum(result);
     if (limited) warn("reflectance-clamped", "diffuse reflectance (Kd) above 0.99 is reduced", definition.where);
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
-        throw definition.where.error(fmt::format("of the material '{}' the {}", name, fault));
+        throw InputError(*definition.where.file, definition.where.line,
+                         fmt::format("of the material '{}' the {}", name, fault));
     if (largest_channel(definition.specular) > 0)
         warn("specular-reflection", "specular reflectance (Ks) is left out", definition.where);
     model_.materials.push_back(std::move(result));

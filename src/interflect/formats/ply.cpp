@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "interflect/error.h"
 #include "interflect/formats/checked_options.h"
@@ -26,7 +27,7 @@ namespace {
 /// Reads the elements of a file into a model of one mesh.
 class PlyReader {
   public:
-    PlyReader(const PlyHeader& header, PlyValues values, Model& model, const ReadOptions& options)
+    PlyReader(const PlyHeader& header, PlyValues& values, Model& model, const ReadOptions& options)
         : header_(header), values_(values), model_(model), mesh_(model.meshes.emplace_back()), options_(options) {
         mesh_.name = "the mesh";
     }
@@ -45,10 +46,7 @@ class PlyReader {
             else
                 skip(element);
         }
-        for (const std::uint32_t index : mesh_.indices)
-            if (index >= mesh_.positions.size())
-                throw std::invalid_argument(
-                    fmt::format("a face has vertex {}, but there are {}", index, mesh_.positions.size()));
+        for (const std::uint32_t index : mesh_.indices) require_vertex(index);
         model_.instances.push_back({0, file_to_world(options_), 0});
         model_.materials.push_back(material());
     }
@@ -103,12 +101,19 @@ class PlyReader {
             mesh_.positions.push_back(x);
             if (has_colour) add_colour({row[*tint[0]], row[*tint[1]], row[*tint[2]]});
         }
+        has_vertices_ = true;
         has_bytes_ = has_colour && element.properties[*tint[0]].type == PlyType::uint8;
     }
 
     void add_colour(const RgbD& colour) {
         if (!colour_) colour_ = colour;
         varies_ |= colour != *colour_;
+    }
+
+    void require_vertex(double index) const {
+        if (!(index < static_cast<double>(mesh_.positions.size())))
+            throw std::invalid_argument(
+                fmt::format("a face has vertex {}, but there are {}", index, mesh_.positions.size()));
     }
 
     void read_faces(const PlyElement& element) {
@@ -138,6 +143,7 @@ class PlyReader {
             const double index = values_.next(property.type);
             if (!(index >= 0 && index < none) || index != std::floor(index))
                 throw std::invalid_argument(fmt::format("{} is no number of a vertex", index));
+            if (has_vertices_) require_vertex(index);
             mesh_.indices.push_back(static_cast<std::uint32_t>(index));
         }
     }
@@ -158,12 +164,12 @@ class PlyReader {
     }
 
     const PlyHeader& header_;
-    PlyValues values_;
+    PlyValues& values_;
     Model& model_;
     Mesh& mesh_;
     const ReadOptions& options_;
     std::optional<RgbD> colour_;  // of the first vertex
-    bool varies_ = false, has_bytes_ = false;
+    bool varies_ = false, has_bytes_ = false, has_vertices_ = false;
 };
 
 }  // namespace
@@ -177,13 +183,21 @@ Scene read_ply_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
     Model model;
     model.file = path;
     model.files.push_back(path.string());
+    std::int64_t line = 0;
     try {
-        const PlyHeader header = parse_ply_header(bytes);
-        PlyReader(header, {bytes.substr(header.size), header.form}, model, options).read();
+        const PlyHeader header = parse_ply_header(bytes, line);
+        PlyValues values(bytes.substr(header.size), header.form);
+        const std::int64_t last_of_header = std::exchange(line, 0);
+        try {
+            PlyReader(header, values, model, options).read();
+        } catch (const std::invalid_argument&) {
+            if (const auto lines = values.lines()) line = last_of_header + 1 + *lines;
+            throw;
+        }
     } catch (const PatchLimit& fault) {
-        throw TooManyPatches(path, 0, fault.what());
+        throw TooManyPatches(path, line, fault.what());
     } catch (const std::invalid_argument& fault) {
-        throw InputError(path, 0, fault.what());
+        throw InputError(path, line, fault.what());
     }
     return scene_of(std::move(model), options);
 }

@@ -13,6 +13,7 @@ namespace interflect::inline detail {
 namespace {
 
 constexpr std::size_t most_ply_properties = 256;
+constexpr std::size_t most_shown = 40;  // characters of a name
 
 PlyType ply_type(std::string_view name) {
     constexpr std::pair<std::string_view, PlyType> types[] = {
@@ -71,13 +72,18 @@ std::uint64_t PlyElement::fewest_bytes() const {
     return bytes;
 }
 
-PlyHeader parse_ply_header(std::string_view bytes) {
+PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line) {
     constexpr std::size_t longest_header = 1 << 20;
     LineReader lines(bytes.substr(0, longest_header));
-    if (!lines.next() || lines.words()[0] != "ply") throw std::invalid_argument("this is no PLY file");
+    const auto next = [&] {
+        const bool is_there = lines.next();
+        if (is_there) line = lines.line();
+        return is_there;
+    };
+    if (!next() || lines.words()[0] != "ply") throw std::invalid_argument("this is no PLY file");
     PlyHeader header;
     bool has_form = false;
-    while (lines.next()) {
+    while (next()) {
         const auto words = lines.words();
         if (words[0] == "format") {
             header.form = ply_form(words);
@@ -86,7 +92,12 @@ PlyHeader parse_ply_header(std::string_view bytes) {
             header.elements.push_back(ply_element(words));
         } else if (words[0] == "property") {
             if (header.elements.empty()) throw std::invalid_argument("a property comes before the first element");
-            header.elements.back().properties.push_back(ply_property(words));
+            PlyProperty property = ply_property(words);
+            if (header.elements.back().find(property.name))
+                throw std::invalid_argument(fmt::format("property '{}' of the element '{}' is repeated",
+                                                        property.name.substr(0, most_shown),
+                                                        header.elements.back().name.substr(0, most_shown)));
+            header.elements.back().properties.push_back(std::move(property));
             if (header.elements.back().properties.size() > most_ply_properties)
                 throw std::invalid_argument(fmt::format("an element has more than {} properties", most_ply_properties));
         } else if (words[0] == "end_header") {

@@ -35,7 +35,8 @@ struct PlyHeader {
     std::size_t size = 0;  ///< Of the header [bytes].
 };
 
+/// @param line  Set to the line that is read: after an error the line of the fault, after a header its last.
 /// @throws std::invalid_argument  with a sentence, for what is no header.
-PlyHeader parse_ply_header(std::string_view bytes);
+PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line);
 
 }  // namespace interflect::inline detail

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "interflect/formats/byte_order.h"
@@ -22,6 +23,11 @@ std::size_t size_of(PlyType type) {
         default:
             return 4;
     }
+}
+
+std::optional<std::int64_t> PlyValues::lines() const {
+    if (form_ != Form::ascii) return std::nullopt;
+    return std::count(bytes_.begin(), bytes_.end() - static_cast<std::ptrdiff_t>(rest_.size()), '\n');
 }
 
 double PlyValues::next(PlyType type) {

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace interflect::inline detail {
@@ -16,7 +17,10 @@ class PlyValues {
   public:
     enum class Form { ascii, little_endian, big_endian };
 
-    PlyValues(std::string_view bytes, Form form) : rest_(bytes), form_(form) {}
+    PlyValues(std::string_view bytes, Form form) : bytes_(bytes), rest_(bytes), form_(form) {}
+
+    /// Number of line breaks between the first value and the last value read; no number for binary forms.
+    std::optional<std::int64_t> lines() const;
 
     /// @throws std::invalid_argument  at the end, and for what is no number. Not finite where the binary form is not.
     double next(PlyType type);
@@ -28,7 +32,7 @@ class PlyValues {
   private:
     double next_word();
 
-    std::string_view rest_;
+    std::string_view bytes_, rest_;
     Form form_;
 };
 

@@ -274,7 +274,7 @@ void RadMaterials::unknown(const Modifier& modifier, Material& result) {
 }
 
 void RadMaterials::warn(const std::string& kind, const std::string& message, const Modifier& modifier) {
-    model_.warnings.add(kind, message, modifier.where.text());
+    model_.warnings.add(kind, modifier.where.shown(message), modifier.where.text());
 }
 
 }  // namespace interflect::inline detail

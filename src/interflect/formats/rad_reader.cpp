@@ -34,6 +34,10 @@ bool is_finite(const M44d& m) {
 
 }  // namespace
 
+Location RadReader::here(const RadStatements& statements, const OpenFile& file) {
+    return {&file.source.path, statements.line(), {}, file.depth > 0};
+}
+
 const std::unordered_map<std::string_view, RadReader::Surface>& RadReader::surfaces() {
     static const std::unordered_map<std::string_view, Surface> table = {
         {"polygon", {0, &RadReader::polygon}},
@@ -66,7 +70,7 @@ void RadReader::read(std::string text) {
 void RadReader::read_file(const OpenFile& file) {
     RadStatements statements(file.source.text);
     for (auto kind = statements.next(); kind != RadStatements::Kind::end; kind = statements.next()) {
-        const Location where{&file.source.path, statements.line()};
+        const Location where = here(statements, file);
         try {
             read_statement(statements, kind, file);
         } catch (const PatchLimit& fault) {
@@ -78,7 +82,7 @@ void RadReader::read_file(const OpenFile& file) {
 }
 
 void RadReader::read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file) {
-    const Location where{&file.source.path, statements.line()};
+    const Location where = here(statements, file);
     if (kind == RadStatements::Kind::command) return run(statements.command(), file, where);
     const RadPrimitive primitive = statements.primitive();
     for (const std::string_view name : {primitive.modifier, primitive.type, primitive.name})
@@ -102,9 +106,10 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
         materials_.allow_missing();
         const std::string program = command.substr(0, std::min(command.find_first_of(" \t"), options_.max_name_length));
         model_.warnings.add("unsupported-command",
-                            fmt::format("what the command '{}' would make is left out: commands are not run, but for "
-                                        "xform of files; Radiance's 'xform -e' writes their results",
-                                        program),
+                            where.shown(fmt::format("what the command '{}' would make is left out: commands are not "
+                                                    "run, but for xform of files; Radiance's 'xform -e' writes their "
+                                                    "results",
+                                                    program)),
                             where.text());
         return;
     }

@@ -47,6 +47,7 @@ class RadReader {
     };
     static const std::unordered_map<std::string_view, Surface>& surfaces();
 
+    static Location here(const RadStatements& statements, const OpenFile& file);
     void read_file(const OpenFile& file);
     void read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file);
     void run(const std::string& command, const OpenFile& file, const Location& where);

@@ -116,6 +116,12 @@ struct Size {
     int width, height;
 };
 
+/// Quotes a resolution of any layout. Other lines may be content of any file and are not quoted.
+std::string shown(std::string_view resolution) {
+    const bool is_one = resolution.find_first_not_of("+-XY 0123456789") == resolution.npos;
+    return is_one ? fmt::format("'{}'", resolution) : "none";
+}
+
 /// "-Y height +X width": rows from the top, each from the left; the only order this reads.
 Size parse_resolution(std::string_view line) {
     Size size{0, 0};
@@ -127,16 +133,30 @@ Size parse_resolution(std::string_view line) {
     };
     const char* middle = number("-Y ", line.data(), size.height);
     if (middle > end || number(" +X ", middle, size.width) != end)
-        throw std::runtime_error(fmt::format("its resolution is '{}', expected '-Y height +X width'", line));
+        throw std::runtime_error(fmt::format("its resolution is {}, expected '-Y height +X width'", shown(line)));
     return size;
+}
+
+/// Whether this is a factor that pixels can have been multiplied by.
+bool is_exposure(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    float factor = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
+    return error == std::errc() && factor > 0 && std::isfinite(factor);
 }
 
 /// The header up to the empty line; what it says about exposure has been applied to the pixels and is not undone.
 void read_header(RadianceReader& reader) {
+    constexpr std::string_view format = "FORMAT=", exposure = "EXPOSURE=";
     if (!reader.line().starts_with("#?")) throw std::runtime_error("it does not begin with '#?RADIANCE'");
-    for (std::string_view line = reader.line(); !line.empty(); line = reader.line())
-        if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
-            throw std::runtime_error(fmt::format("its format is '{}', expected '32-bit_rle_rgbe'", line.substr(7)));
+    for (std::string_view line = reader.line(); !line.empty(); line = reader.line()) {
+        if (line.starts_with(format) && line.substr(format.size()) != "32-bit_rle_rgbe")
+            throw std::runtime_error(
+                fmt::format("its format is {}, expected '32-bit_rle_rgbe'",
+                            line.substr(format.size()) == "32-bit_rle_xyze" ? "'32-bit_rle_xyze'" : "another"));
+        if (line.starts_with(exposure) && !is_exposure(line.substr(exposure.size())))
+            throw std::runtime_error("its EXPOSURE is no number above 0");
+    }
 }
 
 void read_encoded_line(RadianceReader& reader, std::vector<Rgbe>& line) {
