@@ -37,11 +37,13 @@ struct LightmapOptions {
     std::uint64_t seed = 1;
     std::string image = ".exr";  ///< Of the images beside the file: .exr or .hdr.
     bool own_charts = false;     ///< Ignores Scene::lightmap_coordinates.
+    bool groups = false;  ///< Adds images of each light group alone, on the same coordinates; they sum to the total.
 };
 
 /// What is exported and how.
 struct ExportOptions {
-    /// [stops]: a radiance of 2^-exposure becomes 1, the brightest that 8 bits hold. See automatic_exposure().
+    /// [stops]: a radiance of 2^-exposure becomes 1, the brightest that 8 bits hold; brighter colours are scaled to 1
+    /// and keep their hue. See automatic_exposure().
     float exposure = 0;
     V3f up{0, 0, 1};                          ///< Of the scene. Formats with an up axis of their own are turned.
     std::optional<LightmapOptions> lightmap;  ///< None: the light is at the vertices of the elements.
@@ -75,7 +77,8 @@ const ExportFormat& require_export_format(const std::filesystem::path& path);
 /// Writes a solved scene in the format of the extension of `path`. Each file appears under its name when all are
 /// complete; the same arguments give the same bytes.
 /// @return  The files that were written.
-/// @throws InputError for an unknown extension, options out of range or without meaning in the format, a path that
+/// @throws InputError for an unknown extension, options out of range or without meaning in the format, lightmaps of
+///         light groups of a solution without groups, a path that
 ///         cannot be written, and a solution of another scene; std::runtime_error where writing fails.
 std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
                                                    const Solution& solution, const ExportOptions& options = {});

@@ -37,7 +37,9 @@ struct Material {
     }
 };
 
-/// One side of an input polygon: a triangle or a convex, (nearly) planar quadrilateral.
+/// One side of an input polygon: a triangle or a convex quadrilateral, planar within 2e-6 of its largest coordinate.
+/// A more strongly warped quadrilateral has a larger ray offset, which prevents leaks but reduces accuracy near its
+/// edges. Two triangles are exact.
 struct Patch {
     /// Counter-clockwise seen from the lit side; [3] == none for a triangle.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};

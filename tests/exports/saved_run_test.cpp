@@ -245,16 +245,18 @@ TEST(ChangeOfViews, KeepsTheLightAndFindsImportanceAnew) {
     EXPECT_GT(*std::max_element(found.indirect_importance.begin(), found.indirect_importance.end()), 0);
 }
 
-// A tenth of the rays suffices after a turn. The threshold allows for the noise of the estimate: seen are 0.9 to 1.1.
+// A tenth of the rays suffices after a turn. The median of nine runs, since estimates from few rays vary: seen is 0.8.
 // Seen to fail where what was averaged before is forgotten.
 TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    std::vector<double> ratios;
+    for (std::uint64_t seed = 1; seed <= 9; ++seed) {
         Solver solver = solver_of_a_view("ihsrr", seed);
         const double before = solver.advance({.rays = 0}).error;
         solver.set_views({{turned(15)}});
-        const AdvanceReport report = solver.advance({.rays = 20'000});
-        EXPECT_LT(report.error, 1.4 * before) << seed;
+        ratios.push_back(solver.advance({.rays = 20'000}).error / before);
     }
+    std::nth_element(ratios.begin(), ratios.begin() + 4, ratios.end());
+    EXPECT_LT(ratios[4], 1.1);
 }
 
 // In a closed box of grey walls that all shine, H = M / (1 - rho) everywhere, whatever was looked at before. The mean

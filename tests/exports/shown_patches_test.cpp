@@ -49,5 +49,43 @@ TEST(ShownPatchesOfCoincidentFaces, AreThoseThatAnswerRays) {
     EXPECT_EQ(shown_patches(scene, std::vector<Rgb>(3, Rgb(1))), (std::vector<bool>{true, true, false}));
 }
 
+/// A two-sided floor in two parts (patches 0 to 3). A two-sided box stands on the second part: 4 and 5 are its lid, the
+/// rest are its sides. The last side ends `gap` above the floor [m].
+Scene floor_with_box(float height, float gap) {
+    Scene scene;
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
+    for (const std::size_t i : {1u, 4u, 5u, 2u}) scene.vertices.push_back(scene.vertices[i] + V3f(0, 0, height));
+    for (const std::size_t i : {1u, 2u}) scene.vertices.push_back(scene.vertices[i] + V3f(0, 0, gap));
+    scene.objects = {""};
+    scene.materials = {{.name = "grey", .reflectance = Rgb(0.5f)}};
+    const std::vector<std::vector<std::uint32_t>> faces{{0, 1, 2, 3}, {1, 4, 5, 2}, {6, 7, 8, 9},
+                                                        {1, 4, 7, 6}, {4, 5, 8, 7}, {5, 2, 9, 8}};
+    for (const auto& face : faces) add_polygon(scene, {&face, 1}, 0, 0, true);
+    const std::vector<std::uint32_t> last{11, 10, 6, 9};
+    add_polygon(scene, {&last, 1}, 0, 0, true);
+    return scene;
+}
+
+/// Irradiance 1 on the patches whose light can reach them, 0 on those in the box.
+std::vector<Rgb> light_above(const Scene& scene) {
+    std::vector<Rgb> irradiance(scene.patches.size(), Rgb(0));
+    irradiance[0] = Rgb(1);
+    for (std::size_t p = 4; p < irradiance.size(); p += 2) irradiance[p] = Rgb(1);
+    return irradiance;
+}
+
+TEST(ShownPatchesInABox, AreLeftOutWhereNothingButDarknessIsSeen) {
+    const Scene scene = floor_with_box(0.01f, 0);
+    const std::vector<bool> shown = shown_patches(scene, light_above(scene));
+    EXPECT_TRUE(shown[0]);
+    EXPECT_FALSE(shown[2]);  // dark on both sides; it was shown, and drawn along the edges of the box
+    for (std::size_t p = 4; p < shown.size(); ++p) EXPECT_EQ(shown[p], p % 2 == 0) << p;
+}
+
+TEST(ShownPatchesInABox, StayWhereAGapLetsThemSeeLight) {
+    const Scene scene = floor_with_box(0.5f, 0.4f);
+    EXPECT_TRUE(shown_patches(scene, light_above(scene))[2]);
+}
+
 }  // namespace
 }  // namespace interflect

@@ -1,8 +1,10 @@
 #include "interflect/export_scene.h"
 
 #include <array>
+#include <string_view>
 
 #include "interflect/error.h"
+#include "interflect/exports/exported_parts.h"
 #include "interflect/exports/foreign_scene.h"
 #include "interflect/exports/write_files.h"
 #include "interflect/formats/extension.h"
@@ -14,11 +16,15 @@ namespace {
 struct SceneFormat {
     const char* extension;
     std::string (*describe)(ForeignScene& scene);
+    std::string (*escape)(std::string_view file_name);
+    std::string_view excluded;  // characters of file names that cannot be escaped
 };
-constexpr std::array<SceneFormat, 4> scene_formats{{{".rad", radiance_description},
-                                                    {".xml", mitsuba_description},
-                                                    {".pbrt", pbrt_description},
-                                                    {".py", blender_description}}};
+constexpr std::array<SceneFormat, 4> scene_formats{{
+    {".rad", radiance_description, quotable, ""},
+    {".xml", mitsuba_description, xml_text, "$"},  // which begins a parameter
+    {".pbrt", pbrt_description, quotable, ""},
+    {".py", blender_description, quotable, ""},
+}};
 constexpr auto extensions = [] {
     std::array<const char*, scene_formats.size()> all{};
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = scene_formats[i].extension;
@@ -44,7 +50,8 @@ SceneExport export_scene(const std::filesystem::path& path, const Scene& scene, 
     if (options.width < 1 || options.height < 1 || options.samples < 1)
         throw InputError("scene export: width, height and samples must be at least 1");
     require_no_faults(scene_faults(scene), "cannot export", scene);
-    ForeignScene foreign(scene, path, options);
+    require_nameable(path, format->excluded);
+    ForeignScene foreign(scene, path, options, format->escape);
     std::string description = format->describe(foreign);
     foreign.files.push_back({path, std::move(description)});
     return {write_files(foreign.files), foreign.warnings};

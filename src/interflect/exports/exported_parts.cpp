@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "interflect/base/escapes.h"
+#include "interflect/error.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image_files.h"
@@ -31,11 +33,11 @@ Image image_of(const Texture& texture) {
 
 }  // namespace
 
-std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind) {
+std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind, std::size_t most) {
     std::set<std::string> taken;
     std::vector<std::string> plain;
     for (const std::string& name : names) {
-        const std::string base = plain_name(name, kind);
+        const std::string base = plain_name(name, kind).substr(0, most);
         std::string free = base;
         for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}_{}", base, number);
         plain.push_back(std::move(free));
@@ -44,9 +46,10 @@ std::vector<std::string> plain_names(const std::vector<std::string>& names, cons
 }
 
 std::vector<std::string> material_names(const Scene& scene) {
+    constexpr std::size_t most = 64;  // characters; file systems limit names to 255 bytes, stem included
     std::vector<std::string> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
-    return plain_names(names, "material");
+    return plain_names(names, "material", most);
 }
 
 std::vector<std::string> object_names(const Scene& scene) { return plain_names(scene.objects, "scene"); }
@@ -61,6 +64,43 @@ std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const
                          extension == ".png" ? codecs::encode_png(image_of(texture)) : exr_bytes(texture)});
     }
     return files;
+}
+
+void require_nameable(const std::filesystem::path& path, std::string_view excluded) {
+    const std::string stem = path.stem().string();
+    std::string without_backslashes = stem;  // which escaped() may change
+    std::erase(without_backslashes, '\\');
+    if (escaped(without_backslashes) == without_backslashes && stem.find_first_of(excluded) == stem.npos) return;
+    throw InputError(path, 0,
+                     fmt::format("files of this format cannot hold this name, which they need to refer to others: "
+                                 "expected one without control characters{}{}, in UTF-8",
+                                 excluded.empty() ? "" : " and without any of ", excluded));
+}
+
+std::string quotable(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+std::string xml_text(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '&')
+            result += "&amp;";
+        else if (c == '<')
+            result += "&lt;";
+        else if (c == '>')
+            result += "&gt;";
+        else if (c == '"')
+            result += "&quot;";
+        else
+            result += c;
+    }
+    return result;
 }
 
 std::string exr_bytes(const Texture& texture) {

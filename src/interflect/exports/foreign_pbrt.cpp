@@ -105,7 +105,7 @@ std::string pbrt_description(ForeignScene& scene) {
         "Film \"rgb\" \"integer xresolution\" [ {} ] \"integer yresolution\" [ {} ] \"string filename\" \"{}.exr\"\n"
         "PixelFilter \"box\"\nSampler \"zsobol\" \"integer pixelsamples\" [ {} ]\n"
         "Integrator \"path\" \"integer maxdepth\" [ 100 ]\nWorldBegin\n",
-        scene.options.width, scene.options.height, scene.path.stem().string(), scene.options.samples);
+        scene.options.width, scene.options.height, scene.escape(scene.path.stem().string()), scene.options.samples);
     for (const ForeignMesh& mesh : scene.meshes) text += shape_text(scene, mesh);
     for (const Luminaire& luminaire : scene.scene.luminaires) text += luminaire_text(scene, luminaire);
     constexpr int side = 512;

@@ -92,10 +92,11 @@ std::vector<std::array<std::uint32_t, 3>> ForeignMesh::triangles() const {
 }
 
 ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& description,
-                           const SceneExportOptions& chosen)
+                           const SceneExportOptions& chosen, std::string (*file_name_escape)(std::string_view))
     : scene(exported),
       path(description),
       options(chosen),
+      escape(file_name_escape),
       materials(material_names(exported)),
       views(local_views(exported)) {
     std::vector<std::string> names;
@@ -110,7 +111,7 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
 std::string ForeignScene::add_file(const std::string& name, std::string bytes) {
     std::string full = path.stem().string() + "-" + name;
     files.push_back({path.parent_path() / full, std::move(bytes)});
-    return full;
+    return escape(full);
 }
 
 std::string ForeignScene::add_reflectance_image(std::uint32_t m) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "interflect/export.h"
@@ -37,16 +38,18 @@ struct ForeignScene {
     const Scene& scene;
     std::filesystem::path path;  ///< Of the description.
     SceneExportOptions options;
-    std::vector<std::string> materials;  ///< Their names, all different.
+    std::string (*escape)(std::string_view file_name);  ///< For the text of the description.
+    std::vector<std::string> materials;                 ///< Their names, all different.
     std::vector<std::string> luminaires;
     std::vector<ForeignMesh> meshes;
     std::vector<View> views;  ///< At least one; `eye` and `look_at` relative to Scene::origin.
     std::vector<ExportedFile> files;
     Warnings warnings;
 
-    ForeignScene(const Scene& exported, const std::filesystem::path& description, const SceneExportOptions& chosen);
+    ForeignScene(const Scene& exported, const std::filesystem::path& description, const SceneExportOptions& chosen,
+                 std::string (*file_name_escape)(std::string_view));
 
-    /// Adds a file "STEM-name" beside the description. @return  Its name.
+    /// Adds a file "STEM-name" beside the description. @return  Its name, escaped for the description.
     std::string add_file(const std::string& name, std::string bytes);
     /// The images of a material, in linear values: reflectance, radiance M / pi, and transmittance. @return  Its name.
     std::string add_reflectance_image(std::uint32_t material);

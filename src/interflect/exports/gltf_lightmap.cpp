@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "interflect/base/escapes.h"
+#include "interflect/exports/display_range.h"
 #include "interflect/exports/element_mesh.h"
 #include "interflect/exports/gltf_scene.h"
 #include "interflect/exports/lightmap.h"
@@ -56,9 +57,14 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page) {
     return fmt::format("{}.lightmap-{}", path.stem().string(), page);
 }
 
+/// Groups are numbered: their names may be no names of files.
+std::string name_of_image(const std::filesystem::path& path, std::size_t page, std::size_t group) {
+    return fmt::format("{}-group-{}", name_of_image(path, page), group);
+}
+
 int add_image(GltfDocument& document, const Image& image, const std::string& name, float scale) {
     Image encoded = image;
-    for (Rgb& texel : encoded.pixels) texel /= scale;
+    for (Rgb& texel : encoded.pixels) texel = within_display_range(texel / scale);
     return document.add_texture(encoded, name, false);
 }
 
@@ -146,11 +152,30 @@ Json description_of(const Lightmap& lightmap, const Encoding& encoding, const st
             {"lightmap",
              {{"quantity", holds_irradiance ? "irradiance" : "radiance"},
               {"unit", holds_irradiance ? "lm/m^2" : "cd/m^2"},
-              {"encoding", "sRGB, 8 bit; a linear value of 1 stands for `scale`"},
+              {"encoding", "sRGB, 8 bit; a linear value of 1 stands for `scale`; brighter texels are scaled to it"},
               {"scale", encoding.scale},
               {"unclamped", images},
               {"used", lightmap.used},
               {"covered", lightmap.covered}}}};
+}
+
+/// Writes the unclamped images of each light group beside the file.
+/// @return  The groups, each with its name and images, for the description.
+Json add_groups(const std::filesystem::path& path, const Lightmap& lightmap, const std::vector<std::string>& names,
+                const std::string& extension, const std::string& quantity, std::vector<ExportedFile>& files) {
+    Json groups = Json::array();
+    for (std::size_t g = 0; g < lightmap.groups.size(); ++g) {
+        Json images = Json::array();
+        for (std::size_t page = 0; page < lightmap.groups[g].size(); ++page) {
+            const std::string name = name_of_image(path, page, g) + extension;
+            files.push_back(
+                {path.parent_path() / name, encode_beside(lightmap.groups[g][page], extension,
+                                                          quantity + " of light group " + escaped(names[g]))});
+            images.push_back(escaped(name));
+        }
+        groups.push_back({{"name", escaped(names[g])}, {"unclamped", images}});
+    }
+    return groups;
 }
 
 }  // namespace
@@ -188,7 +213,11 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesy
         json["material"] = entry->second;
         written[object].push_back(std::move(json));
     }
-    document.json["asset"]["extras"]["interflect"] = description_of(lightmap, encoding, files);
+    Json description = description_of(lightmap, encoding, files);
+    if (!lightmap.groups.empty())
+        description["lightmap"]["groups"] =
+            add_groups(path, lightmap, solution.group_names, chosen.image, quantity, files);
+    document.json["asset"]["extras"]["interflect"] = std::move(description);
     add_nodes(document, scene, written, options.up);
     return files;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "interflect/base/escapes.h"
+#include "interflect/exports/display_range.h"
 #include "interflect/exports/element_mesh.h"
 #include "interflect/exports/gltf_scene.h"
 #include "interflect/exports/opacity.h"
@@ -21,10 +22,6 @@ using Json = GltfDocument::Json;
 /// Whether the image of a material stays in the file, so that vertices hold only what it is multiplied by.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
-}
-
-Rgb clamped(const Rgb& colour) {
-    return {std::clamp(colour.x, 0.0f, 1.0f), std::clamp(colour.y, 0.0f, 1.0f), std::clamp(colour.z, 0.0f, 1.0f)};
 }
 
 struct LitVertex {
@@ -55,12 +52,13 @@ class VertexLight {
 
     LitVertex vertex(const Patch& patch, const MeshCorner& corner) const {
         if (keeps_texture(scene_.materials[patch.material]))
-            return {corner.point, corner.irradiance, clamped(scale_ * brightest_[patch.material] * corner.irradiance),
+            return {corner.point, corner.irradiance,
+                    within_display_range(scale_ * brightest_[patch.material] * corner.irradiance),
                     gltf_coordinate(texture_coordinate(scene_, patch, corner.at))};
         const Rgb reflected = reflectance_at(scene_, patch, corner.at) * corner.irradiance;
         const Rgb radiosity = exitance_at(scene_, patch, corner.at) + reflected;
         const V2f coordinate = coordinates_at(scene_, patch, corner.at).texture.value_or(V2f(0, 0));
-        return {corner.point, corner.irradiance, clamped(scale_ * radiosity), gltf_coordinate(coordinate)};
+        return {corner.point, corner.irradiance, within_display_range(scale_ * radiosity), gltf_coordinate(coordinate)};
     }
 
   private:
@@ -138,7 +136,7 @@ void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution
     document.json["asset"]["extras"]["interflect"] = {
         {"exposure", options.exposure},
         {"COLOR_0",
-         "radiance [cd/m^2] * 2^exposure, clamped to [0, 1]; that of the brightest "
+         "radiance [cd/m^2] * 2^exposure, scaled to at most 1 in its largest channel; that of the brightest "
          "texel where there is a base colour texture"},
         {"_IRRADIANCE", "irradiance [lm/m^2] of each channel, linear Rec. 709"}};
     add_nodes(document, scene, written, options.up);

@@ -15,6 +15,8 @@ namespace {
 /// Most entries of one array that a file may claim.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
+constexpr const char* no_properties = "cannot make properties";
+
 /// To be called before all else: errors become exceptions, not text on stderr. The handler at the process's end is left
 /// out, since it crashes where a file could not be written.
 void prepare_hdf5() {
@@ -79,10 +81,10 @@ void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
 /// @param compressed_size  Of what is compressed; empty for what is not.
 Hdf5Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                        std::span<const hsize_t> compressed_size = {}) {
-    const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot make properties");
+    const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, no_properties);
     H5Pset_obj_track_times(properties, false);
     if (!compressed_size.empty()) set_compressed_chunks(properties, compressed_size);
-    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "cannot make properties");
+    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, no_properties);
     H5Pset_create_intermediate_group(links, 1);
     return {H5Dcreate2(file, name.c_str(), type, space, links, properties, H5P_DEFAULT), H5Dclose,
             "cannot write an array"};
@@ -95,7 +97,7 @@ hid_t opened(const std::filesystem::path& path) {
 
 hid_t created(const std::filesystem::path& path, std::uint64_t user_block) {
     prepare_hdf5();
-    const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot make properties");
+    const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, no_properties);
     require(H5Pset_userblock(creation, user_block), "cannot set a user block");
     return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
 }
@@ -103,7 +105,7 @@ hid_t created(const std::filesystem::path& path, std::uint64_t user_block) {
 hid_t created_in_memory() {
     prepare_hdf5();
     constexpr std::size_t growth = std::size_t{1} << 24;  // [bytes]
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot make properties");
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_properties);
     require(H5Pset_fapl_core(access, growth, false), "cannot keep a file in memory");
     return H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
 }
@@ -116,17 +118,34 @@ void write_attribute_of_type(hid_t file, const std::string& group, const char* n
     require(H5Awrite(attribute, type, value), "cannot write an attribute");
 }
 
+/// Stops at links to other files.
+herr_t refuse_other_files(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) { return -1; }
+
+/// A file may say that an array is kept in other files, any of the machine.
+void require_stored_here(hid_t set, const std::string& name) {
+    const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose, "an array has no properties");
+    if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
+        throw std::runtime_error("array '" + name + "' is in another file, which is not allowed");
+}
+
 }  // namespace
 
 Hdf5Handle::Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
     if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}{}", what, reason_of_disk()));
 }
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : file_(opened(path), H5Fclose, "not an HDF5 file") {}
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path)
+    : file_(opened(path), H5Fclose, "not an HDF5 file"),
+      links_(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, no_properties) {
+    require(H5Pset_elink_cb(links_, refuse_other_files, nullptr), no_properties);
+}
+
+bool Hdf5Reader::has(const std::string& name) const { return H5Lexists(file_, name.c_str(), links_) > 0; }
 
 template <class T>
 std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) const {
-    const Hdf5Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose, "an array is missing");
+    const Hdf5Handle set(H5Dopen2(file_, name.c_str(), links_), H5Dclose, "an array is missing");
+    require_stored_here(set, name);
     const Hdf5Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
     // HDF5 sets memory aside for numbers as large as the file says they are.
     const Hdf5Handle type(H5Dget_type(set), H5Tclose, "an array has no type");

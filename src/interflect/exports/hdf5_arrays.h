@@ -30,19 +30,20 @@ class Hdf5Handle {
 };
 
 /// The arrays of an HDF5 file, to be read. T is float, double, std::uint32_t, char or std::byte. All functions throw
-/// std::runtime_error, and claim no more memory than the file has bytes.
+/// std::runtime_error, and claim no more memory than the file has bytes; arrays in other
+/// files (links, external storage, virtual arrays) are refused.
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);
 
     /// Whether there is a group or an array of this name.
-    bool has(const std::string& name) const { return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0; }
+    bool has(const std::string& name) const;
     /// An array of one dimension where `columns` is 1, else of two; row by row.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
   private:
-    Hdf5Handle file_;
+    Hdf5Handle file_, links_;
 };
 
 /// A new HDF5 file of arrays, without time stamps, so that equal contents are equal bytes. Types and errors as above;

@@ -14,6 +14,7 @@
 #include "interflect/exports/shown_patches.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/texture_mapping.h"
+#include "interflect/light_groups.h"
 #include "interflect/measure.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
@@ -202,8 +203,7 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
 /// Texels of all charts, which are evaluated together.
 class LightmapTexels {
   public:
-    LightmapTexels(Lightmap& lightmap, const Scene& scene, const ExportOptions& options)
-        : lightmap_(lightmap), scene_(scene), options_(*options.lightmap) {}
+    explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}
 
     void add(const LightmapChart& chart) {
         const std::vector<TexelPlace> places = places_of(chart, options_.gutter);
@@ -212,13 +212,15 @@ class LightmapTexels {
             const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
             const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
             places_.push_back(places[i]);
-            targets_.push_back(&lightmap_.images[static_cast<std::size_t>(chart.page)].at(column, row));
+            targets_.push_back({static_cast<std::size_t>(chart.page), column, row});
         }
     }
-    void evaluate(const IrradianceSource& source) {
+    /// Evaluates the light of a scene and its solution in all texels.
+    void evaluate(const Scene& scene, const IrradianceSource& source, std::vector<Image>& images) const {
         const std::vector<Rgb> irradiance = source.irradiance(places_, 1 / options_.texels_per_metre);
         for (std::size_t i = 0; i < places_.size(); ++i)
-            *targets_[i] = content_of(scene_, places_[i], irradiance[i], options_.content);
+            images[targets_[i].page].at(targets_[i].column, targets_[i].row) =
+                content_of(scene, places_[i], irradiance[i], options_.content);
     }
     std::size_t texels() const { return places_.size(); }
     std::int64_t texels_inside() const {
@@ -226,12 +228,39 @@ class LightmapTexels {
     }
 
   private:
-    Lightmap& lightmap_;
-    const Scene& scene_;
+    struct Target {
+        std::size_t page;
+        int column, row;
+    };
+
     const LightmapOptions& options_;
     std::vector<TexelPlace> places_;
-    std::vector<Rgb*> targets_;
+    std::vector<Target> targets_;
 };
+
+void add(const std::vector<Image>& images, std::vector<Image>& sum) {
+    for (std::size_t page = 0; page < sum.size(); ++page)
+        for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
+}
+
+/// Evaluates each light group with all other sources dark. The total is the sum of the groups, so that gathered
+/// lightmaps agree including their noise.
+void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
+                     const ExportOptions& options, Lightmap& lightmap) {
+    SourceGroups groups = source_groups(scene);
+    groups.names = solution.group_names;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        std::vector<float> factors(groups.size(), 0);
+        factors[g] = 1;
+        const Scene alone = dimmed(scene, groups, factors);
+        Solution share = solution;
+        share.irradiance = std::move(share.groups[g]);
+        share.groups.clear();
+        lightmap.groups.push_back(lightmap.images);  // dark so far
+        texels.evaluate(alone, IrradianceSource(alone, share, options), lightmap.groups.back());
+    }
+    for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
+}
 
 }  // namespace
 
@@ -254,7 +283,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
         lightmap.images.emplace_back(size.x, size.y);
         texels += static_cast<double>(size.x) * size.y;
     }
-    LightmapTexels evaluated(lightmap, scene, options);
+    LightmapTexels evaluated(chosen);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
         const FlatPatches& patches = lightmap.charts[i].patches;
         for (std::uint32_t k = 0; k < patches.size(); ++k) {
@@ -263,7 +292,10 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
         }
         evaluated.add(lightmap.charts[i]);
     }
-    evaluated.evaluate(IrradianceSource(scene, solution, options));
+    if (chosen.groups)
+        evaluate_groups(evaluated, scene, solution, options, lightmap);
+    else
+        evaluated.evaluate(scene, IrradianceSource(scene, solution, options), lightmap.images);
     lightmap.used = static_cast<double>(evaluated.texels()) / texels;
     lightmap.covered = static_cast<double>(evaluated.texels_inside()) / texels;
     return lightmap;

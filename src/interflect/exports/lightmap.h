@@ -14,8 +14,9 @@ struct Lightmap {
     std::vector<std::uint32_t> chart_of_patch;  ///< Of each patch; none where it is not shown (shown_patches).
     std::vector<std::uint32_t> index_in_chart;  ///< Of each patch among those of its chart.
     std::vector<Image> images;  ///< H [lm/m^2] or L [cd/m^2], see LightmapOptions::content; 0 between the charts.
-    double used = 0;            ///< Share of the texels that belong to a chart or to its gutter.
-    double covered = 0;         ///< Share of the texels that lie on a chart's patches.
+    std::vector<std::vector<Image>> groups;  ///< [group][image]: the share of each light group, see LightmapOptions.
+    double used = 0;                         ///< Share of the texels that belong to a chart or to its gutter.
+    double covered = 0;                      ///< Share of the texels that lie on a chart's patches.
 
     /// Coordinates of a point of a patch in the image of its chart, (0, 0) at the upper left.
     V2f coordinate(std::uint32_t patch, Parameters at) const;

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "interflect/base/random.h"
+#include "interflect/exports/display_range.h"
 #include "interflect/exports/element_mesh.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/image/srgb.h"
@@ -54,7 +55,7 @@ LitPolygons lit_polygons(const Scene& scene, const Solution& solution) {
 }
 
 std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure) {
-    const Rgb shown = radiosity * (std::exp2(exposure) / std::numbers::pi_v<float>);
+    const Rgb shown = within_display_range(radiosity * (std::exp2(exposure) / std::numbers::pi_v<float>));
     return {srgb_byte(shown.x), srgb_byte(shown.y), srgb_byte(shown.z)};
 }
 

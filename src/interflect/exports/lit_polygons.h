@@ -36,7 +36,7 @@ struct LitPolygons {
 /// Leaves without area are left out. Cost: as ElementMesh.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
-/// Colours for eyes: radiance times 2^exposure, clamped to [0, 1], as 8-bit sRGB.
+/// Colours for eyes: radiance times 2^exposure, within_display_range(), as 8-bit sRGB.
 /// @param radiosity  [lm/m^2 or W/m^2] @param exposure  [stops]
 std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure);
 

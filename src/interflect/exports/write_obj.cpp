@@ -103,12 +103,13 @@ void append_faces(std::string& text, const Scene& scene, const ElementForest& fo
 
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
+    require_nameable(path, "#\\");  // a comment; a separator of folders to some readers
     const LitPolygons polygons = lit_polygons(scene, solution);
     std::vector<ExportedFile> files = texture_files(path, scene);
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
-    std::string text =
-        fmt::format("# Interflect {}\n# Colours of vertices: radiance [cd/m^2] * 2^{}, clamped, as sRGB\nmtllib {}\n",
-                    INTERFLECT_VERSION, options.exposure, library.filename().string());
+    std::string text = fmt::format(
+        "# Interflect {}\n# Colours of vertices: radiance [cd/m^2] * 2^{}, scaled to at most 1, as sRGB\nmtllib {}\n",
+        INTERFLECT_VERSION, options.exposure, library.filename().string());
     append_vertices(text, scene, polygons, options.exposure);
     append_faces(text, scene, *solution.forest, polygons);
     std::string materials = materials_text(path, scene, files);

@@ -33,7 +33,7 @@ std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scen
     std::string bytes = fmt::format(
         "ply\nformat binary_little_endian 1.0\n"
         "comment made by Interflect {}\n"
-        "comment red, green, blue: radiance [cd/m^2] * 2^{}, clamped, as sRGB\n"
+        "comment red, green, blue: radiance [cd/m^2] * 2^{}, scaled to at most 1, as sRGB\n"
         "comment irradiance: [lm/m^2] of each channel, linear Rec. 709\n"
         "element vertex {}\nproperty {} x\nproperty {} y\nproperty {} z\n"
         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
