@@ -35,7 +35,9 @@ void Checkpoints::add_to(CLI::App& app, const std::string& what) {
 void Checkpoints::require_writable() const {
     if (file.empty()) return;
     if (file.extension() != ".h5")
-        throw InputError(file, 0, "a checkpoint is a solution file: expected a name that ends in .h5");
+        throw UsageError("--checkpoint",
+                         fmt::format("a checkpoint is a solution file: expected a name that ends in .h5, found '{}'",
+                                     file.string()));
     const PendingFile finds_out(file);
 }
 

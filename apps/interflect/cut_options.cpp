@@ -35,7 +35,7 @@ void CutOptions::add_to(CLI::App& app, const std::vector<std::string>& others) {
 
 void CutOptions::check() const {
     if (!is_given() && (extent || centre))
-        throw InputError("--extent and --centre have no effect without --plan or --section");
+        throw UsageError("--extent and --centre have no effect without --plan or --section");
 }
 
 View CutOptions::view(const Scene& scene, int columns, int rows) const {

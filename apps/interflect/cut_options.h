@@ -20,7 +20,7 @@ struct CutOptions {
     /// @param others  Options that name a view in another way.
     void add_to(CLI::App& app, const std::vector<std::string>& others);
     bool is_given() const { return plan || section; }
-    /// @throws InputError for options without a cut.
+    /// @throws UsageError for options without a cut.
     void check() const;
     /// Logs the picture's scale.
     View view(const Scene& scene, int columns, int rows) const;

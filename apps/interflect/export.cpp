@@ -8,6 +8,7 @@
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
+#include "apps/interflect/light_group_options.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/shared_options.h"
@@ -32,6 +33,7 @@ struct ExportArguments {
     ProbeOptions probes;
     bool has_lightmap = false;
     LightmapOptions lightmap;
+    DimmingOptions dimming;
 };
 
 /// Where the help lists them.
@@ -60,9 +62,16 @@ V3f up_of(const Scene& scene) {
     return up;
 }
 
+SolvedScene read_dimmed(const ExportArguments& arguments) {
+    SolvedScene solved = read_solution(arguments.scene.path);
+    arguments.dimming.dim(solved);
+    return solved;
+}
+
 void run_scene(const ExportArguments& arguments) {
     const bool is_solved = is_solution_file(arguments.scene.path);
-    const Scene scene = is_solved ? read_solution(arguments.scene.path).scene : arguments.scene.load();
+    if (!is_solved) arguments.dimming.require_solution(arguments.scene.path);
+    const Scene scene = is_solved ? read_dimmed(arguments).scene : arguments.scene.load();
     const SceneExport exported =
         export_scene(arguments.output, scene, {arguments.size.width, arguments.size.height, arguments.samples});
     for (const auto& path : exported.files) spdlog::info("{}", path.string());
@@ -70,11 +79,13 @@ void run_scene(const ExportArguments& arguments) {
 }
 
 void run(const ExportArguments& arguments) {
+    if (!is_scene_export(arguments.output))
+        check_option("--output", [&] { return require_export_format(arguments.output); });
+    if (arguments.up && !(V3f(*arguments.up).length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
     const NamedFile output{"--output", arguments.output};
     require_distinct_files(input_files(arguments.scene, {}), {&output, 1});
     if (is_scene_export(arguments.output)) return run_scene(arguments);
-    require_export_format(arguments.output);
-    const SolvedScene solved = read_solution(arguments.scene.path);
+    const SolvedScene solved = read_dimmed(arguments);
     ExportOptions options;
     options.exposure = arguments.exposure.stops + (arguments.exposure.relative ? automatic_exposure_of(solved) : 0);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
@@ -109,7 +120,12 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
     of_lightmap(
         command.add_option("--lightmap-max-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
         ->capture_default_str()
-        ->check(CLI::Range(64, 16384));
+        ->check(CLI::Range(64, 16384))
+        ->check(
+            [](const std::string& text) {
+                return std::stoi(text) % 4 == 0 ? std::string() : "expected a multiple of 4, found '" + text + "'";
+            },
+            "");
     of_lightmap(command.add_option("--gutter", lightmap.gutter, "Texels around each surface, filled from its edge"))
         ->capture_default_str()
         ->check(CLI::Range(1, 64));
@@ -132,6 +148,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         ->default_str("exr");
     of_lightmap(
         command.add_flag("--own-charts", lightmap.own_charts, "Ignore lightmap coordinates of the scene's file"));
+    of_lightmap(command.add_flag("--lightmap-groups", lightmap.groups,
+                                 "Add unclamped images of each light group alone (see solve --light-groups)"));
 }
 
 }  // namespace
@@ -152,17 +170,21 @@ void add_export(CLI::App& app) {
         ->type_name("X,Y,Z");
     command.add_option("--probe-spacing", options->probes.spacing, "Of irradiance probes (.json, .exr), at most [m]")
         ->type_name("METRES")
+        ->check(number_between(1e-6, 1e15))
         ->capture_default_str();
     command.add_option("--probe-rays", options->probes.rays, "Rays from each probe")
         ->type_name("N")
+        ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str();
     add_parsed(command, "--size", options->size, parse_size, "Of the pictures of scenes for renderers [pixels]")
         ->type_name("WxH")
         ->default_str("1280x720");
     command.add_option("--pixel-samples", options->samples, "Of scenes for renderers")
         ->type_name("N")
+        ->check(CLI::Range(1, 65536))
         ->capture_default_str();
     add_lightmap(command, *options);
+    options->dimming.add_to(command);
     command.callback([options] { run(*options); });
 }
 

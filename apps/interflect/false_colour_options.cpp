@@ -45,9 +45,9 @@ void FalseColourOptions::add_to(CLI::App& app) {
 
 void FalseColourOptions::check() const {
     if (!measured && (scale || logarithmic || isolines))
-        throw InputError("--scale, --logarithmic and --isolines have no effect without --false-colour");
+        throw UsageError("--scale, --logarithmic and --isolines have no effect without --false-colour");
     if (logarithmic && scale && scale->low == 0)
-        throw InputError("--scale from 0: a logarithmic scale has no 0, expected a number above it");
+        throw UsageError("--scale from 0: a logarithmic scale has no 0, expected a number above it");
 }
 
 std::string FalseColourOptions::label() const {

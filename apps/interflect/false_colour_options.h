@@ -24,7 +24,7 @@ struct FalseColourOptions {
     std::optional<std::vector<float>> isolines;  ///< Values; none in it: round ones.
 
     void add_to(CLI::App& app);
-    /// @throws InputError for options that have no effect, or contradict each other.
+    /// @throws UsageError for options that have no effect, or contradict each other.
     void check() const;
     /// With the unit, for a legend and the metadata of a picture.
     std::string label() const;

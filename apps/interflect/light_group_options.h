@@ -1,9 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <string>
+#include <filesystem>
 #include <vector>
 
+#include "apps/interflect/parse.h"
 #include "interflect/scene.h"
 #include "interflect/solution_file.h"
 
@@ -12,7 +13,7 @@ namespace interflect::command {
 /// Which sources of light are kept apart.
 struct LightGroupOptions {
     bool by_name = false;
-    std::vector<std::string> groups;  ///< "name=pattern" each.
+    std::vector<LightGroup> groups;
 
     void add_to(CLI::App& app);
     /// Gives the scene its groups. @throws InputError for one that no source is in.
@@ -21,11 +22,13 @@ struct LightGroupOptions {
 
 /// How light groups are dimmed.
 struct DimmingOptions {
-    std::vector<std::string> factors;  ///< "name=factor" each.
+    std::vector<Dimmed> factors;
 
     void add_to(CLI::App& app);
-    /// @throws InputError for a group that the solution does not have.
+    /// @throws InputError that lists the groups, for a group that the solution does not have.
     void dim(SolvedScene& solved) const;
+    /// @throws InputError where groups are dimmed, but `scene` is no solution.
+    void require_solution(const std::filesystem::path& scene) const;
 };
 
 }  // namespace interflect::command

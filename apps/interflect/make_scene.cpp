@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <fstream>
@@ -60,7 +61,8 @@ std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions&
 /// Makes a scene and writes it with its views and textures. Files are opened before the work begins.
 void write(const OutputOptions& output, const std::function<Scene()>& make) {
     const fs::path& path = output.path;
-    if (path.extension() != ".mgf") throw InputError(path, 0, "scenes are written as .mgf");
+    if (path.extension() != ".mgf")
+        throw UsageError("--output", fmt::format("scenes are written as .mgf, found '{}'", path.string()));
     PendingFile scene_file(path), view_file(view_list_path(path));
     const Scene scene = make();
     const std::vector<std::string> textures = texture_files(scene, path);

@@ -56,12 +56,12 @@ void MeasuringPlaces::add_to(CLI::App& app) {
 void MeasuringPlaces::check(Least least) const {
     const bool has_areas = !tops.empty() || !planes.empty() || !surfaces.empty();
     if (least == Least::one && !has_areas && points.empty() && lines.empty())
-        throw InputError("nothing to measure: expected --grid, --plane, --surface, --point or --line");
-    if (!over.empty() && planes.empty()) throw InputError("--over has no effect without --plane");
-    if (facing && surfaces.empty()) throw InputError("--facing has no effect without --surface");
-    if (facing && !(facing->length() > 0)) throw InputError("--facing 0,0,0 is no direction");
+        throw UsageError("nothing to measure: expected --grid, --plane, --surface, --point or --line");
+    if (!over.empty() && planes.empty()) throw UsageError("--over has no effect without --plane");
+    if (facing && surfaces.empty()) throw UsageError("--facing has no effect without --surface");
+    if (facing && !(facing->length() > 0)) throw UsageError("--facing 0,0,0 is no direction");
     if (least == Least::one && !has_areas && grid.any())
-        throw InputError("--spacing and --boundary have no effect without --grid, --plane or --surface");
+        throw UsageError("--spacing and --boundary have no effect without --grid, --plane or --surface");
 }
 
 std::vector<MeasuringGrid> MeasuringPlaces::grids(const Scene& scene) const {

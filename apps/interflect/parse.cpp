@@ -49,6 +49,13 @@ std::int64_t take_all(const std::string& text, double thousand, const char* expe
     return std::llround(number);
 }
 
+/// Splits "name=value" at the last '='.
+std::pair<std::string, std::string> name_and_value(const std::string& text, const char* expected) {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) refuse(text, expected);
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 }  // namespace
 
 std::int64_t parse_count(const std::string& text) {
@@ -191,18 +198,31 @@ PlacedLuminaire parse_luminaire(const std::string& text) {
     return placed;
 }
 
+LightGroup parse_light_group(const std::string& text) {
+    auto [name, pattern] = name_and_value(text, "NAME=PATTERN, such as desk=lamps.desk*");
+    return {std::move(name), std::move(pattern)};
+}
+
+Dimmed parse_dimmed(const std::string& text) {
+    constexpr const char* expected = "GROUP=FACTOR, such as desk=0.3, with a factor from 0 to 1e12";
+    auto [group, value] = name_and_value(text, expected);
+    std::string_view rest = value;
+    double factor = 0;
+    if (!take_number(rest, factor) || !rest.empty() || !(factor >= 0 && factor <= 1e12)) refuse(text, expected);
+    return {std::move(group), static_cast<float>(factor)};
+}
+
 Sky parse_sky(const std::string& text) {
     constexpr const char* expected =
         "overcast, intermediate, clear, uniform or cie-1 to cie-16, each with :LUX or without, or "
-        "perez:DIRECT,DIFFUSE, "
-        "such as clear:12000";
+        "perez:DIRECT,DIFFUSE, such as clear:12000; no number below 0";
     const std::size_t colon = text.find(':');
     const std::string name = text.substr(0, colon);
     std::string_view rest = std::string_view(text).substr(std::min(colon, text.size()));
     double first = 0, second = 0;
     if (name == "perez") {
         if (!take(rest, ':') || !take_number(rest, first) || !take(rest, ',') || !take_number(rest, second) ||
-            !rest.empty())
+            !rest.empty() || first < 0 || second < 0)
             refuse(text, expected);
         return {.perez = Daylight::PerezSky{first, second}};
     }

@@ -11,6 +11,8 @@
 
 #include "interflect/colour.h"
 #include "interflect/daylight.h"
+#include "interflect/error.h"
+#include "interflect/light_groups.h"
 #include "interflect/load_luminaire.h"
 
 namespace interflect::command {
@@ -50,6 +52,14 @@ Line parse_line(const std::string& text);
 /// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
 /// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
 PlacedLuminaire parse_luminaire(const std::string& text);
+/// "desk=lamps.desk*" -> the group "desk" of the sources that match "lamps.desk*".
+LightGroup parse_light_group(const std::string& text);
+/// "desk=0.3" -> {"desk", 0.3}: a factor from 0 to 10^12.
+struct Dimmed {
+    std::string group;
+    float factor = 1;
+};
+Dimmed parse_dimmed(const std::string& text);
 /// "overcast", "clear:9000" -> that CIE sky, with that horizontal illuminance [lx]; "perez:600,120" -> the sky of these
 /// irradiances [W/m^2].
 struct Sky {
@@ -83,6 +93,19 @@ std::vector<float> parse_isolines(const std::string& text);
 /// "0.05" -> 0.05, above 0; "auto" -> automatic_mesh_size; "none" -> whole_patches.
 float parse_mesh_size(const std::string& text);
 inline constexpr float automatic_mesh_size = 0, whole_patches = -1;
+
+/// A combination of options without meaning: exit code 2. The message names the options.
+using UsageError = CLI::ValidationError;
+
+/// Calls `check`; a fault that it finds is a wrong value of the option `name`.
+template <class Check>
+auto check_option(const std::string& name, const Check& check) {
+    try {
+        return check();
+    } catch (const InputError& e) {
+        throw UsageError(name, e.what());
+    }
+}
 
 /// Accepts a finite number from `low` to `high`. (CLI::Range lets NaN pass, and prints bounds with 300 digits.)
 CLI::Validator number_between(double low, double high);

@@ -77,18 +77,18 @@ const char* name_of(ProbedQuantity quantity) {
 void check_direction(const ProbeArguments& options) {
     if (options.quantity == ProbedQuantity::ugr) {
         for (const Imath::V3d& d : options.directions)
-            if (!(V3f(d).length() > 0)) throw InputError("--direction 0,0,0 is no direction");
+            if (!(V3f(d).length() > 0)) throw UsageError("--direction 0,0,0 is no direction");
         return;
     }
     if (!needs_direction(options.quantity)) {
         if (!options.directions.empty())
-            throw InputError("--direction has no effect: it is for --quantity vertical, semicylindrical and ugr");
+            throw UsageError("--direction has no effect: it is for --quantity vertical, semicylindrical and ugr");
         return;
     }
     if (options.directions.size() != 1)
-        throw InputError("--quantity vertical and semicylindrical need one --direction X,Y,Z: the way that they face");
+        throw UsageError("--quantity vertical and semicylindrical need one --direction X,Y,Z: the way that they face");
     if (!(std::hypot(options.directions[0].x, options.directions[0].y) > 0))
-        throw InputError("--direction: expected a direction that is not vertical (z)");
+        throw UsageError("--direction: expected a direction that is not vertical (z)");
 }
 
 /// Lines of sight: along the four axes of a plan unless they were told.
@@ -202,6 +202,8 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     const SolveOptions solve_options = options.solver.resolved({});
     if (solves)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
+    else if (!solved_before)
+        solved.scene = options.mesh.cut(std::move(solved.scene), options.scene.read);
     StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
     const RayCaster ray_caster(solved.scene);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);

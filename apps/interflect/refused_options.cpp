@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "apps/interflect/parse.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/shared_options.h"
 #include "interflect/error.h"
@@ -34,17 +35,18 @@ bool is_of_solving(const CLI::Option& option) {
 void refuse_solver_options(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
-        if (is_given(option) && ((is_of_solving(*option) && !has(shared_with_path_tracing, name)) || name == "--show"))
-            throw InputError(fmt::format("{}: --shading path makes no solution", name));
+        const bool is_for_paths = has(shared_with_path_tracing, name) || name == "--contact-cuts";
+        if (is_given(option) && ((is_of_solving(*option) && !is_for_paths) || name == "--show"))
+            throw UsageError(fmt::format("{}: --shading path makes no solution", name));
     }
     if (is_given(command.get_option("--max-samples")) && !is_given(command.get_option("--until")))
-        throw InputError("--max-samples: without --until every pixel gets --samples");
+        throw UsageError("--max-samples: without --until every pixel gets --samples");
 }
 
 void refuse_path_options(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options())
         if (option->get_group() == path_group && is_given(option))
-            throw InputError(fmt::format("{}: only --shading gather and path take it", option->get_name()));
+            throw UsageError(fmt::format("{}: only --shading gather and path take it", option->get_name()));
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {

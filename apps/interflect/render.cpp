@@ -243,7 +243,8 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
 
 /// Draws the light that path tracing finds; of a solution file the scene alone counts.
 void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
-    const Scene scene = read_scene_or_solution(options.scene, options.dimming, command, true).scene;
+    Scene scene = read_scene_or_solution(options.scene, options.dimming, command, true).scene;
+    if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
     const View view = view_to_draw(scene, options);
     const RayCaster ray_caster(scene);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
@@ -253,10 +254,10 @@ void run_paths(const RenderArguments& options, const CLI::App& command, PendingF
     write_picture(output, picture, view, scene, options.solver.seed(), options);
 }
 
-/// Curves and exposure are for light on a display. @throws InputError for a display that no operator asks about.
+/// Curves and exposure are for light on a display. @throws UsageError for a display that no operator asks about.
 void check_tone_options(const RenderArguments& options, const CLI::App& command) {
     if (command.get_option("--display-luminance")->count() > 0 && !is_absolute(options.tonemap))
-        throw InputError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");
+        throw UsageError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");
     for (const char* name : {"--exposure", "--tonemap"}) {
         if (command.get_option(name)->count() == 0) continue;
         if (options.is_in_false_colours())
@@ -270,7 +271,7 @@ void check_tone_options(const RenderArguments& options, const CLI::App& command)
 void check_false_colours(const RenderArguments& options) {
     options.false_colour.check();
     if (options.false_colour.measured && options.shown != Shown::light)
-        throw InputError("--false-colour measures the light: expected no --show beside it");
+        throw UsageError("--false-colour measures the light: expected no --show beside it");
     const bool is_drawn =
         options.false_colour.scale || options.false_colour.logarithmic || options.false_colour.isolines;
     if (is_drawn && !is_for_people(options))
@@ -281,7 +282,7 @@ void check_false_colours(const RenderArguments& options) {
 /// Everything that can be refused is refused before the first ray.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
-    require_image_format(options.output);
+    check_option("--output", [&] { return require_image_format(options.output); });
     if (options.shown != Shown::light && options.shading == PictureShading::gather)
         options.shading = PictureShading::smooth;  // of elements
     if (options.shading == PictureShading::path)
@@ -289,12 +290,13 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     else if (!traces_paths(options.shading))
         refuse_path_options(command);
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
-        throw InputError(options.output, 0, "layers need a picture in OpenEXR: expected .exr");
+        throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
     if (options.shading == PictureShading::gather && command.get_option("--denoise")->count() == 0)
         options.path.denoise = is_for_people(options);
     check_tone_options(options, command);
     check_false_colours(options);
     options.cut.check();
+    options.path.check();
     options.legend_rows = legend_rows(options);
     require_distinct_files(input_files(options.scene, options.view),
                            std::array<NamedFile, 3>{{{"--output", options.output},

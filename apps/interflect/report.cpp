@@ -11,6 +11,7 @@
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/false_colour_options.h"
 #include "apps/interflect/measuring_places.h"
+#include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/report_page.h"
 #include "apps/interflect/shared_options.h"
@@ -18,6 +19,7 @@
 #include "interflect/base/pending_file.h"
 #include "interflect/denoise.h"
 #include "interflect/error.h"
+#include "interflect/formats/extension.h"
 #include "interflect/gather.h"
 #include "interflect/scene/view.h"
 #include "interflect/tone_map.h"
@@ -150,6 +152,10 @@ void write(PendingFile& output, const std::string& page) {
 /// Half a report is none: a signal ends it, and nothing is written.
 void run(const ReportArguments& options) {
     const ThreadLimit threads(options.threads);
+    const std::string extension = lower_case_extension(options.output);
+    if (extension != ".html" && extension != ".htm")
+        throw UsageError("--output", fmt::format("a report is HTML: expected a name that ends in .html, found '{}'",
+                                                 options.output.string()));
     options.places.check(MeasuringPlaces::Least::none);
     require_distinct_files(std::array<NamedFile, 1>{{{"SOLUTION", options.solution}}},
                            std::array<NamedFile, 1>{{{"--output", options.output}}});

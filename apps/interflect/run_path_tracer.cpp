@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
@@ -26,11 +27,6 @@ void log_outcome(const char* what, const PathTracing& traced, double seconds) {
                  traced.escaped_rays > 0 ? fmt::format(", {} of the rays left the scene",
                                                        percent(static_cast<double>(traced.escaped_rays) / rays))
                                          : "");
-}
-
-void require_linear_format(const std::filesystem::path& path) {
-    if (needs_tone_mapping(require_image_format(path)))
-        throw InputError(path, 0, "standard errors are numbers to measure with: expected .exr or .hdr");
 }
 
 }  // namespace
@@ -56,6 +52,15 @@ void PathTracerArguments::add_to(CLI::App& app) {
         ->group(path_group);
 }
 
+void PathTracerArguments::check() const {
+    if (error_image.empty()) return;
+    const ImageFormat format = check_option("--error-image", [&] { return require_image_format(error_image); });
+    if (needs_tone_mapping(format))
+        throw UsageError("--error-image",
+                         fmt::format("standard errors are numbers to measure with: expected .exr or .hdr, found '{}'",
+                                     error_image.string()));
+}
+
 std::vector<ImageLayer> layers_of(const PathTracing& traced) {
     const PictureLayers& l = traced.layers;
     const auto of_image = [](const std::string& name, const char* channels, const Image& image) {
@@ -79,10 +84,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
     options.max_samples = arguments.max_samples;
     options.mirrors = arguments.mirrors;
     std::optional<PendingFile> error_image;
-    if (!arguments.error_image.empty()) {
-        require_linear_format(arguments.error_image);
-        error_image.emplace(arguments.error_image);
-    }
+    if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     PathTracing traced;
     stop_on_signal();
     const double seconds = with_path_progress([&](const PathMonitor& monitor) {

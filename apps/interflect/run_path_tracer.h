@@ -21,6 +21,8 @@ struct PathTracerArguments {
     bool mirrors = true;
 
     void add_to(CLI::App& app);
+    /// @throws UsageError for an error image in a format of 8 bits.
+    void check() const;
 };
 
 /// What else is known of the pixels, in the layers of an OpenEXR file; refers to `traced`.

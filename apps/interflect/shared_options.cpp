@@ -98,6 +98,9 @@ Scene SceneOptions::load() const {
         return scene;
     } catch (const TooManyPatches& e) {
         throw InputError(fmt::format("{}; --max-patches raises it", e.what()));
+    } catch (const InputError& e) {
+        const bool is_outside = std::string_view(e.what()).find("(outside_files)") != std::string_view::npos;
+        throw is_outside ? InputError(fmt::format("{}; --outside-files allows it", e.what())) : e;
     }
 }
 
@@ -121,17 +124,21 @@ void MeshOptions::add_to(CLI::App& app) {
         ->group(solver_group);
 }
 
+Scene MeshOptions::cut(Scene scene, const ReadOptions& read) const {
+    if (!contact_cuts) return scene;
+    const Warnings earlier = std::exchange(scene.warnings, {});
+    const std::size_t faces = scene.patches.size();
+    scene = cut_at_contacts(
+        scene, {.least_extent = static_cast<float>(2 * default_element_size(scene)), .max_patches = read.max_patches});
+    log_warnings(scene.warnings);
+    if (scene.patches.size() > faces)
+        spdlog::info("faces are cut where others meet them: {} patches, before {}", scene.patches.size(), faces);
+    scene.warnings = earlier;
+    return scene;
+}
+
 Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) const {
-    if (contact_cuts) {
-        const Warnings earlier = std::exchange(scene.warnings, {});
-        const std::size_t faces = scene.patches.size();
-        scene = cut_at_contacts(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene)),
-                                        .max_patches = read.max_patches});
-        log_warnings(scene.warnings);
-        if (scene.patches.size() > faces)
-            spdlog::info("faces are cut where others meet them: {} patches, before {}", scene.patches.size(), faces);
-        scene.warnings = earlier;
-    }
+    scene = cut(std::move(scene), read);
     if (size == whole_patches || (size == automatic_mesh_size && refines)) return scene;
     const float edge = size == automatic_mesh_size ? default_mesh_size(scene) : size;
     try {

@@ -43,7 +43,9 @@ struct MeshOptions {
     float size = automatic_mesh_size;  ///< [m], or one of the two words of parse_mesh_size.
 
     void add_to(CLI::App& app);
-    /// Cuts faces where others meet them, logs the warnings of that, and divides patches to the mesh size.
+    /// Cuts faces where others meet them, unless that is switched off, and logs the warnings of that.
+    Scene cut(Scene scene, const ReadOptions& read) const;
+    /// Cuts the scene, then divides patches to the mesh size.
     /// @param refines  Whether the method divides patches itself: then `auto` leaves them whole.
     Scene divide(Scene scene, const ReadOptions& read, bool refines) const;
 };

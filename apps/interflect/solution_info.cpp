@@ -44,6 +44,7 @@ Json to_json(const SolvedScene& solved) {
                  {"emitted_power", json_of(solution.emitted_power)},
                  {"has_importance", !solution.view_importance.empty()},
                  {"interrupted", solution.interrupted},
+                 {"light_groups", solution.group_names},
                  {"views", views}});
     return json;
 }
@@ -75,6 +76,7 @@ void print_text(const SolvedScene& solved) {
         print_line("  error     {:.2g}% (noise {:.2g}%, mesh {:.2g}%)", 100 * result.error_estimate,
                    100 * result.noise_estimate, 100 * result.discretisation_estimate);
     print_line("  emitted   {:.6g} lm (RGB {})", luminance(solution.emitted_power), text_of(solution.emitted_power));
+    if (!solution.group_names.empty()) print_line("  groups    {}", fmt::join(solution.group_names, ", "));
     print_views(scene.views);
     for (const std::string& file : scene.files) print_line("  file      {}", file);
 }

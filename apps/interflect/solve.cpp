@@ -7,6 +7,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/light_group_options.h"
+#include "apps/interflect/parse.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
@@ -21,7 +22,9 @@ namespace {
 
 void require_solution_name(const std::filesystem::path& path) {
     if (path.extension() != ".h5")
-        throw InputError(path, 0, "a solution file is HDF5: expected a name that ends in .h5");
+        throw UsageError(
+            "--output",
+            fmt::format("a solution file is HDF5: expected a name that ends in .h5, found '{}'", path.string()));
 }
 
 void write(PendingFile& output, const Scene& scene, const Solution& solution) {
@@ -98,6 +101,8 @@ void add_resume(CLI::App& app, int& exit_code) {
     add_threads(command, options->threads);
     command.callback([options, &exit_code] {
         const ThreadLimit threads(options->threads);
+        if (options->input.extension() != ".h5")
+            throw InputError(options->input, 0, "a checkpoint is a solution file: expected a name that ends in .h5");
         if (options->checkpoints.file.empty()) options->checkpoints.file = options->input;
         require_solution_name(options->output);
         require_distinct_files(std::array<NamedFile, 1>{{{"FILE", options->input}}},

@@ -4,7 +4,7 @@ import json
 import pathlib
 import unittest
 
-from command import BAD_INPUT, DONE, LAMP, PAINT, VIEWS, CommandTest, room, vertices
+from command import BAD_INPUT, DONE, LAMP, PAINT, VIEWS, WRONG_USAGE, CommandTest, room, vertices
 
 TRIANGLE = vertices((0, 0, 0), (1, 0, 0), (1, 1, 0))  # six lines
 AT_ONCE = 20  # [s]: far less than the solve would take, far more than any machine needs to refuse it
@@ -180,7 +180,7 @@ class BadOutput(BadInput):
             (("render", "room.mgf", "-o", "out.gif"), ".png .jpg .jpeg .exr .hdr"),
             (("render", "room.mgf", "-o", "out"), ".png"),
         ):
-            result = self.interflect(*arguments, "--rays", "10G", exit_code=BAD_INPUT, timeout=AT_ONCE)
+            result = self.interflect(*arguments, "--rays", "10G", exit_code=WRONG_USAGE, timeout=AT_ONCE)
             self.assertIn(expected, result.stderr)
         self.assertEqual(self.files(), ["room.mgf"])
 

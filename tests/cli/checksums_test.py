@@ -28,7 +28,8 @@ class Checksums(CommandTest):
         content = bytearray(self.bytes("office.h5"))
         content[-1] ^= 4
         (self.folder / "office.h5").write_bytes(content)
-        self.assertIn("/solution/rays is damaged", self.verify().stderr)
+        # The damaged array is the last one of the file.
+        self.assertRegex(self.verify().stderr, r"AssertionError: /[a-z/_]+ is damaged")
 
 
 if __name__ == "__main__":

@@ -2,9 +2,35 @@
 
 import base64
 import json
+import struct
 import unittest
+import zlib
 
 from command import BAD_INPUT, WRONG_USAGE, CommandTest, room
+
+def png_texels(png):
+    """Of an image of 8 bits and three channels."""
+    position, data = 8, b""
+    while position < len(png):
+        length, kind = struct.unpack(">I4s", png[position : position + 8])
+        chunk = png[position + 8 : position + 8 + length]
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", chunk[:10])
+            assert (depth, colour) == (8, 2)
+        if kind == b"IDAT":
+            data += chunk
+        position += 12 + length
+    data, row, above, texels = zlib.decompress(data), 3 * width, bytes(3 * width), []
+    for y in range(height):
+        kind, line = data[y * (row + 1)], bytearray(data[y * (row + 1) + 1 : (y + 1) * (row + 1)])
+        for x in range(row):
+            a, b, c = line[x - 3] if x >= 3 else 0, above[x], above[x - 3] if x >= 3 else 0
+            paeth = min((a, b, c), key=lambda value: abs(a + b - c - value))
+            line[x] = line[x] + (0, a, b, (a + b) // 2, paeth)[kind] & 255
+        above = line
+        texels += [tuple(line[x : x + 3]) for x in range(0, row, 3)]
+    return texels
+
 
 SHIFTED = "xf -t 1000000 2000000 0\n"
 
@@ -38,6 +64,77 @@ class Export(CommandTest):
             self.assertAlmostEqual(found, expected, delta=10)
         self.assertEqual(self.export("--up", "0,1,0")["nodes"][-1]["rotation"], [0, 0, 0, 1])
 
+    def solve_groups(self):
+        lamps = room().replace("m lamp", "m left") + "m right =\n\tsides 1\n\tc\n\trd 0\n\ted 50\n"
+        corners = "".join(f"v w{k} =\n\tp {x} {y} 2.3\n" for k, (x, y) in enumerate([(0.1, 0.1), (0.1, 0.5), (0.5, 0.5), (0.5, 0.1)]))
+        self.write("scene.mgf", lamps + corners + "f w0 w1 w2 w3\n")
+        self.interflect("solve", "scene.mgf", "--rays", "100k", "--group", "l=left", "--group", "r=right", "-o", "scene.h5")
+
+    def colours(self, attribute, *arguments):
+        """An attribute of all vertices."""
+        scene, values = self.export(*arguments), []
+        data = base64.b64decode(scene["buffers"][0]["uri"].partition(",")[2])
+        for mesh in scene["meshes"]:
+            for primitive in mesh["primitives"]:
+                accessor = scene["accessors"][primitive["attributes"][attribute]]
+                start = scene["bufferViews"][accessor["bufferView"]]["byteOffset"]
+                values += struct.iter_unpack("<3f", data[start : start + 12 * accessor["count"]])
+        return values
+
+    def irradiance(self, *arguments):
+        """The sum over all vertices."""
+        return sum(map(sum, self.colours("_IRRADIANCE", "--exposure", "0", *arguments)))
+
+    def lightmap(self, *arguments):
+        """The linear texels of the lightmap in the file."""
+        scene = self.export("--lightmap", *arguments)
+        data = base64.b64decode(scene["buffers"][0]["uri"].partition(",")[2])
+        view = scene["bufferViews"][scene["images"][0]["bufferView"]]
+        texels = png_texels(data[view["byteOffset"] : view["byteOffset"] + view["byteLength"]])
+        return [[(((c / 255) + 0.055) / 1.055) ** 2.4 if c > 10 else c / 255 / 12.92 for c in texel] for texel in texels]
+
+    # The lamp is orange. Clamping each channel makes bright colours whiter.
+    def test_bright_colours_keep_their_hue(self):
+        self.solve(room("m lamp =\n\tc\n\t\tcxy .5 .4\n\tsides 1\n\ted 1000\n"))
+        self.assertGreater(self.check_hue(self.colours("COLOR_0", "--exposure", "-12"),
+                                          self.colours("COLOR_0", "--exposure", "4"), 1e-5), 10)  # fmt: skip
+        content = ("--lightmap-content", "radiance", "--texels-per-metre", "2")
+        self.assertGreater(self.check_hue(self.lightmap("--exposure", "-6", *content),
+                                          self.lightmap("--exposure", "4", *content), 0.05), 10)  # fmt: skip
+
+    def check_hue(self, dim, bright, tolerance):
+        """Compares the chromaticity of all colours that were scaled and returns their number."""
+        pairs = [(d, b) for d, b in zip(dim, bright) if 0 < d[2] and max(d) > 1e-3 and max(b) > 0.999]
+        for d, b in pairs:
+            for k in range(3):
+                self.assertAlmostEqual(b[k], d[k] / max(d), delta=tolerance)
+        return len(pairs)
+
+    def test_dims_light_groups(self):
+        self.solve_groups()
+        left, right = self.irradiance("--dim", "r=0"), self.irradiance("--dim", "l=0")
+        self.assertGreater(min(left, right), 0)
+        self.assertAlmostEqual(self.irradiance("--dim", "r=0", "--dim", "l=0.5") / left, 0.5, places=3)
+        result = self.interflect("export", "scene.h5", "--dim", "x=1", "-o", "out.glb", exit_code=BAD_INPUT)
+        self.assertIn("'l'", result.stderr)
+        self.interflect("export", "scene.mgf", "--dim", "l=1", "-o", "out.rad", exit_code=BAD_INPUT)
+
+    def test_lists_light_groups(self):
+        self.solve_groups()
+        self.assertEqual(self.json("info", "scene.h5")["light_groups"], ["l", "r"])
+        self.assertIn("groups    l, r", self.interflect("info", "scene.h5").stdout)
+
+    def test_writes_lightmaps_of_light_groups(self):
+        self.solve_groups()
+        described = self.export("--lightmap", "--lightmap-groups")["asset"]["extras"]["interflect"]["lightmap"]
+        files = [[f"out.lightmap-0-group-{g}.exr"] for g in (0, 1)]
+        self.assertEqual(described["groups"], [{"name": n, "unclamped": f} for n, f in zip("lr", files)])
+        self.assertTrue({name for of_group in files for name in of_group} <= set(self.files()))
+        self.solve()
+        result = self.interflect("export", "scene.h5", "--lightmap", "--lightmap-groups", "-o", "a.glb", exit_code=BAD_INPUT)
+        self.assertIn("light groups", result.stderr)
+        self.assertNotIn("a.glb", self.files())
+
     def test_lightmaps_are_beside_the_file(self):
         self.solve()
         self.interflect("export", "scene.h5", "--lightmap", "-o", "room.glb")
@@ -68,14 +165,14 @@ class Export(CommandTest):
         self.solve()
         before = self.files()
         for arguments, code, message in [
-            (("scene.h5", "-o", "room.xyz"), BAD_INPUT, ".glb"),
+            (("scene.h5", "-o", "room.xyz"), WRONG_USAGE, ".glb"),
             (("scene.mgf", "-o", "room.glb"), BAD_INPUT, "scene.mgf"),
             (("missing.h5", "-o", "room.glb"), BAD_INPUT, "missing.h5"),
             (("scene.h5", "-o", "nowhere/room.glb"), BAD_INPUT, "nowhere"),
             (("scene.h5", "-o", "room.glb", "--gutter", "3"), WRONG_USAGE, "--lightmap"),
-            (("scene.h5", "-o", "room.glb", "--lightmap", "--lightmap-max-size", "65"), BAD_INPUT, "multiple of 4"),
+            (("scene.h5", "-o", "room.glb", "--lightmap", "--lightmap-max-size", "65"), WRONG_USAGE, "multiple of 4"),
             (("scene.h5", "-o", "room.glb", "--lightmap", "--texels-per-metre", "0"), WRONG_USAGE, "--texels-per-metre"),
-            (("scene.h5", "-o", "room.glb", "--up", "0,0,0"), BAD_INPUT, "up"),
+            (("scene.h5", "-o", "room.glb", "--up", "0,0,0"), WRONG_USAGE, "up"),
         ]:
             with self.subTest(arguments):
                 self.assertIn(message, self.interflect("export", *arguments, exit_code=code).stderr)

@@ -221,6 +221,39 @@ class Scenes(Exported):
         self.bytes("room-sky.exr")
         self.assertNotIn("left out: emission", stderr)
 
+    def test_names_of_files_stay_within_their_quotes(self):
+        """Seen to run code that the name of the output has."""
+        stem = 'a");print("x&<b>\\'
+        # The script for Blender names files only for images.
+        (self.folder / "grey.hdr").write_bytes(hdr(1, 0))
+        corners = "".join(f"v b{i} =\n\tp {x} 1 {z}\n\tuv {x} {z}\n" for i, (x, z) in enumerate([(0, 0), (1, 0), (1, 1)]))
+        self.write("room.mgf", room() + corners + "m board =\n\trd .5\n\ttexture rd grey.hdr\nf b0 b1 b2\n")
+        script = ast.parse(self.export(stem + ".py")[0])
+        texts = [node.value for node in ast.walk(script) if isinstance(node, ast.Constant)]
+        self.assertIn(stem + "-board-reflectance.exr", texts)
+        scene = ElementTree.fromstring(self.export(stem + ".xml")[0])
+        for shape in scene.findall("shape"):
+            self.bytes(shape.find("string").get("value"))
+        escaped = stem.replace("\\", "\\\\").replace('"', '\\"')
+        self.assertIn(f'"string filename" "{escaped}.exr"', self.export(stem + ".pbrt")[0])
+
+    def test_refuses_names_that_the_format_cannot_hold(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
+        before = self.files()
+        for name in ("a\nb.py", "a\nb.xml", "a$b.xml", "a\nb.pbrt", "a\nb.obj", "a#b.obj", "a\\b.obj"):
+            result = self.interflect("export", "room.h5", "-o", name, exit_code=BAD_INPUT)
+            self.assertIn("cannot hold this name", result.stderr)
+            self.assertEqual(self.files(), before)
+
+    def test_long_names_of_materials_are_shortened_and_numbered(self):
+        """Seen to fail with "File name too long"."""
+        text = room()
+        for name, suffix in (("paint", "a"), ("lamp", "b")):
+            text = text.replace(f"m {name}", f"m {'x' * 250}{suffix}")
+        self.write("room.mgf", text)
+        self.export("room.pbrt")
+        self.assertEqual(len([name for name in self.files() if name.endswith(".ply")]), 2)
+
     def test_takes_solutions(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
         text, _ = self.export("room.pbrt")

@@ -57,6 +57,28 @@ class Info(CommandTest):
         self.write("leaf.mtl", "newmtl leaf\nmap_Kd ../missing.png\n")
         result = self.interflect("info", "leaf.obj", exit_code=BAD_INPUT)
         self.assertIn("lies outside the scene's folder", result.stderr)
+        self.assertIn("--outside-files allows it", result.stderr)
+
+    def test_refusals_of_outside_files_name_the_option_in_every_format(self):
+        self.write("outside.bin", "nothing")
+        gltf = {
+            "asset": {"version": "2.0"},
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"uri": "../outside.bin", "byteLength": 36}],
+        }
+        self.write("in/a.gltf", json.dumps(gltf))
+        self.write("in/a.obj", "mtllib ../outside.bin\n")
+        self.write("in/a.rad", "!xform ../outside.bin\n")
+        self.write("in/a.ies", "IESNA91\nTILT=../outside.bin\n")
+        self.write("in/a.mgf", room() + "ies a.ies\n")
+        for name in ("a.obj", "a.rad", "a.mgf", "a.gltf"):
+            with self.subTest(name=name):
+                result = self.interflect("info", f"in/{name}", exit_code=BAD_INPUT)
+                self.assertIn("--outside-files allows it", result.stderr)
 
     def test_what_is_left_out_is_reported_once_a_kind_with_file_and_line(self):
         shiny = vertices((0.5, 1, 1), (0.5, 2, 1), (1.5, 2, 1)) + "m shiny =\n\trs .2 0\n\trd .3\nf v0 v1 v2\n"

@@ -54,6 +54,13 @@ class Illuminance(ProbeTest):
         self.assertAlmostEqual(area["uniformity"], min(values) / area["mean"], delta=1e-5)
         self.assertAlmostEqual(area["diversity"], min(values) / max(values), delta=1e-5)
 
+    def test_by_paths_cuts_faces_at_contacts_as_solving_does(self):
+        sheet = "m sheet =\n\trd 0.5\n" + vertices((1, 1, 0), (2, 1, 0), (2, 1, 1), (1, 1, 1)) + "f v0 v1 v2 v3\n"
+        self.write("standing.mgf", floor() + sheet)
+        path, message = ("standing.mgf", "--shading", "path", "--samples", "2", "--point", "3,3,1"), "faces are cut"
+        self.assertIn(message, self.interflect("probe", *path).stderr)
+        self.assertNotIn(message, self.interflect("probe", *path, "--no-contact-cuts").stderr)
+
     def test_of_every_quantity_at_a_point(self):
         # The lamp is 3 m to the side (+x) and 1.5 m above.
         point, r = ("--point", "-1,2,1"), math.hypot(3, 1.5)
@@ -166,18 +173,18 @@ class Faults(ProbeTest):
 
     def test_say_what_was_expected(self):
         csv_file = ("-o", "out.csv")
-        self.assert_refused(csv_file, "expected --grid, --plane")
+        self.assert_refused(csv_file, "expected --grid, --plane", exit_code=WRONG_USAGE)
         self.assert_refused(["--grid", "flor", *csv_file], "'flor'", "'floor'")
         self.assert_refused(["--grid", "floor", "--boundary=3", *csv_file], "boundary")
         self.assert_refused(["--grid", "floor", "--spacing", "1e-5", *csv_file], "at most 1000000")
         self.assert_refused(["--surface", "floor", "--facing", "1,0,0"], "faces 1,0,0")
         self.assert_refused(["--plane", "-1"], "no floor")
-        self.assert_refused(["--point", "1,1,1", "--quantity", "vertical"], "--direction")
-        self.assert_refused(["--point", "1,1,1", "--quantity", "semicylindrical", "--direction", "0,0,1"], "--direction")
-        self.assert_refused(["--point", "1,1,1", "--direction", "1,0,0"], "--direction")
-        self.assert_refused(["--point", "1,1,1", "--spacing", "1"], "--spacing")
-        self.assert_refused(["--point", "1,1,1", "--over", "floor"], "--over")
-        self.assert_refused(["--point", "1,1,1", "--rays", "1M"], "--rays")
+        self.assert_refused(["--point", "1,1,1", "--quantity", "vertical"], "--direction", exit_code=WRONG_USAGE)
+        self.assert_refused(["--point", "1,1,1", "--quantity", "semicylindrical", "--direction", "0,0,1"], "--direction", exit_code=WRONG_USAGE)
+        self.assert_refused(["--point", "1,1,1", "--direction", "1,0,0"], "--direction", exit_code=WRONG_USAGE)
+        self.assert_refused(["--point", "1,1,1", "--spacing", "1"], "--spacing", exit_code=WRONG_USAGE)
+        self.assert_refused(["--point", "1,1,1", "--over", "floor"], "--over", exit_code=WRONG_USAGE)
+        self.assert_refused(["--point", "1,1,1", "--rays", "1M"], "--rays", exit_code=WRONG_USAGE)
         self.assert_refused(["--point", "1,1,1", "-o", "floor.mgf"], "floor.mgf")
 
     def test_of_usage(self):

@@ -141,7 +141,7 @@ class Report(CommandTest):
                 result = self.interflect("report", "rooms.h5", "-o", "page.html", *arguments, exit_code=exit_code)
                 self.assertIn(words, result.stderr)
         self.interflect("report", "rooms.mgf", "-o", "page.html", exit_code=BAD_INPUT)
-        self.interflect("report", "rooms.h5", "-o", "rooms.h5", exit_code=BAD_INPUT)
+        self.interflect("report", "rooms.h5", "-o", "rooms.h5", exit_code=WRONG_USAGE)
         self.assertEqual(self.files(), ["rooms.h5", "rooms.mgf"])
 
     def test_an_interruption_writes_nothing(self):

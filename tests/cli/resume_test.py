@@ -5,7 +5,7 @@ import subprocess
 import time
 import unittest
 
-from command import BAD_INPUT, COMMAND, DONE, INTERRUPTED, VIEW, CommandTest, room
+from command import BAD_INPUT, COMMAND, DONE, INTERRUPTED, VIEW, WRONG_USAGE, CommandTest, room
 
 RUN = ("solve", "room.mgf", "--rays", "1M", "--mesh-size", "0.5")
 METHODS = (("--method", "hsrr"), (*VIEW, "--method", "ihsrr"), ("--method", "hwdrs"), ("--method", "random-walk"))
@@ -74,14 +74,14 @@ class Resume(CommandTest):
 
     def test_what_cannot_be_resumed_is_refused(self):
         self.interflect(*RUN, "-o", "result.h5")
-        for arguments, reason in (
-            (("resume", "result.h5", "-o", "out.h5"), "not its state"),
-            (("resume", "room.mgf", "-o", "out.h5"), "a checkpoint is a solution file"),
-            ((*RUN, "-o", "out.h5", "--checkpoint", "run.mgf"), "ends in .h5"),
-            ((*RUN, "-o", "out.h5", "--checkpoint", "out.h5"), "same file"),
+        for arguments, reason, exit_code in (
+            (("resume", "result.h5", "-o", "out.h5"), "not its state", BAD_INPUT),
+            (("resume", "room.mgf", "-o", "out.h5"), "a checkpoint is a solution file", BAD_INPUT),
+            ((*RUN, "-o", "out.h5", "--checkpoint", "run.mgf"), "ends in .h5", WRONG_USAGE),
+            ((*RUN, "-o", "out.h5", "--checkpoint", "out.h5"), "same file", BAD_INPUT),
         ):
             with self.subTest(arguments=arguments):
-                self.assertIn(reason, self.interflect(*arguments, exit_code=BAD_INPUT).stderr)
+                self.assertIn(reason, self.interflect(*arguments, exit_code=exit_code).stderr)
 
 
 if __name__ == "__main__":

@@ -53,6 +53,9 @@ class Skies(CommandTest):
     def test_light_groups_dim_the_sky(self):
         self.interflect("solve", "open.mgf", "-o", "out.h5", "--rays", "100k", *DAYLIGHT[:4], "--group", "sun=sun-*",
                         "--group", "sky=sky-*")
+        error = self.interflect("render", "out.h5", "-o", "no.exr", *VIEW, *SMALL, "--dim", "moon=1", exit_code=BAD_INPUT).stderr
+        for word in ("--dim moon=1", "'moon'", "sun", "sky"):
+            self.assertIn(word, error)
         self.interflect("render", "out.h5", "-o", "sky.exr", *VIEW, *SMALL, "--dim", "sun=0", "--dim", "sky=0.5",
                         "--shading", "path")
         self.interflect("solve", "open.mgf", "-o", "alone.h5", "--rays", "100k", "--sky", "clear:4500", "--sun", "180,30,0")

@@ -92,6 +92,58 @@ class WrongUsage(CommandTest):
             for value in values:
                 self.assert_wrong([*RENDER, f"{option}={value}"], option)
 
+    def test_light_groups_and_skies(self):
+        for text in ("desk", "=lamp", "desk="):
+            self.assert_wrong([*SOLVE, "--group", text], "--group", "NAME=PATTERN")
+        for text in ("desk", "desk=", "=1", "desk=bright", "desk=-1", "desk=nan"):
+            for subcommand in (RENDER, ("probe", "room.mgf", "--point", "1,1,1")):
+                self.assert_wrong([*subcommand, "--dim", text], "--dim", "GROUP=FACTOR")
+        for text in ("perez:-1,5", "perez:5,-1", "clear:-1"):
+            self.assert_wrong([*SOLVE, "--sky", text], "--sky", "perez:DIRECT,DIFFUSE")
+
+    def test_exports(self):
+        for option, values in {
+            "--pixel-samples": ("-1", "0", "1e18"),
+            "--probe-rays": ("1e18", "7", "2000000", "-1"),
+            "--probe-spacing": ("0", "-1", "nan", "1e99"),
+            "--up": ("0,0,0",),
+        }.items():
+            for value in values:
+                self.assert_wrong(["export", "room.mgf", "-o", "out.json", f"{option}={value}"], option)
+        self.assert_wrong(
+            ["export", "room.mgf", "-o", "out.glb", "--lightmap", "--lightmap-max-size", "65"],
+            "--lightmap-max-size", "multiple of 4",
+        )
+
+    def test_names_of_outputs(self):
+        for arguments, option, expected in (
+            (("solve", "room.mgf", "-o", "out.png"), "--output", ".h5"),
+            ((*SOLVE, "--checkpoint", "out"), "--checkpoint", ".h5"),
+            (("resume", "room.h5", "-o", "out.png"), "--output", ".h5"),
+            (("render", "room.mgf", "-o", "out.gif"), "--output", ".png .jpg .jpeg .exr .hdr"),
+            ((*RENDER, "--shading", "path", "--error-image", "out.jpg"), "--error-image", ".exr"),
+            ((*RENDER, "--shading", "path", "--error-image", "out"), "--error-image", ".exr"),
+            ((*RENDER, "--shading", "path", "--layers"), "--layers", ".exr"),
+            (("report", "room.mgf", "-o", "r.txt"), "--output", ".html"),
+            (("export", "room.mgf", "-o", "out.xyz"), "--output", ".glb"),
+            (("make-scene", "maze", "-o", "out.obj"), "--output", ".mgf"),
+        ):
+            self.assert_wrong(arguments, option, expected)
+
+    def test_options_without_effect(self):
+        for arguments, option in (
+            ((*RENDER, "--extent", "3"), "--extent"),
+            ((*RENDER, "--scale", "1..2"), "--scale"),
+            ((*RENDER, "--display-luminance", "90"), "--display-luminance"),
+            ((*RENDER, "--shading", "path", "--rays", "1k"), "--rays"),
+            ((*RENDER, "--shading", "smooth", "--denoise"), "--denoise"),
+            (("probe", "room.mgf"), "--grid"),
+            (("probe", "room.mgf", "--point", "1,1,1", "--direction", "1,0,0"), "--direction"),
+            (("probe", "room.mgf", "--point", "1,1,1", "--quantity", "vertical"), "--direction"),
+            (("probe", "room.mgf", "--point", "1,1,1", "--quantity", "ugr", "--direction", "0,0,0"), "--direction"),
+        ):
+            self.assert_wrong(arguments, option)
+
     def test_an_eye_needs_something_to_look_at(self):
         self.assert_wrong([*RENDER, "--eye", "1,1,1"], "--eye", "--look-at")
         self.assert_wrong([*RENDER, "--look-at", "1,1,1"], "--eye", "--look-at")
