@@ -32,6 +32,7 @@ class Program:
 @dataclass(frozen=True)
 class Finished:
     output: str  # what it printed to stdout
+    messages: str  # and to stderr
     seconds: float  # from start to end, reading the scene included
     peak_mib: float  # largest resident memory
 
@@ -75,7 +76,7 @@ def run(program: Program, arguments: list[str]) -> Finished:
     if cost["exit_code"] != 0:
         said = "\n".join(messages.splitlines()[-5:])
         raise ExperimentError(f"interflect {' '.join(arguments)}\nended with exit code {cost['exit_code']}:\n{said}")
-    return Finished(output, cost["seconds"], cost["peak_mib"])
+    return Finished(output, messages, cost["seconds"], cost["peak_mib"])
 
 
 def read_stats(path: Path) -> tuple[dict, dict]:

@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +23,11 @@ def write_csv(path: Path, rows: Iterable[dict], columns: Iterable[str] = COLUMNS
         writer.writerows(rows)
 
 
-def read_csv(path: Path) -> list[Row]:
-    """All columns but those of TEXT as numbers; nan where there is none."""
+def read_csv(path: Path, texts: Collection[str] = TEXT) -> list[Row]:
+    """All columns but `texts` as numbers; nan where there is none."""
 
     def value(column: str, text: str) -> str | float:
-        return text if column in TEXT else float(text or math.nan)
+        return text if column in texts else float(text or math.nan)
 
     with path.open(newline="") as file:
         return [{column: value(column, text) for column, text in row.items()} for row in csv.DictReader(file)]
