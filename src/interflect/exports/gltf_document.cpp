@@ -110,7 +110,7 @@ int GltfDocument::add_texture(const Image& image, const std::string& name, bool 
     return add("textures", {{"name", escaped(name)}, {"sampler", sampler}, {"source", source}});
 }
 
-GltfDocument::Json GltfDocument::complete(bool with_data) const {
+Json GltfDocument::complete(bool with_data) const {
     Json result = json;
     if (buffer_.empty()) return result;
     Json buffer{{"byteLength", buffer_.size()}};

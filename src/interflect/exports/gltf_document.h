@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "interflect/colour.h"
+#include "interflect/exports/json_text.h"
 #include "interflect/image.h"
 #include "interflect/texture.h"
 
@@ -15,8 +15,6 @@ namespace interflect::inline detail {
 /// A glTF 2.0 file that is being written: its JSON, and the one buffer that everything binary is in.
 class GltfDocument {
   public:
-    using Json = nlohmann::ordered_json;
-
     GltfDocument();
 
     /// What else the file says; callers add to it. Its arrays have indices, see add().

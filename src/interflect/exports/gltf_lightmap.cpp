@@ -20,8 +20,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-using Json = GltfDocument::Json;
-
 struct MappedVertex {
     std::uint32_t point;
     V2f coordinate, lightmap_coordinate;

@@ -15,8 +15,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-using Json = GltfDocument::Json;
-
 Json json_of(const Imath::V3d& v) { return {v.x, v.y, v.z}; }
 /// (x, y, z, w), as glTF has them.
 Json json_of(const Imath::Quatd& q) { return {q.v.x, q.v.y, q.v.z, q.r}; }

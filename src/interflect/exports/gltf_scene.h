@@ -11,7 +11,7 @@
 namespace interflect::inline detail {
 
 /// The primitives of glTF meshes, by object of the scene.
-using GltfPrimitives = std::map<std::uint32_t, std::vector<GltfDocument::Json>>;
+using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
 
 /// Adds the nodes: below a root, which turns `up` to y and moves the scene's origin where it is in the world, each
 /// object with its mesh, and each view with its camera.
@@ -23,13 +23,13 @@ class GltfTextures {
     GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
 
     /// Diffuse reflection as pbrMetallicRoughness, with the image of the reflectance where there is one.
-    GltfDocument::Json diffuse(const Material& material);
+    Json diffuse(const Material& material);
     /// Gives a material holes, by the alpha of its base colour's texture, which it then has in any case.
     /// @param json  What has been made of the material. @param material  It has a texture of transmittance.
     /// @param peak  What the reflectance is divided by.
-    void cut_out(GltfDocument::Json& json, const Material& material, const Rgb& peak = Rgb(1));
+    void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
     /// A reference to a texture of the scene, divided by `peak`.
-    GltfDocument::Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
+    Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
 
   private:
     GltfDocument& document_;

@@ -17,8 +17,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-using Json = GltfDocument::Json;
-
 /// Whether the image of a material stays in the file, so that vertices hold only what it is multiplied by.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);

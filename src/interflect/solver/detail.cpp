@@ -75,7 +75,23 @@ float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint
 /// Mean square errors of every element; bias may be negative.
 struct ElementErrors {
     std::vector<float> noise, bias;
+    std::vector<float> noise_of_patch;  // the part of the noise that is there without details
 };
+
+/// The noise of an element, over the mean of its siblings' noise: what is bright is noisier than what is dark, as far
+/// as their differences are kept. Its mean over the siblings is 1.
+float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_t e) {
+    const ElementForest& forest = *state.forest;
+    if (state.history[first] == 0) return 1;  // they are what their parent is
+    float variance = 0, area = 0;
+    const auto variance_of = [&](std::uint32_t k) {
+        return state.noise.variance(forest, state.solution.irradiance, k, state.history[first]);
+    };
+    for (std::uint32_t k = first; k < first + 4; ++k)
+        variance += forest.area(k) * variance_of(k), area += forest.area(k);
+    const float kept = uses_shrinkage(state) ? detail_of(state, first).shrinkage() : 1;
+    return variance > 0 ? 1 + kept * (variance_of(e) * area / variance - 1) : 1;
+}
 
 /// @param measure  Errors of the pixels that show an element, or of the element itself.
 ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
@@ -90,12 +106,15 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
         const float rays = std::max(state.history[root], 1.0f);
         errors.noise[root] = left * state.noise.variance(forest, state.solution.irradiance, root, rays);
     }
+    errors.noise_of_patch = errors.noise;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const auto [noise, bias] = added_error(state, first);
         const std::uint32_t parent = forest.parent(first);
         const float left = left_of_siblings(state, measure, first);
         for (std::uint32_t e = first; e < first + 4; ++e) {
-            errors.noise[e] = errors.noise[parent] + left * noise;
+            const float share = share_of_noise(state, first, e);
+            errors.noise[e] = share * (errors.noise[parent] + left * noise);
+            errors.noise_of_patch[e] = share * errors.noise_of_patch[parent];
             errors.bias[e] = errors.bias[parent] + left * bias;
         }
     });
@@ -181,7 +200,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.weight += w;
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
-            sums.noise_of_patches += w * errors.noise[forest.patch(e)];
+            sums.noise_of_patches += w * errors.noise_of_patch[e];
             // What varies within a pixel is no error of the picture.
             const double resolved =
                 measure == ErrorMeasure::surfaces ? 1 : std::max(0.0f, 1 - pixel_area(state, e) / forest.area(e));
@@ -281,14 +300,24 @@ SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
 double error_reference(const SolverState& state, ErrorMeasure measure) {
     const ElementForest& forest = *state.forest;
     const bool of_pictures = measure == ErrorMeasure::pictures;
-    double sum = 0, weight = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
-        const double w = of_pictures ? static_cast<double>(state.solution.view_importance[i]) : 1.0;
-        const Rgb& h = state.solution.irradiance[i];
-        sum += w * forest.area(i) * luminance(of_pictures ? Rgb(state.materials.reflectance(i) * h) : h);
-        weight += w * forest.area(i);
-    }
-    return weight > 0 ? sum / weight : 0;
+    struct Sums {
+        double light = 0, weight = 0;
+        Sums& operator+=(const Sums& o) { return light += o.light, weight += o.weight, *this; }
+    };
+    const Sums sums = parallel_sum(forest.size(), elements_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
+        Sums sum;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const double w =
+                forest.area(e) * (of_pictures ? static_cast<double>(state.solution.view_importance[e]) : 1.0);
+            const Rgb& h = state.solution.irradiance[e];
+            const Rgb& rho = state.materials.surface(forest.patch(e), e).reflectance;
+            sum.light += w * luminance(of_pictures ? Rgb(rho * h) : h);
+            sum.weight += w;
+        }
+        return sum;
+    });
+    return sums.weight > 0 ? sums.light / sums.weight : 0;
 }
 
 double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element) {
