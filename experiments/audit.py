@@ -1,8 +1,8 @@
 """Awkward scenes against path-traced pictures: `experiments/run audit`, with `--only cornell soup` those scenes only.
 
 Each scene is solved with ihsrr and hsrr for a view, by rays and by error, and some also without a view. Targets: mean within 1% of
-path tracing, blocks of 9 x 9 pixels within 3%, estimated over true error 0.8 to 1.25. References are path-traced once and kept by
-what is in the scene and how it is seen, whatever build made them; rows of results/audit.csv that this build has measured are kept too.
+path tracing, blocks of 9 x 9 pixels within 3%, estimated over true error 0.8 to 1.25. References are path-traced once per scene and view,
+for all builds; rows of results/audit.csv that this build has measured are not measured again.
 """
 
 import hashlib
@@ -24,17 +24,17 @@ BLOCK_PICTURE_ROWS = 90  # of the picture of 160 x 90 pixels in which blocks are
 TARGETS = {"mean": (0.99, 1.01), "blocks": (0.0, 0.03), "estimate": (0.8, 1.25), "total": (0.995, 1.005)}
 RUNS = [(method, limit) for method in ("ihsrr", "hsrr") for limit in ("rays", "5%")]
 
-# Why a scene misses a target, as far as it is known; printed only beside misses.
+# Known reasons why scenes miss a target; printed beside misses.
 REASONS: dict[str, str] = {}
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Of a measurement: what is asked for by default, or little of all to try it."""
+    """Rays, pixels and samples of a measurement: the defaults, or few to try it."""
 
     rays: int = 8_000_000
     size: tuple[int, int] = (1280, 720)  # the pixels that the solver's estimate assumes
-    samples: int | None = None  # paths a pixel of each reference picture; None: as the scene says
+    samples: int | None = None  # paths per pixel of each reference picture; None: Scene.samples
     most_rays: int = 64_000_000  # where an error is asked for
     total_rays: int = 60_000_000  # of random walks, for the total power
 
@@ -59,7 +59,7 @@ class Reference:
         with np.load(kept) as arrays:
             self.pictures = [arrays[f"reflected{seed}"].astype(float) for seed in self.SEEDS]
             self.shines, self.surface = arrays["shines"], arrays["surface"]
-        # Lamps and skies in view and the pixels beside them do not count: what is compared is reflected light.
+        # Only reflected light is compared: without lamps, skies and the pixels beside them.
         self.counts = ~widened(self.shines)
         self.mean = np.mean(sum(self.pictures)[self.counts]) / 2
         self.side = BLOCK * scale.size[1] // BLOCK_PICTURE_ROWS  # of a block, in pixels
@@ -95,11 +95,11 @@ class Reference:
         return math.sqrt(max(0.0, float(np.mean(first * second)))) / self.mean
 
     def block_noise(self) -> float:
-        """What the noise of the mean of both pictures would add."""
+        """Noise of the mean of both pictures, in the unit of block_error()."""
         return float(np.sqrt(np.mean(self._blocks(self.pictures[0] - self.pictures[1]) ** 2))) / 2 / self.mean
 
     def _blocks(self, values: np.ndarray) -> np.ndarray:
-        """Means of the blocks of which at least half counts."""
+        """Means of blocks, without those of which less than half is compared."""
         rows, columns = (side // self.side for side in values.shape)
         cut = lambda v: v[: rows * self.side, : columns * self.side].reshape(rows, self.side, columns, self.side)
         weights = cut(self.counts.astype(float)).mean(axis=(1, 3))
@@ -109,7 +109,7 @@ class Reference:
         """The error that the solver estimates (docs/method.md, Errors): root mean square error of a pixel's reflected light over
         the picture's mean. Then its standard error, and the error among the pixels that show a surface."""
         product = (picture - self.pictures[0]) * (picture - self.pictures[1])
-        visible = self.counts | ~self.surface  # a pixel of sky or of nothing has neither light nor error
+        visible = self.counts | ~self.surface  # pixels without a surface have neither light nor error
         product, light = np.where(self.counts, product, 0.0), np.where(self.counts, sum(self.pictures) / 2, 0.0)
         square, mean = float(product[visible].mean()), float(light[visible].mean())
         error = math.sqrt(max(0.0, square)) / mean
@@ -219,7 +219,7 @@ def read_rows(table: Path) -> list[dict]:
 
 
 def misses(row: dict) -> list[str]:
-    """The targets that a row misses. Columns that a run does not have are nan, which misses none."""
+    """Names of the targets that a row misses; nan, in columns without a figure, misses none."""
     found = {"mean": row["mean"], "blocks": row["blocks"], "estimate": row["estimate_over_error"], "total": row["total_over_reference"]}
     return [name for name, (low, high) in TARGETS.items() if not math.isnan(found[name]) and not low <= found[name] <= high]
 

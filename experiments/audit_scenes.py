@@ -75,7 +75,7 @@ class Mgf:
                 self.face(materials[name], *(points[::-1] if inwards else points))
 
     def fixture(self, lamp: str, low: Point, size: Point, ceiling: float | None = None, shines: str = "-z") -> None:
-        """A closed box that shines on one side, so that no light passes its back; it reaches up to a ceiling if that is given."""
+        """A closed box with one luminous side; with `ceiling`, it reaches up to the ceiling."""
         size = [*size[:2], ceiling - low[2]] if ceiling else size
         housing = dict.fromkeys(("-x", "+x", "-y", "+y", "-z", "+z"), "grey")
         self.sides(housing | {shines: lamp}, low, size, without="+z" if ceiling else "")
@@ -165,7 +165,7 @@ def soup() -> Scene:
 
 
 def white_box() -> Scene:
-    """Total power is that of the lamp over 1 - 0.95, since all surfaces reflect 0.95."""
+    """All surfaces reflect 0.95, so the total power is the power of the lamp / (1 - 0.95)."""
     m = Mgf()
     m.material("white", "rd 0.95")
     m.box("white", (0, 0, 0), (4.1, 2.9, 3.3), inwards=True)
@@ -271,7 +271,7 @@ def house(m: Mgf, hole: Point) -> None:
 
 
 def sun_window() -> Scene:
-    """Parallel sunlight through a window of 0.41 x 0.42 m; there is nothing else."""
+    """Parallel sunlight through a window of 0.41 x 0.42 m."""
     m = Mgf()
     house(m, (0.4, 0.5, 0.5, 0.65))
     m.add(f"light directional {m.vertex((0, 0, 0), 'n 0.8 0.22 -0.5')} 60000")
@@ -344,7 +344,7 @@ def slit() -> Scene:
 
 
 def landscape(m: Mgf, clear: float) -> None:
-    """Hills of 1 km x 1 km around a flat middle of half side `clear`, below it by nothing."""
+    """Hills of 1 km x 1 km around a flat square of side 2 `clear` at height 0."""
     m.material("grass", "rd 0.19", sides=2, colour=(0.35, 0.42))
     random_, n, step = random.Random(5), 24, 1000 / 24
     heights = [[random_.uniform(0, 22) for _ in range(n + 1)] for _ in range(n + 1)]
@@ -417,7 +417,7 @@ def t_junctions() -> Scene:
 
 
 def quad_or_triangles(m: Mgf, material: str, corners: Sequence[Point], triangles: bool) -> None:
-    """Triangles are those that rays meet: divided between the second corner and the fourth."""
+    """The triangles that rays hit: quadrilaterals are divided between the second corner and the fourth."""
     a, b, c, d = corners
     for points in ((a, b, d), (c, d, b)) if triangles else (corners,):
         m.face(material, *points)
@@ -457,8 +457,8 @@ def non_planar_tiles() -> Scene:
 
 
 def displaced_corner() -> Scene:
-    """Two rooms divided by one quadrilateral of which a corner is displaced by 1 mm. The room of the view has a twentieth of the
-    light of the other one."""
+    """Two rooms divided by one quadrilateral with a corner displaced by 1 mm. The view shows the room with a twentieth of the
+    light."""
 
     def make(triangles: bool) -> Mgf:
         m = Mgf()

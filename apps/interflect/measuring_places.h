@@ -34,7 +34,7 @@ struct MeasuringPlaces {
     void add_to(CLI::App& app);
     /// How much there must be to measure.
     enum class Least { none, one };
-    /// @throws UsageError where there is less to be measured, and for options without effect.
+    /// @throws UsageError where nothing can be measured, and for options without effect.
     void check(Least least = Least::one) const;
     /// A grid each; all points are one. @throws InputError as find_surface() and area_grid() do.
     std::vector<MeasuringGrid> grids(const Scene& scene) const;

@@ -24,7 +24,7 @@ def write_csv(path: Path, rows: Iterable[dict], columns: Iterable[str] = COLUMNS
 
 
 def read_csv(path: Path, texts: Collection[str] = TEXT) -> list[Row]:
-    """All columns but `texts` as numbers; nan where there is none."""
+    """All columns as numbers except `texts`; empty cells are nan."""
 
     def value(column: str, text: str) -> str | float:
         return text if column in texts else float(text or math.nan)

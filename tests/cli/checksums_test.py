@@ -28,7 +28,7 @@ class Checksums(CommandTest):
         content = bytearray(self.bytes("office.h5"))
         content[-1] ^= 4
         (self.folder / "office.h5").write_bytes(content)
-        # The damaged array is the last one of the file.
+        # The last array of the file is damaged.
         self.assertRegex(self.verify().stderr, r"AssertionError: /[a-z/_]+ is damaged")
 
 

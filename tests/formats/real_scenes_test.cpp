@@ -53,7 +53,7 @@ TEST(RealScenes, Cube) {
 
 TEST(RealScenes, Office2) {
     const Scene scene = load("office2.mgf");
-    // 103 triangles and 319 quadrilaterals, of which one is one-sided and 8 are warped: these become 16 triangles.
+    // 103 triangles and 319 quadrilaterals: one of them is one-sided, and 8 are warped and become 16 triangles.
     EXPECT_EQ(scene.patches.size(), 2u * (421 + 8) + 1);
     EXPECT_EQ(triangles(scene), 2u * (103 + 16));
     EXPECT_NEAR(area(scene), 217.591894, 1e-4);

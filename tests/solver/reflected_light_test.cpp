@@ -1,5 +1,5 @@
-// Where reflected light leaves, and that none is lost. A pass follows all light to its end, so a run may stop after any
-// pass; and leaves that blur much reflect light from the points that received it, so coarse meshes do not move light.
+// A pass traces all light until it is absorbed, so a run may stop after any pass. Leaves that would blur much light
+// reflect it from the points that received it, so coarse meshes do not move light.
 // Correct code fails a test with a chance of 0.001 (statistics.h); seeds are fixed.
 //
 // Earlier versions of the solver had both errors: 1.6% of the light was missing, and 5% too much under such lamps.

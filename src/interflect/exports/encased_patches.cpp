@@ -49,8 +49,8 @@ class Surroundings {
         return hit.patch == none || !is_dark_[hit.patch] ||
                scene_.materials[scene_.patches[hit.patch].material].transmittance != Rgb(0);
     }
-    /// Traces the ray backwards from its hit. The fronts of one-sided faces stop it; their backs let the ray through.
-    /// @return  Distance between the ray's origin and the end of the backward ray [m]; about 0 if nothing is between.
+    /// Traces the reverse of a ray from its hit point. Fronts of one-sided faces stop it, their backs do not.
+    /// @return  Distance from the origin of the ray to the end of its reverse [m]; about 0 where nothing stopped it.
     float distance_from_patch(const Ray& ray, const Hit& hit, float distance) const {
         const float start = hit.patch == none ? distance : distance - ray_caster_.ray_offset(hit.patch);
         const Ray back{ray.origin + start * ray.direction, -ray.direction};

@@ -19,7 +19,7 @@ std::vector<std::string> plain_names(const std::vector<std::string>& names, cons
                                      std::size_t most = std::string::npos);
 /// Plain names of the materials, short enough for names of files.
 std::vector<std::string> material_names(const Scene& scene);
-std::vector<std::string> object_names(const Scene& scene);  ///< Of each object.
+std::vector<std::string> object_names(const Scene& scene);  ///< By object.
 
 /// The images of a scene's textures, in files beside `path`: PNG where that keeps every texel, else OpenEXR.
 std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const Scene& scene);

@@ -78,11 +78,11 @@ struct ElementErrors {
     std::vector<float> noise_of_patch;  // the part of the noise that is there without details
 };
 
-/// The noise of an element, over the mean of its siblings' noise: what is bright is noisier than what is dark, as far
-/// as their differences are kept. Its mean over the siblings is 1.
+/// Ratio of the noise of an element to the mean noise of its siblings: bright siblings are noisier than dark ones unless
+/// their differences are reduced. The area-weighted mean of the ratio is 1.
 float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_t e) {
     const ElementForest& forest = *state.forest;
-    if (state.history[first] == 0) return 1;  // they are what their parent is
+    if (state.history[first] == 0) return 1;
     float variance = 0, area = 0;
     const auto variance_of = [&](std::uint32_t k) {
         return state.noise.variance(forest, state.solution.irradiance, k, state.history[first]);

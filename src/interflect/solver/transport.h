@@ -54,7 +54,7 @@ struct TransportStep {
     Oracle oracle;
     /// Random walks complete the transport of the step's power: no later step reflects it (Walks).
     bool to_the_end = false;
-    /// Nonzero for each element that reflects light from the points that receive it; empty: none does. The step returns
+    /// Nonzero for each element that reflects light where it was received; empty: no element does. The step returns
     /// these points (Received::start_points); all other leaves reflect uniformly.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(std::uint32_t leaf) const {

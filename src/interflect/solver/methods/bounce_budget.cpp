@@ -32,7 +32,7 @@ BounceRays BounceBudget::next(double unshot) {
     last_unshot_ = unshot;
     // Unshot power of this bounce and all later ones: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
-    // What the previous pass did not have must not take the rays of this one: later bounces keep a tenth.
+    // Later bounces keep a tenth, for light that the previous pass did not find.
     const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
     const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / bounces_);
     const double to_walk = std::max(planned, geometric);

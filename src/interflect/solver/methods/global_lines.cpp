@@ -61,7 +61,7 @@ struct LineBundle {
     /// Of each line, how much farther than the patch that it crossed last something may be and still coincide with it
     /// [m]; infinite before the first.
     std::vector<float> slack;
-    std::vector<std::uint32_t> crossed;  ///< Last patch of each line, or none.
+    std::vector<std::uint32_t> crossed;  ///< The last patch that each line hit.
     std::vector<Hit> hits, seen;
     std::vector<LineSegment> segments;
 };
