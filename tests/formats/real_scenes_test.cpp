@@ -56,7 +56,7 @@ TEST(RealScenes, Office2) {
     // 103 triangles and 319 quadrilaterals: one of them is one-sided, and 8 are warped and become 16 triangles.
     EXPECT_EQ(scene.patches.size(), 2u * (421 + 8) + 1);
     EXPECT_EQ(triangles(scene), 2u * (103 + 16));
-    EXPECT_NEAR(area(scene), 217.591894, 1e-4);
+    EXPECT_NEAR(area(scene), 217.59212, 1e-4);  // 0.00023 more than the flat areas of the warped ones
     EXPECT_NEAR(luminous_power(scene), 2600, 0.01);
 }
 
