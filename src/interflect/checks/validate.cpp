@@ -9,8 +9,8 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/raycast/coincident.h"
 #include "interflect/scene/limits.h"
-#include "interflect/solver/face_surroundings.h"
-#include "interflect/solver/open_edges.h"
+#include "interflect/checks/face_surroundings.h"
+#include "interflect/checks/open_edges.h"
 
 namespace interflect {
 
