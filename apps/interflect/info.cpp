@@ -14,7 +14,7 @@
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/solution_info.h"
-#include "apps/interflect/up_axis.h"
+#include "interflect/checks/up_axis.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"

@@ -6,6 +6,7 @@
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/messages.h"
+#include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/exports/json_text.h"
@@ -59,16 +60,6 @@ Json json_of(const Finding& finding) {
                           {"position", place.has_position ? interflect::json_of(place.position) : Json(nullptr)}});
     return {{"kind", finding.kind},     {"problem", finding.is_problem}, {"message", finding.message},
             {"advice", finding.advice}, {"count", finding.count},        {"places", places}};
-}
-
-std::string text_of(const Finding::Place& place) {
-    std::string text = place.where;
-    const auto append = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-    if (!place.object.empty()) append(fmt::format("object '{}'", place.object));
-    if (!place.material.empty()) append(fmt::format("'{}'", place.material));
-    if (place.has_position)
-        append(fmt::format("at ({:.6g}, {:.6g}, {:.6g})", place.position.x, place.position.y, place.position.z));
-    return text;
 }
 
 void print_finding(const Finding& finding) {

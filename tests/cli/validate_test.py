@@ -95,5 +95,67 @@ class Validate(CommandTest):
         self.assertNotIn("at (", result.stdout)
 
 
+class Misplaced(CommandTest):
+    """What is probably a mistake of placing: `validate` lists it, and `solve`, `probe` and `report` warn."""
+
+    LUMINAIRE = "IESNA:LM-63-2002\nTILT=NONE\n1 400 1 2 1 1 2 .2 .2 0\n1 1 30\n0 90\n0\n100 100\n"
+    RAYS = ("--rays", "10k")
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("lamp.ies", self.LUMINAIRE)
+
+    def kinds(self, *arguments):
+        return {finding["kind"] for finding in self.json("validate", "room.mgf", *arguments)["findings"]}
+
+    def warnings(self, *arguments):
+        return [line for line in self.interflect(*arguments).stderr.splitlines() if line.startswith("warning: ")]
+
+    def test_luminaire_behind_the_ceiling(self):
+        """0.2 mm above it the room was dark, and nothing was said."""
+        behind, before = ("--luminaire", "lamp.ies@.2,.2,2.5002"), ("--luminaire", "lamp.ies@.2,.2,2.4998")
+        self.assertIn("close-luminaire", self.kinds(*behind))
+        self.assertNotIn("close-luminaire", self.kinds(*before))
+        solve = ("solve", "room.mgf", "-o", "room.h5", *self.RAYS)
+        self.assertNotIn("luminaires lie", "".join(self.warnings(*solve, *before)))
+        commands = (
+            (*solve, *behind),
+            ("probe", "room.h5", "--point", "1,1,1", "--samples", "4"),
+            ("probe", "room.mgf", *behind, "--shading", "path", "--point", "1,1,1", "--samples", "4"),
+            ("report", "room.h5", "-o", "room.html", "--samples", "4", "--size", "8x8"),
+        )
+        for command in commands:
+            with self.subTest(command=command):
+                found = [line for line in self.warnings(*command) if "luminaires lie behind a surface" in line]
+                self.assertEqual(len(found), 1)
+                self.assertIn("'lamp-1', at (0.2, 0.2, 2.5002); move them", found[0])
+
+    def test_sky_that_cannot_enter(self):
+        self.assertIn("shut-out-sky", self.kinds("--sky", "overcast"))
+        found = self.warnings("solve", "room.mgf", "-o", "room.h5", *self.RAYS, "--sky", "overcast")
+        self.assertIn("lights only the outside", found[0])
+        self.write("room.mgf", room().replace("f v0 v1 v3 v2\n", ""))  # without a floor
+        self.assertNotIn("shut-out-sky", self.kinds("--sky", "overcast"))
+
+    def test_maintenance_factor_above_one(self):
+        for factor, expected in {"1.25": True, "1": False}.items():
+            luminaire = ("--luminaire", f"lamp.ies@.2,.2,2,maintenance={factor}")
+            self.assertEqual("maintenance-factor" in self.kinds(*luminaire), expected, factor)
+            found = "".join(self.warnings("solve", "room.mgf", "-o", "room.h5", *self.RAYS, *luminaire))
+            self.assertEqual("lamp.ies: the maintenance factor 1.25 makes light stronger" in found, expected, found)
+
+    def test_measuring_points(self):
+        self.write("room.mgf", room() + box((0.5, 0.5, 0.2), (1, 1, 0.9)))
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "100k")
+        at = {place: ("--point", place) for place in ("1.5,1.5,1", "1.5,1.5,2.6", "0.7,0.7,0.5")}
+        probe = ("probe", "room.h5", "--samples", "64")
+        self.assertEqual(self.warnings(*probe, *at["1.5,1.5,1"]), [])
+        outside, dark = self.warnings(*probe, *at["1.5,1.5,1"], *at["1.5,1.5,2.6"], *at["0.7,0.7,0.5"])
+        self.assertIn("1 of 3 measuring points lie outside of the scene, such as (1.5, 1.5, 2.6)", outside)
+        self.assertIn("1 of 3 measuring points receive no light at all", dark)
+        self.assertIn("such as (0.7, 0.7, 0.5)", dark)
+
+
 if __name__ == "__main__":
     unittest.main()
