@@ -44,7 +44,7 @@ struct ValidateOptions {
 /// another's.
 std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, const ValidateOptions& options = {});
 
-/// The part of validate() that costs milliseconds: what is probably a mistake of placing, units or axes. Problems:
+/// The part of validate() that costs milliseconds: probable mistakes of placing, units or axes. Problems:
 /// "close-luminaire" (more than half of its light is received by a surface within 2 cm, or within a hundredth of a
 /// scene smaller than 2 m), "outside-luminaire" (all of its light escapes; in a closed scene, more than half of it
 /// does, or a quarter of all directions are free), "wide-opening" (larger than the scene) and "shut-out-sky" (a sky or

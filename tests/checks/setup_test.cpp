@@ -146,6 +146,10 @@ TEST_F(ShutOutSky, IsMeantWhereTheSceneIsLowerThanARoom) {
 }
 
 TEST(Setup, RoomInCentimetresReadAsMetres) {
+    Scene known = two_sided_room({4000, 5000, 3000});
+    EXPECT_THAT(kinds(known), ElementsAre("probable-unit"));
+    known.warnings.add("implausible-size", "of the reader");
+    EXPECT_THAT(kinds(known), IsEmpty());
     EXPECT_THAT(kinds(two_sided_room({400, 500, 300})), ElementsAre("probable-unit"));
     EXPECT_THAT(kinds(two_sided_room({300, 100, 40})), IsEmpty());  // a hangar
 }
@@ -165,7 +169,7 @@ TEST(Setup, MeshInMillimetresReadAsMetres) {
 }
 
 /// A floor with tables on it, all of one-sided boxes; y up where `turned`.
-Scene furnished_floor(const char* name, bool turned) {
+Scene furnished_floor(const char* name, bool turned, bool has_objects = true) {
     Scene scene;
     scene.name = name;
     add_material(scene, Rgb(0.5f), Rgb(0));
@@ -174,7 +178,7 @@ Scene furnished_floor(const char* name, bool turned) {
         const std::size_t first = scene.patches.size();
         if (turned) low = {low.x, low.z, low.y}, high = {high.x, high.z, high.y};
         add_box(scene, low, high, 0);
-        for (std::size_t i = first; i < scene.patches.size(); ++i)
+        for (std::size_t i = first; i < scene.patches.size() && has_objects; ++i)
             scene.patches[i].object = static_cast<std::uint32_t>(scene.objects.size() - 1);
     };
     scene.objects.push_back("");
@@ -190,6 +194,8 @@ TEST(Setup, MeshWithYUp) {
     EXPECT_THAT(kinds(furnished_floor("room.obj", true)), ElementsAre("probable-up-axis"));
     EXPECT_THAT(kinds(furnished_floor("room.obj", false)), IsEmpty());
     EXPECT_THAT(kinds(furnished_floor("room.mgf", true)), IsEmpty());
+    EXPECT_THAT(kinds(furnished_floor("room.obj", true, false)), ElementsAre("probable-up-axis"));
+    EXPECT_THAT(kinds(furnished_floor("room.obj", false, false)), IsEmpty());
     Scene seen = furnished_floor("room.obj", true);
     seen.views.push_back({"as it is", {-5, 2, 2}, {2, 2, 2}});
     EXPECT_THAT(kinds(seen), IsEmpty());

@@ -96,7 +96,7 @@ class Validate(CommandTest):
 
 
 class Misplaced(CommandTest):
-    """What is probably a mistake of placing: `validate` lists it, and `solve`, `probe` and `report` warn."""
+    """Probable mistakes of placing: `validate` lists them, and `solve`, `probe` and `report` warn."""
 
     LUMINAIRE = "IESNA:LM-63-2002\nTILT=NONE\n1 400 1 2 1 1 2 .2 .2 0\n1 1 30\n0 90\n0\n100 100\n"
     RAYS = ("--rays", "10k")
@@ -113,7 +113,7 @@ class Misplaced(CommandTest):
         return [line for line in self.interflect(*arguments).stderr.splitlines() if line.startswith("warning: ")]
 
     def test_luminaire_behind_the_ceiling(self):
-        """0.2 mm above it the room was dark, and nothing was said."""
+        """0.2 mm above it the room was dark, without a warning."""
         behind, before = ("--luminaire", "lamp.ies@.2,.2,2.5002"), ("--luminaire", "lamp.ies@.2,.2,2.4998")
         self.assertIn("close-luminaire", self.kinds(*behind))
         self.assertNotIn("close-luminaire", self.kinds(*before))

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "interflect/geometry/disjoint_sets.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
@@ -46,19 +47,40 @@ const char* axis_of_light(const Scene& scene) {
     return axis_of(sum, total);
 }
 
+/// The bounding boxes of all patches with an equal part_of(patch), which is below `parts`.
+template <class PartOf>
+std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, const PartOf& part_of) {
+    std::vector<Imath::Box3f> boxes(parts);
+    for (const Patch& patch : scene.patches)
+        for (int k = 0; k < patch.vertex_count(); ++k)
+            boxes[part_of(patch)].extendBy(scene.vertices[patch.vertices[k]]);
+    std::erase_if(boxes, [](const Imath::Box3f& box) { return box.isEmpty(); });
+    return boxes;
+}
+
+constexpr std::size_t least_objects = 4;
+
+/// Of the file's objects, or, of fewer than four, of what shares vertices.
+std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
+    std::vector<Imath::Box3f> boxes =
+        boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
+    if (boxes.size() >= least_objects) return boxes;
+    DisjointSets connected(scene.vertices.size());
+    for (const Patch& patch : scene.patches)
+        for (int k = 1; k < patch.vertex_count(); ++k) connected.unite(patch.vertices[0], patch.vertices[k]);
+    return boxes_of_parts(scene, scene.vertices.size(),
+                          [&](const Patch& patch) { return connected.find(patch.vertices[0]); });
+}
+
 /// For each axis and its opposite, the share of the objects that reach to within a hundredth of the scene's size of its
 /// lower end; all 0 with fewer than four objects.
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
-    std::vector<Imath::Box3f> boxes(scene.objects.size());
-    Imath::Box3f all;
-    for (const Patch& patch : scene.patches)
-        for (int k = 0; k < patch.vertex_count(); ++k) boxes[patch.object].extendBy(scene.vertices[patch.vertices[k]]);
-    std::erase_if(boxes, [](const Imath::Box3f& box) { return box.isEmpty(); });
-    for (const Imath::Box3f& box : boxes) all.extendBy(box);
-    constexpr std::size_t least_objects = 4;
-    constexpr float least_distance = 0.01f;
+    const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};
     if (boxes.size() < least_objects) return shares;
+    Imath::Box3f all;
+    for (const Imath::Box3f& box : boxes) all.extendBy(box);
+    constexpr float least_distance = 0.01f;
     const float distance = least_distance * all.size().length();
     for (const Imath::Box3f& box : boxes)
         for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +96,7 @@ std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
 
 const char* find_other_up_axis(const Scene& scene) {
     constexpr double least_standing = 0.5, least_advantage = 0.25;
-    constexpr float flat = 0.6f;
+    constexpr float flat = 0.8f;  // rooms of 4 x 5 x 3 m
     if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
     const char* const of_light = axis_of_light(scene);
     const auto standing = standing_objects(scene);
