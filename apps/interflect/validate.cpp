@@ -66,7 +66,7 @@ void print_finding(const Finding& finding) {
     print_line("{} {}: {} ({})", finding.is_problem ? "problem" : "note   ", finding.kind, finding.message,
                finding.count);
     for (const Finding::Place& place : finding.places) print_line("          {}", text_of(place));
-    print_line("          {}", finding.advice);
+    print_line("          {}", remedy(finding));
 }
 
 void print_prediction(const Prediction& prediction) {

@@ -156,6 +156,24 @@ class Misplaced(CommandTest):
         self.assertIn("1 of 3 measuring points receive no light at all", dark)
         self.assertIn("such as (0.7, 0.7, 0.5)", dark)
 
+    def test_unit_and_up_axis(self):
+        corners = [(x, y, z) for z in (0, 500) for y in (0, 300) for x in (0, 400)]  # [cm], with y up
+        faces = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 3, 7, 5), (2, 6, 8, 4), (1, 5, 6, 2), (3, 4, 8, 7))
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        text += "".join("f " + " ".join(map(str, face)) + "\n" for face in faces)
+        for k in range(5):  # boards that stand on the floor
+            x, z, i = 60 * k + 20, 80 * k + 30, len(corners) + 4 * k + 1
+            text += f"v {x} 0 {z}\nv {x + 40} 0 {z + 20}\nv {x + 40} 90 {z + 20}\nv {x} 90 {z}\n"
+            text += f"f {i} {i + 1} {i + 2} {i + 3}\n"
+        self.write("room.obj", text)
+        solve = ("solve", "room.obj", "-o", "room.h5", *self.RAYS)
+        found = "".join(self.warnings(*solve))
+        self.assertIn("probably in another unit than metres: light goes", found)
+        self.assertIn("(--unit)", found)
+        self.assertIn("y is probably up in this file, but z is taken; read it with y as the up axis (--up-axis)", found)
+        found = "".join(self.warnings(*solve, "--unit", "cm", "--up-axis", "y"))
+        self.assertNotIn("probably", found)
+
 
 if __name__ == "__main__":
     unittest.main()

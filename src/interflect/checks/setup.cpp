@@ -91,7 +91,7 @@ void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& find
     findings.push_back({"probable-unit",
                         false,
                         "the scene is probably in another unit than metres: " + sign,
-                        "read it in its unit, such as millimetres (unit)",
+                        "read it in its unit, such as millimetres",
                         1,
                         {}});
 }
@@ -102,7 +102,7 @@ void add_up_axis(const Scene& scene, std::vector<Finding>& findings) {
         findings.push_back({"probable-up-axis",
                             false,
                             fmt::format("{} is probably up in this file, but z is taken", axis),
-                            fmt::format("read it with {} as the up axis (up_axis)", axis),
+                            fmt::format("read it with {} as the up axis", axis),
                             1,
                             {}});
 }
