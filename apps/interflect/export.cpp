@@ -12,7 +12,7 @@
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/shared_options.h"
-#include "apps/interflect/up_axis.h"
+#include "interflect/checks/up_axis.h"
 #include "interflect/error.h"
 #include "interflect/render.h"
 #include "interflect/scene/view.h"

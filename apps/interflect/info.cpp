@@ -14,7 +14,7 @@
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/solution_info.h"
-#include "apps/interflect/up_axis.h"
+#include "interflect/checks/up_axis.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
@@ -38,7 +38,7 @@ struct Emitter {
 struct Summary {
     std::size_t triangles = 0, two_sided = 0;
     Imath::Box3d bounds;  // in the world [m]
-    double area = 0;      // [m^2]
+    double area = 0;      // of faces, one side of each [m^2]
     RgbD emitted_power{0, 0, 0};
     std::map<std::uint32_t, Emitter> emitters;  // by material
     std::map<std::string, int> lights;          // that are no surfaces, by kind
@@ -50,7 +50,8 @@ Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         const double area = patch_area(scene, patch);
-        s.area += area;
+        const bool is_back = patch.other_side != none && patch.other_side < i;
+        if (!is_back) s.area += area;
         for (int k = 0; k < patch.vertex_count(); ++k)
             s.bounds.extendBy(scene.origin + Imath::V3d(scene.vertices[patch.vertices[k]]));
         s.triangles += patch.is_triangle();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "interflect/measure.h"
@@ -13,6 +14,11 @@ struct MeasuredGrid {
     MeasuringGrid grid;
     std::vector<MeasuredIrradiance> measured;  ///< Of grid.points.
 };
+
+/// Warns of points outside of the scene, inside solids and without any light.
+/// @param measured  At the points; may be empty.
+void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
+                              std::span<const MeasuredIrradiance> measured);
 
 /// Measures all grids with a progress bar. Ctrl-C ends it early with what there is.
 /// @param points  Of all grids, one after the other. @param solution  As in measure_irradiance().

@@ -17,6 +17,7 @@
 #include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
+#include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
@@ -206,6 +207,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
         solved.scene = options.mesh.cut(std::move(solved.scene), options.scene.read);
     StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
     const RayCaster ray_caster(solved.scene);
+    warn_of_setup(solved.scene, ray_caster);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
     options.path.until = options.solver.until();

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "apps/interflect/csv_file.h"
+#include "apps/interflect/measured_grid.h"
 #include "apps/interflect/measuring_places.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/path_progress.h"
@@ -96,6 +97,10 @@ std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, 
     for (const MeasuringGrid& grid : grids)
         for (const Imath::V3d& eye : grid.points)
             for (const V3f& direction : directions) observers.push_back({eye, direction});
+    std::vector<MeasuringPoint> eyes;
+    for (const MeasuringGrid& grid : grids)
+        for (const Imath::V3d& eye : grid.points) eyes.push_back({eye, {}, Receiver::cylindrical});
+    warn_of_misplaced_points(scene, ray_caster, eyes, {});
     std::vector<GlareRating> ratings;
     with_path_progress([&](const PathMonitor& monitor) {
         ratings = rate_glare(scene, solution, ray_caster, observers, options, monitor);

@@ -14,6 +14,7 @@
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/report_page.h"
+#include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/pending_file.h"
@@ -163,6 +164,7 @@ void run(const ReportArguments& options) {
     const SolvedScene solved = read_solution(options.solution);
     const std::vector<View> views = views_to_draw(solved.scene, options);
     const RayCaster ray_caster(solved.scene);
+    warn_of_setup(solved.scene, ray_caster);
     const ReportContent content = make_content(solved, ray_caster, views, options);
     write(output, report_page(content, solved));
     spdlog::info("{}: {} measuring areas, {} views", options.output.string(), content.areas.size(),

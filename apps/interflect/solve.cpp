@@ -9,6 +9,7 @@
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_solve.h"
+#include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
@@ -75,6 +76,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         StatsFile stats(options->solver.threads, options->solver.stats, scene);
         const RayCaster ray_caster(scene);
+        warn_of_setup(scene, ray_caster);
         const Solution solution =
             run_solve(scene, ray_caster, solve_options, options->solver.memory, options->checkpoints);
         write(output, scene, solution);

@@ -6,6 +6,7 @@
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/messages.h"
+#include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/exports/json_text.h"
@@ -61,21 +62,11 @@ Json json_of(const Finding& finding) {
             {"advice", finding.advice}, {"count", finding.count},        {"places", places}};
 }
 
-std::string text_of(const Finding::Place& place) {
-    std::string text = place.where;
-    const auto append = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-    if (!place.object.empty()) append(fmt::format("object '{}'", place.object));
-    if (!place.material.empty()) append(fmt::format("'{}'", place.material));
-    if (place.has_position)
-        append(fmt::format("at ({:.6g}, {:.6g}, {:.6g})", place.position.x, place.position.y, place.position.z));
-    return text;
-}
-
 void print_finding(const Finding& finding) {
     print_line("{} {}: {} ({})", finding.is_problem ? "problem" : "note   ", finding.kind, finding.message,
                finding.count);
     for (const Finding::Place& place : finding.places) print_line("          {}", text_of(place));
-    print_line("          {}", finding.advice);
+    print_line("          {}", remedy(finding));
 }
 
 void print_prediction(const Prediction& prediction) {

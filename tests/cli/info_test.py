@@ -16,7 +16,7 @@ class Info(CommandTest):
         for key in ("patches", "area", "emitted_power", "emitters", "views", "warnings"):
             self.assertIn(key, report)
         self.assertEqual(report["patches"], 6 * 2 + 1)  # walls have two sides, the lamp one
-        self.assertAlmostEqual(report["area"], 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1, places=4)
+        self.assertAlmostEqual(report["area"], 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1, places=4)  # one side of each face
         self.assertEqual(report["bounds"], {"min": [0, 0, 0], "max": [2, 3, 2.5]})
         for channel in report["emitted_power"]:
             self.assertAlmostEqual(channel, 1000, places=2)  # [lm]: 1 m2 of 1000 lm/m2
@@ -37,7 +37,7 @@ class Info(CommandTest):
         self.write("room.mgf", room())
         self.write("room.views.json", json.dumps(VIEWS))
         text = self.interflect("info", "room.mgf").stdout
-        for words in ("13 ", "x 0 to 2, y 0 to 3, z 0 to 2.5 m", "75 m2", "1000 lm", "lamp", "door", "floor"):
+        for words in ("13 ", "x 0 to 2, y 0 to 3, z 0 to 2.5 m", "38 m2", "1000 lm", "lamp", "door", "floor"):
             self.assertIn(words, text)
 
     def test_a_file_outside_the_folder_is_reported(self):

@@ -95,5 +95,85 @@ class Validate(CommandTest):
         self.assertNotIn("at (", result.stdout)
 
 
+class Misplaced(CommandTest):
+    """Probable mistakes of placing: `validate` lists them, and `solve`, `probe` and `report` warn."""
+
+    LUMINAIRE = "IESNA:LM-63-2002\nTILT=NONE\n1 400 1 2 1 1 2 .2 .2 0\n1 1 30\n0 90\n0\n100 100\n"
+    RAYS = ("--rays", "10k")
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("lamp.ies", self.LUMINAIRE)
+
+    def kinds(self, *arguments):
+        return {finding["kind"] for finding in self.json("validate", "room.mgf", *arguments)["findings"]}
+
+    def warnings(self, *arguments):
+        return [line for line in self.interflect(*arguments).stderr.splitlines() if line.startswith("warning: ")]
+
+    def test_luminaire_behind_the_ceiling(self):
+        """0.2 mm above it the room was dark, without a warning."""
+        behind, before = ("--luminaire", "lamp.ies@.2,.2,2.5002"), ("--luminaire", "lamp.ies@.2,.2,2.4998")
+        self.assertIn("close-luminaire", self.kinds(*behind))
+        self.assertNotIn("close-luminaire", self.kinds(*before))
+        solve = ("solve", "room.mgf", "-o", "room.h5", *self.RAYS)
+        self.assertNotIn("luminaires lie", "".join(self.warnings(*solve, *before)))
+        commands = (
+            (*solve, *behind),
+            ("probe", "room.h5", "--point", "1,1,1", "--samples", "4"),
+            ("probe", "room.mgf", *behind, "--shading", "path", "--point", "1,1,1", "--samples", "4"),
+            ("report", "room.h5", "-o", "room.html", "--samples", "4", "--size", "8x8"),
+        )
+        for command in commands:
+            with self.subTest(command=command):
+                found = [line for line in self.warnings(*command) if "luminaires lie behind a surface" in line]
+                self.assertEqual(len(found), 1)
+                self.assertIn("'lamp-1', at (0.2, 0.2, 2.5002); move them", found[0])
+
+    def test_sky_that_cannot_enter(self):
+        self.assertIn("shut-out-sky", self.kinds("--sky", "overcast"))
+        found = self.warnings("solve", "room.mgf", "-o", "room.h5", *self.RAYS, "--sky", "overcast")
+        self.assertIn("lights only the outside", found[0])
+        self.write("room.mgf", room().replace("f v0 v1 v3 v2\n", ""))  # without a floor
+        self.assertNotIn("shut-out-sky", self.kinds("--sky", "overcast"))
+
+    def test_maintenance_factor_above_one(self):
+        for factor, expected in {"1.25": True, "1": False}.items():
+            luminaire = ("--luminaire", f"lamp.ies@.2,.2,2,maintenance={factor}")
+            self.assertEqual("maintenance-factor" in self.kinds(*luminaire), expected, factor)
+            found = "".join(self.warnings("solve", "room.mgf", "-o", "room.h5", *self.RAYS, *luminaire))
+            self.assertEqual("lamp.ies: the maintenance factor 1.25 makes light stronger" in found, expected, found)
+
+    def test_measuring_points(self):
+        self.write("room.mgf", room() + box((0.5, 0.5, 0.2), (1, 1, 0.9)))
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "100k")
+        at = {place: ("--point", place) for place in ("1.5,1.5,1", "1.5,1.5,2.6", "0.7,0.7,0.5")}
+        probe = ("probe", "room.h5", "--samples", "64")
+        self.assertEqual(self.warnings(*probe, *at["1.5,1.5,1"]), [])
+        outside, dark = self.warnings(*probe, *at["1.5,1.5,1"], *at["1.5,1.5,2.6"], *at["0.7,0.7,0.5"])
+        self.assertIn("1 of 3 measuring points lie outside of the scene, such as (1.5, 1.5, 2.6)", outside)
+        self.assertIn("1 of 3 measuring points receive no light at all", dark)
+        self.assertIn("such as (0.7, 0.7, 0.5)", dark)
+
+    def test_unit_and_up_axis(self):
+        corners = [(x, y, z) for z in (0, 500) for y in (0, 300) for x in (0, 400)]  # [cm], with y up
+        faces = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 3, 7, 5), (2, 6, 8, 4), (1, 5, 6, 2), (3, 4, 8, 7))
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        text += "".join("f " + " ".join(map(str, face)) + "\n" for face in faces)
+        for k in range(5):  # boards that stand on the floor
+            x, z, i = 60 * k + 20, 80 * k + 30, len(corners) + 4 * k + 1
+            text += f"v {x} 0 {z}\nv {x + 40} 0 {z + 20}\nv {x + 40} 90 {z + 20}\nv {x} 90 {z}\n"
+            text += f"f {i} {i + 1} {i + 2} {i + 3}\n"
+        self.write("room.obj", text)
+        solve = ("solve", "room.obj", "-o", "room.h5", *self.RAYS)
+        found = "".join(self.warnings(*solve))
+        self.assertIn("probably in another unit than metres: light goes", found)
+        self.assertIn("(--unit)", found)
+        self.assertIn("y is probably up in this file, but z is taken; read it with y as the up axis (--up-axis)", found)
+        found = "".join(self.warnings(*solve, "--unit", "cm", "--up-axis", "y"))
+        self.assertNotIn("probably", found)
+
+
 if __name__ == "__main__":
     unittest.main()

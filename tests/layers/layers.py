@@ -6,8 +6,8 @@ from pathlib import Path
 
 # A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
 LAYERS = [
-    "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "elements", "solver", "render",
-    "photometry", "metrics", "exports", "cluster",
+    "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "checks", "elements", "solver",
+    "render", "photometry", "metrics", "exports", "cluster",
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)

@@ -105,6 +105,11 @@ void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, c
                             place(placed, web, scene.origin)};
         if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
             throw InputError(placed.file, 0, "this luminaire " + fault);
+        if (placed.maintenance > 1)
+            scene.warnings.add("maintenance-factor",
+                               fmt::format("the maintenance factor {:g} makes light stronger; usual ones are at most 1",
+                                           placed.maintenance),
+                               placed.file.string());
         scene.luminaires.push_back(std::move(luminaire));
     }
 }

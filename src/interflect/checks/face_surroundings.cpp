@@ -1,4 +1,4 @@
-#include "interflect/solver/face_surroundings.h"
+#include "interflect/checks/face_surroundings.h"
 
 #include <ImathBox.h>
 

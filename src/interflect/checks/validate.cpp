@@ -6,42 +6,15 @@
 #include <array>
 #include <utility>
 
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/checks/face_surroundings.h"
+#include "interflect/checks/finder.h"
+#include "interflect/checks/open_edges.h"
 #include "interflect/raycast/coincident.h"
 #include "interflect/scene/limits.h"
-#include "interflect/solver/face_surroundings.h"
-#include "interflect/solver/open_edges.h"
 
 namespace interflect {
 
 namespace {
-
-/// Counts findings of one kind, and keeps the first places.
-class Finder {
-  public:
-    Finder(const Scene& scene, std::size_t places, Finding finding)
-        : scene_(scene), places_(places), finding_(std::move(finding)) {}
-
-    void add(Finding::Place place) {
-        if (finding_.count++ < static_cast<std::int64_t>(places_)) finding_.places.push_back(std::move(place));
-    }
-    void add_at(const V3f& x, const std::string& object, const std::string& material) {
-        add({object, material, "", scene_.origin + Imath::V3d(x), true});
-    }
-    void add_patch(std::uint32_t i) {
-        const Patch& patch = scene_.patches[i];
-        add_at(PatchGeometry(scene_, patch).centre(), scene_.objects[patch.object],
-               scene_.materials[patch.material].name);
-    }
-    void append_to(std::vector<Finding>& findings) {
-        if (finding_.count > 0) findings.push_back(std::move(finding_));
-    }
-
-  private:
-    const Scene& scene_;
-    std::size_t places_;
-    Finding finding_;
-};
 
 class Validator {
   public:
@@ -57,10 +30,13 @@ class Validator {
         add_reflectances();
         add_warnings("no-light", "nothing emits light", "give surfaces an emission, or add lamps, a sky or the sun");
         add_warnings("implausible-size", "the scene has an implausible size", "tell the unit of the file");
+        add_warnings("maintenance-factor", "maintenance factors are above 1, so that light grows with age",
+                     "give 1 for new luminaires, and less for old ones: 0.8 is usual");
         add_open_edges();
         if (scene_.views.empty())
             findings_.push_back(
                 {"no-view", false, "the file has no view", "give a view, so that work goes where it is seen", 1, {}});
+        for (Finding& finding : validate_setup(scene_, ray_caster_, options_)) findings_.push_back(std::move(finding));
         return std::move(findings_);
     }
 

@@ -1,4 +1,4 @@
-#include "interflect/solver/open_edges.h"
+#include "interflect/checks/open_edges.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "interflect/measure.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+
+namespace interflect::inline detail {
+
+/// Why a measuring point measures nothing of use.
+enum class PointFault {
+    none,
+    outside,  ///< A quarter of the directions that it faces leave a closed scene.
+    behind    ///< Most of what it faces is seen through the backs of one-sided faces: from within a solid.
+};
+
+/// The fault of each point. Traces 32 rays a point and back; of more than 2048 points it looks at 2048, evenly spaced.
+std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
+                                     std::span<const MeasuringPoint> points);
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,124 @@
+// Probable mistakes of placing, units and axes.
+
+#include <ImathBox.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "interflect/checks/finder.h"
+#include "interflect/checks/light_places.h"
+#include "interflect/checks/shell.h"
+#include "interflect/checks/up_axis.h"
+#include "interflect/scene/core.h"
+#include "interflect/validate.h"
+
+namespace interflect {
+
+namespace {
+
+bool is_far_light(const Luminaire& luminaire) {
+    return is_sky(luminaire) || std::holds_alternative<DirectionalLight>(luminaire.kind);
+}
+
+/// Whether somebody is to see the inside: a view lies there, or there is none and the scene is as high as a room.
+bool is_seen_inside(const Scene& scene, const SightLines& lines) {
+    constexpr float least_height = 2;
+    if (scene.views.empty()) {
+        const V3f extent = core_bounds(scene).size();
+        return std::min({extent.x, extent.y, extent.z}) >= least_height;
+    }
+    return std::any_of(scene.views.begin(), scene.views.end(),
+                       [&](const View& view) { return !lines.is_open(V3f(view.eye - scene.origin)); });
+}
+
+void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines, std::size_t places,
+                        std::vector<Finding>& findings) {
+    Finder shut_out(scene, places,
+                    {"shut-out-sky",
+                     true,
+                     "the sky or the sun lights only the outside of the scene, which is closed",
+                     "open it: windows need a hole, or a material that transmits light",
+                     0,
+                     {}});
+    for (const Luminaire& luminaire : scene.luminaires)
+        if (is_far_light(luminaire) && largest_channel(rating(luminaire)) > 0)
+            shut_out.add({scene.objects[luminaire.object], luminaire.name});
+    std::vector<Finding> found;
+    shut_out.append_to(found);
+    if (found.empty() || !is_seen_inside(scene, lines) || lets_light_in(scene, ray_caster, lines)) return;
+    findings.push_back(std::move(found.front()));
+}
+
+/// Formats whose files say neither their unit nor what is up.
+bool is_bare_mesh(const Scene& scene) {
+    const std::string extension = std::filesystem::path(scene.name).extension().string();
+    constexpr std::string_view bare[] = {".obj", ".ply", ".stl", ".OBJ", ".PLY", ".STL"};
+    return std::find(std::begin(bare), std::end(bare), extension) != std::end(bare);
+}
+
+/// Whether 99 of 100 coordinates are integers, of 8 vertices or more: meshes in metres have fractions.
+bool has_integer_coordinates(const Scene& scene) {
+    constexpr std::size_t least_vertices = 8;
+    if (scene.vertices.size() < least_vertices) return false;
+    constexpr double rounding = 1e-6;
+    std::size_t integers = 0;
+    for (const V3f& vertex : scene.vertices) {
+        const Imath::V3d x = scene.origin + Imath::V3d(vertex);
+        for (int k = 0; k < 3; ++k)
+            integers += std::abs(x[k] - std::round(x[k])) <= rounding * std::max(1.0, x.length());
+    }
+    return 100 * integers >= 99 * 3 * scene.vertices.size();
+}
+
+void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& findings) {
+    for (const Warnings::Entry& warning : scene.warnings.entries())
+        if (warning.kind == "implausible-size") return;  // the reader has asked for the unit
+    constexpr float largest_path = 80;  // a hangar of 300 x 100 x 40 m has 52; a room of 4 x 5 x 3 m in centimetres 230
+    constexpr float largest_mesh = 200;
+    const float size = core_bounds(scene).size().length();
+    std::string sign;
+    if (shell.mean_free_path > largest_path)
+        sign = fmt::format("light goes {:.3g} m from wall to wall", shell.mean_free_path);
+    else if (is_bare_mesh(scene) && size > largest_mesh && has_integer_coordinates(scene))
+        sign = fmt::format("it is {:.3g} m across, with integers as coordinates", size);
+    if (sign.empty()) return;
+    findings.push_back({"probable-unit",
+                        false,
+                        "the scene is probably in another unit than metres: " + sign,
+                        "read it in its unit, such as millimetres",
+                        1,
+                        {}});
+}
+
+void add_up_axis(const Scene& scene, std::vector<Finding>& findings) {
+    if (!is_bare_mesh(scene)) return;
+    if (const char* axis = find_other_up_axis(scene))
+        findings.push_back({"probable-up-axis",
+                            false,
+                            fmt::format("{} is probably up in this file, but z is taken", axis),
+                            fmt::format("read it with {} as the up axis", axis),
+                            1,
+                            {}});
+}
+
+}  // namespace
+
+std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster, const ValidateOptions& options) {
+    ray_caster.require_made_for(scene);
+    if (scene.patches.empty()) return {};
+    const SightLines lines(scene, ray_caster);
+    const Shell shell = find_shell(scene, ray_caster, lines);
+    std::vector<Finding> findings = find_misplaced_lights(scene, lines, shell.is_closed, options.places);
+    if (shell.is_closed) add_shut_out_light(scene, ray_caster, lines, options.places, findings);
+    add_unit(scene, shell, findings);
+    add_up_axis(scene, findings);
+    return findings;
+}
+
+}  // namespace interflect

@@ -1,0 +1,85 @@
+#include "interflect/checks/shell.h"
+
+#include <ImathBox.h>
+
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/scene/core.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+constexpr int most_escaped_inside = 2;  // of SightLines::rays_per_point
+constexpr std::uint64_t seed_of_origins = 11, seed_of_directions = 12, seed_of_sides = 13;
+
+/// The line of an index: uniform and isotropic in the sphere around the scene.
+class OuterLines {
+  public:
+    explicit OuterLines(const Scene& scene) {
+        const Imath::Box3f box = core_bounds(scene);
+        centre_ = box.center();
+        constexpr float margin = 1.01f;
+        radius_ = margin * box.size().length() / 2;
+    }
+    Ray operator()(std::uint64_t index) const {
+        const V3f out = SightLines::uniform_direction(seed_of_origins, index);
+        return {centre_ + radius_ * out, SightLines::cosine_direction(-out, seed_of_directions, index)};
+    }
+
+  private:
+    V3f centre_;
+    float radius_;
+};
+
+/// The two sides of the face that a line meets first.
+struct MetFace {
+    V3f front, back;  ///< Just before it and behind it [m].
+    V3f normal;       ///< Towards the start of the line.
+};
+
+MetFace met_face(const Scene& scene, const RayCaster& ray_caster, const Ray& line, const Hit& hit) {
+    const V3f normal = PatchGeometry(scene, scene.patches[hit.patch]).normal();
+    const V3f x = line.origin + hit.distance * line.direction, offset = ray_caster.ray_offset(hit.patch) * normal;
+    return {x + offset, x - offset, normal};
+}
+
+}  // namespace
+
+Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {
+    constexpr std::uint64_t count = 128;
+    constexpr int least_met = 32;
+    const OuterLines line(scene);
+    int met = 0, enclosing = 0, paths = 0;
+    float length = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const Hit hit = lines.first_surface(line(i));
+        if (hit.patch == none) continue;
+        ++met;
+        const MetFace face = met_face(scene, ray_caster, line(i), hit);
+        SightLines::Outlook inner = lines.from_surface(face.back, -face.normal, seed_of_sides, most_escaped_inside);
+        if (inner.escaped > most_escaped_inside)
+            inner = lines.from_surface(face.front, face.normal, seed_of_sides, most_escaped_inside);
+        if (inner.escaped > most_escaped_inside) continue;
+        ++enclosing;
+        paths += inner.met;
+        length += inner.distance;
+    }
+    if (met < least_met || 10 * enclosing < 9 * met) return {};
+    return {true, length / static_cast<float>(paths)};
+}
+
+bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {
+    constexpr std::uint64_t count = 1 << 14;
+    const OuterLines line(scene);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const Hit hit = lines.first_surface(line(i));
+        if (hit.patch == none) continue;
+        const MetFace face = met_face(scene, ray_caster, line(i), hit);
+        const SightLines::Outlook outlook =
+            lines.from_surface(face.front, face.normal, seed_of_sides, most_escaped_inside);
+        if (outlook.escaped <= most_escaped_inside) return true;
+    }
+    return false;
+}
+
+}  // namespace interflect::inline detail

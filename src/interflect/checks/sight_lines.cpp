@@ -1,0 +1,66 @@
+#include "interflect/checks/sight_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "interflect/base/random.h"
+#include "interflect/geometry/tangent_frame.h"
+
+namespace interflect::inline detail {
+
+SightLines::SightLines(const Scene& scene, const RayCaster& ray_caster)
+    : scene_(scene), ray_caster_(ray_caster), panes_(scene, ray_caster) {}
+
+Hit SightLines::first_surface(const Ray& ray) const {
+    Ray rest = ray;
+    Hit hit;
+    for (int panes = 0; panes <= Panes::most_in_a_row; ++panes) {
+        ray_caster_.trace({&rest, 1}, {&hit, 1});
+        if (hit.patch == none) return hit;
+        if (!(largest_channel(panes_.transmittance(rest, hit)) > 0)) break;
+        rest = panes_.behind(rest, hit);
+    }
+    hit.distance += (rest.origin - ray.origin).dot(ray.direction);
+    return hit;
+}
+
+SightLines::Outlook SightLines::from_surface(const V3f& x, const V3f& normal, std::uint64_t key,
+                                             int most_escaped) const {
+    Outlook outlook;
+    for (std::uint64_t i = 0; i < rays_per_point && outlook.escaped <= most_escaped; ++i) {
+        const Hit hit = first_surface({x, cosine_direction(normal, key, i)});
+        if (hit.patch == none) {
+            ++outlook.escaped;
+        } else {
+            ++outlook.met;
+            outlook.distance += hit.distance;
+        }
+    }
+    return outlook;
+}
+
+bool SightLines::is_open(const V3f& x) const {
+    constexpr std::uint64_t rays = 64, seed = 21;
+    std::uint64_t escaped = 0;
+    for (std::uint64_t i = 0; i < rays; ++i) escaped += first_surface({x, uniform_direction(seed, i)}).patch == none;
+    return 4 * escaped >= rays;
+}
+
+V3f SightLines::uniform_direction(std::uint64_t key, std::uint64_t index) {
+    const auto words = random_words(key, index);
+    const float z = 1 - 2 * unit_float(words[0]), radius = std::sqrt(std::max(0.0f, 1 - z * z));
+    const float angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);
+    return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+V3f SightLines::cosine_direction(const V3f& normal, std::uint64_t key, std::uint64_t index) {
+    const auto words = random_words(key, index);
+    const float radius = std::sqrt(unit_float(words[0])), angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);
+    const TangentFrame frame(normal);
+    return (radius * std::cos(angle) * frame.s + radius * std::sin(angle) * frame.t +
+            std::sqrt(1 - radius * radius) * normal)
+        .normalized();
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interflect/raycast/panes.h"
+
+namespace interflect::inline detail {
+
+/// Straight lines through a scene, which go on through panes. Random directions depend on a key and an index alone.
+class SightLines {
+  public:
+    SightLines(const Scene& scene, const RayCaster& ray_caster);
+
+    /// What a ray meets first that is no pane, with its distance from the start of the ray.
+    Hit first_surface(const Ray& ray) const;
+
+    /// What rays from one point meet.
+    struct Outlook {
+        int escaped = 0, met = 0;  ///< Rays without and with a surface in their way.
+        float distance = 0;        ///< Sum over the rays that met one [m].
+    };
+    static constexpr int rays_per_point = 32;
+    /// Cosine-distributed rays from a point just before a surface; ends early once more than `most_escaped` escape.
+    Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
+    /// Whether at least a quarter of all directions meet nothing: so it is outside of a closed scene, and in none of
+    /// the rooms that look_closed() accepts.
+    bool is_open(const V3f& x) const;
+
+    /// Uniform over the sphere; cosine-distributed about a normal.
+    static V3f uniform_direction(std::uint64_t key, std::uint64_t index);
+    static V3f cosine_direction(const V3f& normal, std::uint64_t key, std::uint64_t index);
+
+  private:
+    const Scene& scene_;
+    const RayCaster& ray_caster_;
+    Panes panes_;
+};
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,123 @@
+#include "interflect/checks/up_axis.h"
+
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "interflect/geometry/disjoint_sets.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/scene/core.h"
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// Least cosine between a direction and the axis that it stands for, and least share of what tells of one.
+constexpr double least_cosine = 0.9, least_agreement = 0.5;
+
+constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
+
+/// @param total  What the length of `sum` would be if all that it is the sum of had one direction.
+const char* axis_of(const Imath::V3d& sum, double total) {
+    const double length = sum.length();
+    if (!(length > least_agreement * total)) return nullptr;
+    for (int i = 0; i < 3; ++i)
+        if (std::abs(sum[i]) > least_cosine * length) return axis_names[i][sum[i] < 0];
+    return nullptr;
+}
+
+const char* axis_of_views(const Scene& scene) {
+    Imath::V3d sum(0);
+    for (const View& v : scene.views) sum += Imath::V3d(v.up).normalized();
+    return axis_of(sum, static_cast<double>(scene.views.size()));
+}
+
+const char* axis_of_light(const Scene& scene) {
+    Imath::V3d sum(0);
+    double total = 0;
+    for (const Patch& patch : scene.patches) {
+        const double power = channel_sum(scene.materials[patch.material].exitance) * patch_area(scene, patch);
+        sum -= power * Imath::V3d(PatchGeometry(scene, patch).normal());
+        total += power;
+    }
+    return axis_of(sum, total);
+}
+
+/// The bounding boxes of all patches with an equal part_of(patch), which is below `parts`.
+template <class PartOf>
+std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, const PartOf& part_of) {
+    std::vector<Imath::Box3f> boxes(parts);
+    for (const Patch& patch : scene.patches)
+        for (int k = 0; k < patch.vertex_count(); ++k)
+            boxes[part_of(patch)].extendBy(scene.vertices[patch.vertices[k]]);
+    std::erase_if(boxes, [](const Imath::Box3f& box) { return box.isEmpty(); });
+    return boxes;
+}
+
+constexpr std::size_t least_objects = 4;
+
+/// Of the file's objects, or, of fewer than four, of what shares vertices.
+std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
+    std::vector<Imath::Box3f> boxes =
+        boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
+    if (boxes.size() >= least_objects) return boxes;
+    DisjointSets connected(scene.vertices.size());
+    for (const Patch& patch : scene.patches)
+        for (int k = 1; k < patch.vertex_count(); ++k) connected.unite(patch.vertices[0], patch.vertices[k]);
+    return boxes_of_parts(scene, scene.vertices.size(),
+                          [&](const Patch& patch) { return connected.find(patch.vertices[0]); });
+}
+
+/// For each axis and its opposite, the share of the objects that reach to within a hundredth of the scene's size of its
+/// lower end; all 0 with fewer than four objects.
+std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
+    const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
+    std::array<std::array<double, 2>, 3> shares{};
+    if (boxes.size() < least_objects) return shares;
+    Imath::Box3f all;
+    for (const Imath::Box3f& box : boxes) all.extendBy(box);
+    constexpr float least_distance = 0.01f;
+    const float distance = least_distance * all.size().length();
+    for (const Imath::Box3f& box : boxes)
+        for (int axis = 0; axis < 3; ++axis) {
+            shares[axis][0] += box.min[axis] - all.min[axis] < distance;
+            shares[axis][1] += all.max[axis] - box.max[axis] < distance;
+        }
+    for (auto& of_axis : shares)
+        for (double& share : of_axis) share /= static_cast<double>(boxes.size());
+    return shares;
+}
+
+}  // namespace
+
+const char* find_other_up_axis(const Scene& scene) {
+    constexpr double least_standing = 0.5, least_advantage = 0.25;
+    constexpr float flat = 0.8f;  // rooms of 4 x 5 x 3 m
+    if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
+    const char* const of_light = axis_of_light(scene);
+    const auto standing = standing_objects(scene);
+    const V3f extent = core_bounds(scene).size();
+    for (int axis = 0; axis < 2; ++axis)
+        for (int sign = 0; sign < 2; ++sign) {
+            const std::string_view name = axis_names[axis][sign];
+            const bool shines = of_light && name == of_light;
+            const bool stands = standing[axis][sign] >= least_standing &&
+                                standing[axis][sign] >= standing[2][0] + least_advantage &&
+                                standing[axis][sign] > standing[axis][1 - sign];
+            const bool is_flat = extent[axis] < flat * std::min(extent[(axis + 1) % 3], extent[(axis + 2) % 3]);
+            if (shines + stands + is_flat >= 2) return axis_names[axis][sign];
+        }
+    return nullptr;
+}
+
+std::optional<UpAxis> find_up_axis(const Scene& scene) {
+    if (const char* axis = axis_of_views(scene)) return UpAxis{axis, "views"};
+    if (const char* axis = axis_of_light(scene)) return UpAxis{axis, "light"};
+    return std::nullopt;
+}
+
+}  // namespace interflect::inline detail

@@ -1,0 +1,222 @@
+// Mistakes of placing, units and axes: each is found, is not found just beyond its limit, and sound scenes have none.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "interflect/generators/boxes.h"
+#include "interflect/generators/maze.h"
+#include "interflect/generators/office.h"
+#include "interflect/generators/two_rooms.h"
+#include "interflect/load_scene.h"
+#include "interflect/validate.h"
+#include "tests/checks/rooms.h"
+#include "tests/support/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<std::string> kinds(const Scene& scene) {
+    std::vector<std::string> result;
+    for (const Finding& finding : validate_setup(scene, RayCaster(scene))) result.push_back(finding.kind);
+    return result;
+}
+
+const V3f room_size(4, 5, 3);
+
+std::vector<std::string> with_light(V3f position, V3f direction = {0, 0, -1}) {
+    Scene scene = two_sided_room(room_size);
+    add_light(scene, downlight(), position, direction);
+    return kinds(scene);
+}
+
+TEST(Setup, LuminaireInACeilingOrBelowIt) {
+    for (const float z : {3.0f, 2.999f, 2.9f, 1.5f, 0.021f}) EXPECT_THAT(with_light({1, 1, z}), IsEmpty()) << z;
+}
+
+/// 0.1 mm above the ceiling half of the light was lost, 0.2 mm above it all.
+TEST(Setup, LuminaireBehindACeiling) {
+    for (const float z : {3.00001f, 3.0001f, 3.0002f, 3.009f})
+        EXPECT_THAT(with_light({1, 1, z}), ElementsAre("close-luminaire")) << z;
+}
+
+TEST(Setup, LuminaireCloseToTheSurfaceThatItShinesAt) {
+    EXPECT_THAT(with_light({1, 1, 2.981f}, {0, 0, 1}), ElementsAre("close-luminaire"));
+    EXPECT_THAT(with_light({1, 1, 2.979f}, {0, 0, 1}), IsEmpty());
+    EXPECT_THAT(with_light({3.981f, 1, 1}, {1, 0, 0}), ElementsAre("close-luminaire"));
+}
+
+TEST(Setup, LuminaireOutsideOfAClosedScene) {
+    EXPECT_THAT(with_light({1, 1, 3.05f}), ElementsAre("outside-luminaire"));
+    EXPECT_THAT(with_light({1, 1, -0.05f}), ElementsAre("outside-luminaire"));
+    EXPECT_THAT(with_light({9, 1, 1}), ElementsAre("outside-luminaire"));
+    EXPECT_THAT(with_light({3.95f, 4.95f, 2.95f}), IsEmpty());
+    Scene scene = two_sided_room(room_size);
+    scene.luminaires.push_back({"point", 0, PointLight{{-1, 1, 1}, Rgb(1)}});
+    scene.luminaires.push_back({"spot", 0, SpotLight{{1, 1, 4}, {0, 0, -1}, Rgb(1)}});
+    scene.luminaires.push_back({"inside", 0, PointLight{{1, 1, 1}, Rgb(1)}});
+    const std::vector<Finding> findings = validate_setup(scene, RayCaster(scene));
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].count, 2);
+    EXPECT_EQ(findings[0].places[0].material, "point");
+    EXPECT_EQ(findings[0].places[0].position, Imath::V3d(-1, 1, 1));
+}
+
+/// Lights beside an open scene may be meant, but not those whose light misses it.
+TEST(Setup, LuminaireBesideAnOpenScene) {
+    Scene scene;
+    scene.name = "floor";
+    add_material(scene, Rgb(0.5f), Rgb(0));
+    add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
+    scene.luminaires.push_back({"above", 0, PointLight{{5, 2, 3}, Rgb(1)}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.luminaires[0].kind = SpotLight{{5, 2, 3}, {1, 0, 0}, Rgb(1)};
+    EXPECT_THAT(kinds(scene), ElementsAre("outside-luminaire"));
+}
+
+TEST(Setup, OpeningLargerThanTheScene) {
+    for (const float length : {7.0f, 7.1f}) {  // the room's diagonal is 7.07 m
+        Scene scene = two_sided_room(room_size);
+        const auto web = downlight();
+        web->opening.size = {length, 0, 0};
+        add_light(scene, web, {2, 2.5f, 2.9f}, {0, 0, -1});
+        EXPECT_EQ(testing::Value(kinds(scene), testing::Contains("wide-opening")), length > 7.05f) << length;
+    }
+}
+
+TEST(Setup, LuminairesOfTwoFormatsWhosePlanesDiffer) {
+    for (const float c90 : {100.0f, 85.0f}) {
+        Scene scene = two_sided_room(room_size);
+        for (const char* name : {"one.ies", "two.ldt"}) {
+            const auto web = downlight();
+            web->name = name;
+            web->azimuth = {0, 90, 180, 270, 360};
+            web->intensities = {100, 100, 100, c90, 100, 100, 100, c90, 100, 100};
+            add_light(scene, web, {2, 2, 2});
+            const bool differ = c90 < 100 && scene.luminaires.size() == 2;
+            EXPECT_EQ(testing::Value(kinds(scene), ElementsAre("mixed-photometry")), differ) << name << c90;
+        }
+    }
+}
+
+class ShutOutSky : public testing::Test {
+  protected:
+    ShutOutSky() : scene(two_sided_room(room_size)) { scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(1)}}); }
+    Scene scene;
+};
+
+TEST_F(ShutOutSky, OfAClosedRoom) { EXPECT_THAT(kinds(scene), ElementsAre("shut-out-sky")); }
+
+TEST_F(ShutOutSky, IsAlsoTheSun) {
+    scene.luminaires[0].kind = DirectionalLight{{0, 0, -1}, Rgb(1)};
+    EXPECT_THAT(kinds(scene), ElementsAre("shut-out-sky"));
+}
+
+TEST_F(ShutOutSky, EntersBySkylight) {
+    open_ceiling(scene, {1.4f, 1.8f}, {2.1f, 2.6f});  // one patch of 0.5 x 0.625 m
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+TEST_F(ShutOutSky, EntersThroughGlass) {
+    scene.materials.push_back({"glass", Rgb(0), Rgb(0)});
+    scene.materials[1].transmittance = Rgb(0.8f);
+    scene.patches[20].material = scene.patches[21].material = 1;
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.materials[1].transmittance = Rgb(0);
+    EXPECT_THAT(kinds(scene), ElementsAre("shut-out-sky"));
+}
+
+TEST_F(ShutOutSky, IsMeantWhereTheSceneIsSeenFromOutside) {
+    scene.views.push_back({"outside", {-5, 2, 2}, {2, 2, 2}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.views.push_back({"inside", {1, 1, 1}, {2, 2, 2}});
+    EXPECT_THAT(kinds(scene), ElementsAre("shut-out-sky"));
+}
+
+TEST_F(ShutOutSky, IsMeantWhereTheSceneIsLowerThanARoom) {
+    scene = two_sided_room({4, 5, 1.9f});
+    scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(1)}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+TEST(Setup, RoomInCentimetresReadAsMetres) {
+    Scene known = two_sided_room({4000, 5000, 3000});
+    EXPECT_THAT(kinds(known), ElementsAre("probable-unit"));
+    known.warnings.add("implausible-size", "of the reader");
+    EXPECT_THAT(kinds(known), IsEmpty());
+    EXPECT_THAT(kinds(two_sided_room({400, 500, 300})), ElementsAre("probable-unit"));
+    EXPECT_THAT(kinds(two_sided_room({300, 100, 40})), IsEmpty());  // a hangar
+}
+
+TEST(Setup, MeshInMillimetresReadAsMetres) {
+    const auto with = [](const char* name, float size, float step) {
+        Scene scene;
+        scene.name = name;
+        add_material(scene, Rgb(0.5f), Rgb(0));
+        add_rectangle(scene, {step, 0, 0}, {size, 0, 0}, {0, size, 0}, 0, 4, 4);
+        return kinds(scene);
+    };
+    EXPECT_THAT(with("part.stl", 160, 1), ElementsAre("probable-unit"));
+    EXPECT_THAT(with("part.mgf", 160, 1), IsEmpty());
+    EXPECT_THAT(with("part.stl", 160, 0.5f), IsEmpty());
+    EXPECT_THAT(with("part.stl", 140, 1), IsEmpty());  // 198 m across
+}
+
+/// A floor with tables on it, all of one-sided boxes; y up where `turned`.
+Scene furnished_floor(const char* name, bool turned, bool has_objects = true) {
+    Scene scene;
+    scene.name = name;
+    add_material(scene, Rgb(0.5f), Rgb(0));
+    const auto add = [&](V3f low, V3f high) {
+        scene.objects.push_back("object");
+        const std::size_t first = scene.patches.size();
+        if (turned) low = {low.x, low.z, low.y}, high = {high.x, high.z, high.y};
+        add_box(scene, low, high, 0);
+        for (std::size_t i = first; i < scene.patches.size() && has_objects; ++i)
+            scene.patches[i].object = static_cast<std::uint32_t>(scene.objects.size() - 1);
+    };
+    scene.objects.push_back("");
+    add({0, 0, -0.1f}, {8, 6, 0});
+    for (int i = 0; i < 6; ++i) {
+        const auto x = static_cast<float>(i);
+        add({1 + x, 1 + 0.6f * x, 0}, {1.5f + x, 1.7f + 0.6f * x, 0.7f + 0.1f * x});
+    }
+    return scene;
+}
+
+TEST(Setup, MeshWithYUp) {
+    EXPECT_THAT(kinds(furnished_floor("room.obj", true)), ElementsAre("probable-up-axis"));
+    EXPECT_THAT(kinds(furnished_floor("room.obj", false)), IsEmpty());
+    EXPECT_THAT(kinds(furnished_floor("room.mgf", true)), IsEmpty());
+    EXPECT_THAT(kinds(furnished_floor("room.obj", true, false)), ElementsAre("probable-up-axis"));
+    EXPECT_THAT(kinds(furnished_floor("room.obj", false, false)), IsEmpty());
+    Scene seen = furnished_floor("room.obj", true);
+    seen.views.push_back({"as it is", {-5, 2, 2}, {2, 2, 2}});
+    EXPECT_THAT(kinds(seen), IsEmpty());
+}
+
+TEST(Setup, IsSoundInMadeScenes) {
+    EXPECT_THAT(kinds(make_maze({.rooms = 9, .furniture = true})), IsEmpty());
+    EXPECT_THAT(kinds(make_office({})), IsEmpty());
+    EXPECT_THAT(kinds(make_boxes({})), IsEmpty());
+    EXPECT_THAT(kinds(make_two_rooms({})), IsEmpty());
+}
+
+TEST(Setup, IsSoundInTheScenesOfTheRepository) {
+    const std::filesystem::path scenes = std::filesystem::path(INTERFLECT_SOURCE_FOLDER) / "scenes";
+    const PlacedLuminaire pendant{.file = scenes / "pendant.ies", .position = {2.5, 2, 2.2}};
+    EXPECT_THAT(kinds(load_scene(scenes / "office.mgf", {}, {&pendant, 1})), IsEmpty());
+#ifdef INTERFLECT_HAS_REAL_SCENES
+    for (const char* name : {"corridor.mgf", "cube.mgf", "examp1.mgf", "floor_gloss.mgf", "office2.mgf"})
+        EXPECT_THAT(kinds(load_scene(real_scenes() / name, {.outside_files = true})), IsEmpty()) << name;
+#endif
+}
+
+}  // namespace
+}  // namespace interflect
