@@ -1,0 +1,59 @@
+"""Which objects render, with those that a result stands for in place of the result."""
+
+from contextlib import contextmanager
+
+import bpy
+
+from .result import HIDDEN, is_result
+
+
+@contextmanager
+def only_rendered(scene):
+    """Shows the objects that render, and no others, in the viewport and in pictures. The exporter and the evaluation of
+    modifiers ask for both. Restores everything afterwards. Gives the objects."""
+    layer = bpy.context.view_layer
+    rendered, parts = {}, []
+    _collect(layer.layer_collection, rendered, parts)
+    changed = []  # (owner, name of its property, value before)
+
+    def change(owner, name, value):
+        before = getattr(owner, name)
+        if before != value:
+            changed.append((owner, name, before))
+            setattr(owner, name, value)
+
+    for each in scene.objects:
+        change(each, "hide_render", each not in rendered and each != scene.camera)
+    for data in (*bpy.data.objects, *bpy.data.meshes, *bpy.data.materials):
+        if is_result(data):
+            change(data, "name", "result")  # so that the panels of lamps have the same names in every bake
+    for part in parts:
+        change(part, "hide_viewport", False)
+        change(part.collection, "hide_viewport", False)
+    for each in rendered:
+        change(each, "hide_viewport", False)
+    layer.update()
+    by_eye = [each for each in rendered if each.hide_get(view_layer=layer)]
+    for each in by_eye:
+        each.hide_set(False, view_layer=layer)
+    try:
+        layer.update()
+        yield rendered
+    finally:
+        for each in by_eye:
+            each.hide_set(True, view_layer=layer)
+        for owner, name, before in reversed(changed):
+            setattr(owner, name, before)
+
+
+def _collect(part, rendered, parts) -> None:
+    """Adds the rendered objects below a layer's collection, and the parts of the layer that have some."""
+    if part.collection.hide_render:
+        return
+    if not part.exclude:
+        parts.append(part)
+        for each in part.collection.objects:
+            if not is_result(each) and (HIDDEN in each or not each.hide_render):
+                rendered[each] = True
+    for child in part.children:
+        _collect(child, rendered, parts)
