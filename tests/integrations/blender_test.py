@@ -1,4 +1,4 @@
-"""The Blender add-on in a headless Blender: bakes a room again and again, brings its light back, is cancelled, and says what went wrong."""
+"""The Blender add-on in a headless Blender: bakes rooms repeatedly, imports their light, cancels, and reports errors."""
 
 import json
 import math
@@ -130,8 +130,10 @@ class Addon(unittest.TestCase):
 
     def test_warnings_of_the_add_on_and_of_the_command(self):
         found = self.blender("warnings")
-        spread, metals = found["warnings"]
+        spread, ball, metals = found["warnings"]
         self.assertIn("The spread of the area lamp 'lamp'", spread)
+        self.assertIn("left out: ball", ball)
+        self.assertFalse(found["ball_hidden"])
         self.assertIn("'metal': specular reflection of metals is left out", metals)
         self.assertTrue(metals.startswith("scene.glb: "), metals)
 
@@ -146,6 +148,10 @@ class Addon(unittest.TestCase):
         found = self.blender("cancel")
         self.assertTrue(found["was_cancelled"])
         self.assertLess(found["seconds"], 5)
+
+    def test_one_bake_at_a_time_which_ends_with_the_add_on(self):
+        found = self.blender("disable")
+        self.assertEqual(found, {"may_bake": False, "may_clear": False, "is_running": False, "was_cancelled": True})
 
     def test_a_command_that_is_not_there_is_an_error_that_names_it(self):
         found = self.blender("vertex", "/not/there/interflect")

@@ -13,6 +13,7 @@ case, command, out = sys.argv[sys.argv.index("--") + 1 :]
 bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.ops.preferences.addon_enable(module="interflect")
 bpy.context.preferences.addons["interflect"].preferences.command = command
+import interflect
 from interflect import area_lamps, exchange, pipeline, result
 
 KINDS_OF_DATA = ("objects", "collections", "meshes", "cameras", "lights", "materials", "node_groups", "images", "scenes", "worlds")
@@ -125,7 +126,7 @@ def three_bakes(kind: str) -> dict:
 
 
 def visibility() -> dict:
-    """What renders is baked, however the viewport shows it; what is hidden stays so."""
+    """Rendered objects are baked, even if the viewport hides them. Hidden objects stay hidden."""
     make_room()
     scene, context = bpy.context.scene, bpy.context
     objects = {}
@@ -300,12 +301,14 @@ def warnings() -> dict:
     metal.node_tree.nodes["Principled BSDF"].inputs["Metallic"].default_value = 1
     bpy.data.objects["table"].data.materials[0] = metal
     bpy.data.lights["lamp"].spread = 1
+    bpy.ops.object.metaball_add(location=(-1, 0, 1))
+    bpy.context.object.name = "ball"
     found = bake()
-    return {**found, "warnings": result.warnings(bpy.context.scene)}
+    return {**found, "warnings": result.warnings(bpy.context.scene), "ball_hidden": bpy.data.objects["ball"].hide_render}
 
 
 def failures() -> dict:
-    """An export and an import that fail leave the scene as it was, and nothing that hinders the next bake."""
+    """Failing exports and imports restore the scene and allow the next bake."""
     make_room()
     before = in_file(), shown()
     found = {}
@@ -323,20 +326,37 @@ def failures() -> dict:
     return {**found, **bake()}
 
 
+def long_bake(folder: Path) -> pipeline.Bake:
+    """One that takes hours, at work."""
+    scene = folder / "scene.glb"
+    exchange.export_scene(bpy.context.scene, scene)
+    wanted = pipeline.Settings(command=command, rays=10**11)
+    start = time.monotonic()
+    running = pipeline.Bake(pipeline.stages(scene, folder / "light.h5", folder / "lit.glb", wanted))
+    while running.fraction == 0 and running.is_running() and time.monotonic() - start < 5:
+        time.sleep(0.05)
+    return running
+
+
 def cancel() -> dict:
     make_room()
     with tempfile.TemporaryDirectory() as folder:
-        scene = Path(folder, "scene.glb")
-        exchange.export_scene(bpy.context.scene, scene)
-        wanted = pipeline.Settings(command=command, rays=10**11)
-        start = time.monotonic()
-        running = pipeline.Bake(pipeline.stages(scene, Path(folder, "light.h5"), Path(folder, "lit.glb"), wanted))
-        while running.fraction == 0 and running.is_running() and time.monotonic() - start < 5:
-            time.sleep(0.05)
+        running = long_bake(Path(folder))
         cancelled = time.monotonic()
         running.cancel()
         running.wait()
     return {"was_cancelled": running.is_cancelled and not running.error, "seconds": time.monotonic() - cancelled}
+
+
+def disable() -> dict:
+    """While a bake runs there is no other, and disabling the add-on ends it."""
+    make_room()
+    folder = Path(tempfile.mkdtemp(prefix="interflect-"))
+    running = long_bake(folder)
+    interflect.Bake.running, interflect.Bake.folder = running, folder
+    found = {"may_bake": bpy.ops.interflect.bake.poll(), "may_clear": bpy.ops.interflect.clear.poll()}
+    bpy.ops.preferences.addon_disable(module="interflect")
+    return {**found, "is_running": running.is_running(), "was_cancelled": running.is_cancelled and not running.error}
 
 
 def new_world():
@@ -405,7 +425,7 @@ CASES = {
     "lightmap": lambda: first_bake("LIGHTMAP"),
     "three_vertex": lambda: three_bakes("VERTEX"),
     "three_lightmaps": lambda: three_bakes("LIGHTMAP"),
-    **{each.__name__: each for each in (visibility, user, scenes, instances, panels, warnings, failures, cancel)},
-    **{each.__name__: each for each in (plain_world, hdri_world)},
+    **{each.__name__: each for each in (visibility, user, scenes, instances, panels, warnings, failures)},
+    **{each.__name__: each for each in (plain_world, hdri_world, cancel, disable)},
 }
 Path(out).write_text(json.dumps(CASES[case]()))

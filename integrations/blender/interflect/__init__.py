@@ -62,7 +62,8 @@ class Bake(bpy.types.Operator):
     bl_label = "Bake Light"
     bl_options = {"UNDO"}
 
-    running: pipeline.Bake | None = None  # one at a time
+    running: pipeline.Bake | None = None  # at most one for all windows
+    folder: Path | None = None  # its temporary files
 
     @classmethod
     def poll(cls, _context):
@@ -98,21 +99,28 @@ class Bake(bpy.types.Operator):
             context.workspace.status_text_set(f"Interflect: {Bake.running.stage} {percent:.0f}%  (Esc: cancel)")
             _redraw_panels(context)
             return {"RUNNING_MODAL"}
-        self._end_display(context)
+        context.window_manager.event_timer_remove(self._timer)
+        _end_progress(context)
         return self._finish()
 
     def cancel(self, context):
         """Called by Blender where it closes or opens another file."""
-        Bake.running.cancel()
-        Bake.running.wait()
-        self._end_display(context)
-        self._end()
+        context.window_manager.event_timer_remove(self._timer)
+        Bake.stop(context)
+
+    @classmethod
+    def stop(cls, context):
+        """Ends a running bake at once."""
+        cls.running.cancel()
+        cls.running.wait()
+        _end_progress(context)
+        cls._end()
 
     def _start(self, context) -> bool:
         settings, scene = context.scene.interflect, context.scene
         self._scene = scene.name  # undo replaces the scene itself
-        self._folder = Path(tempfile.mkdtemp(prefix="interflect-"))
-        file, solution, self._lit = (self._folder / name for name in ("scene.glb", "light.h5", "lit.glb"))
+        Bake.folder = Path(tempfile.mkdtemp(prefix="interflect-"))
+        file, solution, self._lit = (self.folder / name for name in ("scene.glb", "light.h5", "lit.glb"))
         try:
             exported = exchange.export_scene(scene, file)
             self._baked, self._warnings = exported.objects, exported.warnings
@@ -143,17 +151,17 @@ class Bake(bpy.types.Operator):
         return []
 
     def _world(self, scene, wanted) -> list[pipeline.Stage]:
-        """Adds the world's light to the settings. Gives what must run before."""
+        """Adds the world's light to the settings. Returns the stages that run before."""
         radiance = world.plain_radiance(scene.world)
         if radiance is None:
-            environment = self._folder / "world.exr"
-            stages = [pipeline.Stage("Rendering the world", world.rendering(scene, self._folder, environment))]
+            environment = self.folder / "world.exr"
+            stages = [pipeline.Stage("Rendering the world", world.rendering(scene, self.folder, environment))]
         else:
             if min(radiance) < 0:
                 self._warnings.append("The world's colour is negative: it is baked as 0")
             if max(radiance) <= 0:
                 return []
-            environment, stages = self._folder / "world.hdr", []
+            environment, stages = self.folder / "world.hdr", []
             world.write_plain(environment, radiance)
         wanted.options += ["--environment", str(environment), "--zenith", "0,1,0"]
         return stages
@@ -161,11 +169,11 @@ class Bake(bpy.types.Operator):
     def _finish(self):
         done = Bake.running
         scene = bpy.data.scenes.get(self._scene)
-        # The names of temporary files do not help.
-        warnings = [each.replace(str(self._folder) + os.sep, "") for each in dict.fromkeys(self._warnings + done.warnings)]
+        in_folder = str(self.folder) + os.sep  # removed from messages
+        warnings = [each.replace(in_folder, "") for each in dict.fromkeys(self._warnings + done.warnings)]
         try:
             if done.error:
-                self.report({"ERROR"}, str(done.error))
+                self.report({"ERROR"}, str(done.error).replace(in_folder, "").removeprefix("error: "))
                 return {"CANCELLED"}
             if done.is_cancelled:
                 self.report({"INFO"}, "Interflect: cancelled")
@@ -184,15 +192,10 @@ class Bake(bpy.types.Operator):
         finally:
             self._end()
 
-    def _end_display(self, context):
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
-        _redraw_panels(context)
-
-    def _end(self):
-        Bake.running = None
-        shutil.rmtree(self._folder, ignore_errors=True)
+    @classmethod
+    def _end(cls):
+        shutil.rmtree(cls.folder, ignore_errors=True)
+        Bake.running = Bake.folder = None
 
 
 class Cancel(bpy.types.Operator):
@@ -255,6 +258,12 @@ class Panel(bpy.types.Panel):
                 column.label(text=line, icon="BLANK1" if i else "ERROR")
 
 
+def _end_progress(context):
+    context.window_manager.progress_end()
+    context.workspace.status_text_set(None)
+    _redraw_panels(context)
+
+
 def _redraw_panels(context):
     for window in context.window_manager.windows:
         for area in window.screen.areas:
@@ -273,7 +282,7 @@ def register():
 
 def unregister():
     if Bake.running:
-        Bake.running.cancel()
+        Bake.stop(bpy.context)
     del bpy.types.Scene.interflect
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)

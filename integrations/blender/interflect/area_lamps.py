@@ -11,7 +11,7 @@ WIDEST_SPREAD = math.pi  # [rad]; of a lamp without an angle limit
 
 @contextmanager
 def as_panels(scene):
-    """Adds a face for each area lamp that is shown, instances included, which emits as much. Gives warnings."""
+    """Adds a face of equal light for each visible area lamp, including instances. Yields warnings."""
     shown = [
         (instance.object.original, instance.matrix_world.copy())
         for instance in bpy.context.evaluated_depsgraph_get().object_instances
@@ -62,7 +62,7 @@ def _outline(light):
 
 
 def _emission(light):
-    """Colour that the nodes of a lamp multiply its own by, [r, g, b]; none where they make it vary."""
+    """Colour of a lamp's nodes, [r, g, b], a factor of its own colour. None if it varies."""
     output = light.node_tree.get_output_node("CYCLES")
     if output is None or not output.inputs["Surface"].is_linked:
         return [0, 0, 0]

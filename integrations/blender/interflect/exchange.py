@@ -15,6 +15,7 @@ if bpy.app.version < (3, 5):
 
 LIT_COLLECTION = "Interflect"
 EXPORTED_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "LIGHT")
+LEFT_OUT_TYPES = ("META", "CURVES", "VOLUME", "POINTCLOUD", "GPENCIL")
 
 
 class Exported:
@@ -25,15 +26,14 @@ class Exported:
 
 
 def export_scene(scene, path: Path) -> Exported:
-    """Writes what renders of the current scene at its frame, without an earlier result, with area lamps as panels that emit.
+    """Writes the rendered objects of the current scene at its frame, without an earlier result and with panels for area lamps.
     Watts in Blender are lumens in the file."""
     with only_rendered(scene) as rendered, area_lamps.as_panels(scene) as warnings:
         objects = [o for o in rendered if o.type in EXPORTED_TYPES or o.instance_type == "COLLECTION"]
-        left_out = [o.name for o in rendered if o.type in ("META", "CURVES", "VOLUME", "POINTCLOUD", "GPENCIL")]
-        if left_out:
-            warnings.append(f"Neither mesh nor curve nor text, and left out: {', '.join(left_out)}")
+        warnings += _left_out(rendered)
         bpy.ops.export_scene.gltf(
             filepath=str(path),
+            use_active_scene=True,
             use_renderable=True,
             export_lights=True,
             export_cameras=True,
@@ -45,8 +45,18 @@ def export_scene(scene, path: Path) -> Exported:
         return Exported([o.name for o in objects], warnings)
 
 
+def _left_out(rendered):
+    shapes = [o.name for o in rendered if o.type in LEFT_OUT_TYPES]
+    if shapes:
+        yield f"Neither mesh nor curve nor text, and left out: {', '.join(shapes)}"
+    instances = bpy.context.evaluated_depsgraph_get().object_instances
+    by_nodes = {i.parent.name for i in instances if i.is_instance and not i.parent.is_instancer}.difference(shapes)
+    if by_nodes:
+        yield f"Instances that geometry nodes make are left out unless nodes make them real: {', '.join(sorted(by_nodes))}"
+
+
 def camera_names(path: Path) -> list[str]:
-    """Of an exported scene."""
+    """Names of the cameras in an exported scene."""
     content = path.read_bytes()
     (length,) = struct.unpack_from("<I", content, 12)  # of the JSON, which follows the headers of the file and of the chunk
     nodes = json.loads(content[20 : 20 + length]).get("nodes", [])
@@ -65,6 +75,7 @@ def import_lit(scene, path: Path, replaced: list[str], warnings: list[str]) -> N
             with bpy.context.temp_override(scene=temporary, view_layer=temporary.view_layers[0]):
                 bpy.ops.import_scene.gltf(filepath=str(path), convert_lighting_mode="COMPAT")
             for made in temporary.objects:
+                made.select_set(False, view_layer=temporary.view_layers[0])
                 if made.type not in ("CAMERA", "LIGHT"):
                     lit.objects.link(made)
             scene.collection.children.link(lit)

@@ -1,4 +1,4 @@
-"""Runs the commands of a bake, one after the other. Knows nothing of Blender."""
+"""Runs the commands of a bake in order. Independent of Blender."""
 
 import re
 import subprocess
@@ -8,7 +8,7 @@ from pathlib import Path
 
 PERCENT = re.compile(rb"^\s*(\d+)%")
 WARNING = re.compile(rb"^warning: (.*(?:\n  .*)*)", re.MULTILINE)  # indented lines go on with it
-KEPT_LINES = 20  # of what the command said, in messages of errors
+KEPT_LINES = 20  # of the command's last output, in error messages
 
 
 class BakeError(Exception):

@@ -1,6 +1,6 @@
-"""The result of a bake in Blender's file: the data that it made, and the objects that the result stands for.
+"""The result of a bake in Blender's file: its data, and the hidden objects that it represents.
 
-Custom properties mark both, so that renaming, deleting by hand, undo and saving do not separate them."""
+Custom properties mark both. They survive renaming, deletion by hand, undo and saving."""
 
 from contextlib import contextmanager
 
@@ -49,7 +49,7 @@ def hide(scene, names) -> None:
 
 
 def remove(scene) -> None:
-    """Removes the result of a scene with all its data that nothing else uses, and shows again what it stands for."""
+    """Removes the result of a scene with its unused data, and shows the objects that it represents."""
     bpy.data.batch_remove([made for made in scene.objects if is_result(made)])
     for collection in collections(scene):
         for kept in collection.objects:  # put there by the user
@@ -72,6 +72,6 @@ def remove(scene) -> None:
 
 
 def purge() -> None:
-    """Removes the data that bakes made and nothing uses, users of other data first."""
+    """Removes unused data of bakes, users before the data that they use."""
     for kind in KINDS:
         bpy.data.batch_remove([made for made in getattr(bpy.data, kind) if is_result(made) and made.users == 0])

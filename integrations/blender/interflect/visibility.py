@@ -1,4 +1,4 @@
-"""Which objects render, with those that a result stands for in place of the result."""
+"""Visibility of objects while a scene is exported."""
 
 from contextlib import contextmanager
 
@@ -9,8 +9,8 @@ from .result import HIDDEN, is_result
 
 @contextmanager
 def only_rendered(scene):
-    """Shows the objects that render, and no others, in the viewport and in pictures. The exporter and the evaluation of
-    modifiers ask for both. Restores everything afterwards. Gives the objects."""
+    """Shows exactly the rendered objects, in pictures for the exporter and in the viewport for their modifiers. The objects
+    below a result replace it. Yields the objects; restores everything afterwards."""
     layer = bpy.context.view_layer
     rendered, parts = {}, []
     _collect(layer.layer_collection, rendered, parts)
@@ -26,7 +26,7 @@ def only_rendered(scene):
         change(each, "hide_render", each not in rendered and each != scene.camera)
     for data in (*bpy.data.objects, *bpy.data.meshes, *bpy.data.materials):
         if is_result(data):
-            change(data, "name", "result")  # so that the panels of lamps have the same names in every bake
+            change(data, "name", "result")  # reserves the names for the panels of lamps: all bakes have the same
     for part in parts:
         change(part, "hide_viewport", False)
         change(part.collection, "hide_viewport", False)

@@ -9,7 +9,7 @@ RENDER_WORLD = Path(__file__).with_name("render_world.py")
 
 
 def plain_radiance(world):
-    """Radiance of a world of one colour, [r, g, b]; none where nodes make it vary."""
+    """Radiance of a world of one colour, [r, g, b]. None if it varies."""
     if world is None:
         return [0.0, 0.0, 0.0]
     if not world.use_nodes:
@@ -34,8 +34,8 @@ def write_plain(path: Path, radiance) -> None:
 
 
 def rendering(scene, folder: Path, picture: Path) -> list[str]:
-    """Command that renders the world of a scene into an image of longitudes and latitudes. A Blender of its own runs it, as
-    a render here would replace the user's last one."""
+    """Command that renders the world of a scene into an image of longitudes and latitudes, in a second Blender: here it would
+    replace the user's last render."""
     file = folder / "world.blend"
     bpy.data.libraries.write(str(file), {scene.world}, path_remap="ABSOLUTE")
     script = ["--python-exit-code", "1", "--python", str(RENDER_WORLD)]
