@@ -1,6 +1,7 @@
 """The cases of blender_test.py, each run in a Blender of its own: `-- CASE COMMAND FOUND.json`."""
 
 import json
+import math
 import sys
 import tempfile
 import time
@@ -12,7 +13,10 @@ case, command, out = sys.argv[sys.argv.index("--") + 1 :]
 bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.ops.preferences.addon_enable(module="interflect")
 bpy.context.preferences.addons["interflect"].preferences.command = command
-from interflect import exchange, pipeline
+import interflect
+from interflect import area_lamps, exchange, pipeline, result
+
+KINDS_OF_DATA = ("objects", "collections", "meshes", "cameras", "lights", "materials", "node_groups", "images", "scenes", "worlds")
 
 
 def make_room() -> None:
@@ -40,82 +44,388 @@ def put(name, data, at):
     return made
 
 
-def bake(kind: str) -> dict:
-    make_room()
+def bake(kind: str = "VERTEX", rays: float = 0.2) -> dict:
     settings = bpy.context.scene.interflect
-    settings.rays, settings.kind, settings.texels_per_metre = 0.2, kind, 8
+    settings.rays, settings.kind, settings.texels_per_metre = rays, kind, 8
     try:
-        result, said = list(bpy.ops.interflect.bake()), ""
+        return {"result": list(bpy.ops.interflect.bake()), "said": ""}
     except RuntimeError as error:  # how Blender's scripts are told of a report of an error
-        result, said = ["CANCELLED"], str(error)
-    lit = bpy.data.collections.get(exchange.LIT_COLLECTION)
-    found = {
-        "result": result,
-        "said": said,
-        "lit_objects": len([o for o in lit.objects if o.type == "MESH"]) if lit else 0,
-        "has_colours": bool(lit) and all(o.data.color_attributes for o in lit.objects if o.type == "MESH"),
+        return {"result": ["CANCELLED"], "said": str(error)}
+
+
+def lit_collection():
+    collections = result.collections(bpy.context.scene)
+    assert len(collections) <= 1
+    return collections[0] if collections else None
+
+
+def lit_meshes() -> list:
+    lit = lit_collection()
+    return [o for o in lit.objects if o.type == "MESH"] if lit else []
+
+
+def corners(lit) -> list:
+    return [lit.matrix_world @ vertex.co for vertex in lit.data.vertices]
+
+
+def colours(lit) -> list:
+    """Radiance of a lit object's loops, where its colours are in its vertices."""
+    surface = next(node for node in lit.data.materials[0].node_tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
+    strength = surface.links[0].from_node.inputs[1].links[0].from_node.inputs["Strength"].default_value
+    return [[strength * channel for channel in texel.color[:3]] for texel in lit.data.color_attributes[0].data]
+
+
+def brightness(name: str) -> float:
+    """Mean radiance of an object's lit copy."""
+    (lit,) = [o for o in lit_meshes() if o.name.split(".")[0] == name]
+    light = colours(lit)
+    return sum(map(sum, light)) / len(light) / 3
+
+
+def in_file() -> dict:
+    """Names of everything in the file."""
+    return {kind: sorted(data.name for data in getattr(bpy.data, kind)) for kind in KINDS_OF_DATA}
+
+
+def shown() -> dict:
+    """How the user has hidden things: in pictures, by the monitor, by the eye."""
+    return {o.name: [o.hide_render, o.hide_viewport, o.hide_get()] for o in bpy.context.scene.objects}
+
+
+def first_bake(kind: str) -> dict:
+    make_room()
+    found = bake(kind)
+    lit = lit_collection()
+    found |= {
+        "lit_objects": len(lit_meshes()),
+        "has_colours": bool(lit) and all(o.data.color_attributes for o in lit_meshes()),
         "images": len([i for i in bpy.data.images if i.size[0] > 0]),
         "originals_hidden": all(bpy.data.objects[name].hide_render for name in ("room", "table", "lamp")),
     }
     bpy.ops.interflect.clear()
     found["originals_shown_again"] = not any(bpy.data.objects[name].hide_render for name in ("room", "table", "lamp"))
-    found["left_in_file"] = [o.name for o in bpy.data.objects if o.name not in ("room", "table", "lamp", "camera")]
     return found
 
 
-def panel() -> dict:
+def three_bakes(kind: str) -> dict:
     make_room()
-    before = [o.name for o in bpy.data.objects]
-    with exchange._area_lamps_as_panels():
-        (made,) = [o for o in bpy.data.objects if o.name not in before]
+    before = in_file(), shown()
+    results, files, light = [], [], []
+    for _ in range(3):
+        results.append(bake(kind)["result"])
+        files.append(in_file())
+        light.append([colours(o) for o in lit_meshes()] if kind == "VERTEX" else [list(i.pixels) for i in bpy.data.images])
+    bpy.ops.interflect.clear()
+    return {
+        "results": results,
+        "files": files,
+        "light_is_the_same": light[0] == light[1] == light[2] and len(light[0]) > 0,
+        "before": before,
+        "after": (in_file(), shown()),
+    }
+
+
+def visibility() -> dict:
+    """Rendered objects are baked, even if the viewport hides them. Hidden objects stay hidden."""
+    make_room()
+    scene, context = bpy.context.scene, bpy.context
+    objects = {}
+    hidden = {name: bpy.data.collections.new(name) for name in ("excluded", "not rendered", "monitor", "deeper")}
+    for name in ("excluded", "not rendered", "monitor"):
+        scene.collection.children.link(hidden[name])
+    hidden["not rendered"].children.link(hidden["deeper"])
+    for name in ["eye", "off", "alone", *hidden]:
+        bpy.ops.mesh.primitive_cube_add(size=0.1, location=(-1.5 + 0.2 * len(objects), 1, 0.05))
+        objects[name] = context.object
+        context.object.name = f"cube {name}"
+        context.object.modifiers.new("two", "ARRAY").count = 2
+        if name in hidden:
+            context.collection.objects.unlink(objects[name])
+            hidden[name].objects.link(objects[name])
+    layers = context.view_layer.layer_collection.children
+    layers["excluded"].exclude = True
+    hidden["not rendered"].hide_render = True
+    hidden["monitor"].hide_viewport = True
+    objects["eye"].hide_set(True)
+    objects["off"].hide_render = True
+    objects["alone"].hide_viewport = True
+    bpy.data.objects["camera"].hide_render = True  # cameras take pictures nevertheless
+    before = shown()
+    found = bake()
+    baked = {o.name.split(".")[0]: [round(d, 3) for d in o.dimensions] for o in lit_meshes()}
+    bpy.ops.interflect.clear()
+    return {**found, "baked": baked, "before": before, "after": shown()}
+
+
+def user() -> dict:
+    """A task as users have it: bake, edit, bake, delete by hand, undo, save and open again."""
+    make_room()
+    scene, wall = bpy.context.scene, bpy.data.materials["grey"]
+    wall.use_nodes = True
+    reflectance = wall.node_tree.nodes["Principled BSDF"].inputs["Base Color"]
+    reflectance.default_value = (0.5, 0.5, 0.5, 1)
+    before = in_file(), shown()
+    bpy.ops.ed.undo_push(message="room")
+    found = {"grey": (bake()["result"], brightness("room"))}
+    bpy.ops.ed.undo_push(message="bake")
+    baked = in_file(), shown()
+    bpy.ops.ed.undo()
+    found["undone"] = before == (in_file(), shown())
+    bpy.ops.ed.redo()
+    found["redone"] = baked == (in_file(), shown())
+    scene = bpy.context.scene
+    reflectance = bpy.data.materials["grey"].node_tree.nodes["Principled BSDF"].inputs["Base Color"]
+    reflectance.default_value = (0.25, 0.25, 0.25, 1)
+    found["dark"] = bake()["result"], brightness("room")
+    for each in lit_meshes():
+        bpy.data.objects.remove(each)
+    bpy.data.collections.remove(lit_collection())
+    found["deleted"] = bake()["result"], brightness("room")
+    lit = lit_collection()
+    lit.name = "mine"
+    kept = put("kept", bpy.data.meshes.new("kept"), (0, 0, 1))
+    bpy.context.collection.objects.unlink(kept)
+    lit.objects.link(kept)
+    with tempfile.TemporaryDirectory() as folder:
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder, "room.blend")))
+        bpy.ops.wm.open_mainfile(filepath=str(Path(folder, "room.blend")))
+    found["opened"] = bake()["result"], brightness("room")
+    bpy.ops.interflect.clear()
+    bpy.data.objects.remove(bpy.data.objects["kept"])
+    bpy.data.meshes.remove(bpy.data.meshes["kept"])
+    return {**found, "before": before, "after": (in_file(), shown())}
+
+
+def scenes() -> dict:
+    """Two scenes, one with another unit and renderer, keep their own results and settings."""
+    make_room()
+    first = bpy.context.scene
+    found = {"first": bake()["result"]}
+    second = bpy.data.scenes.new("second")
+    bpy.context.window.scene = second
+    second.unit_settings.scale_length = 0.01
+    second.render.engine = "BLENDER_WORKBENCH"
+    bpy.ops.mesh.primitive_plane_add(size=3)
+    plane = bpy.context.object
+    put("bulb", bpy.data.lights.new("bulb", "POINT"), (0, 0, 1)).data.energy = 10
+    found["second"] = bake()["result"]
+    lit = lit_meshes()
+    found |= {
+        "second_lit": len(lit),
+        "size": lit[0].dimensions.x if lit else 0,
+        "engine": second.render.engine,
+        "scenes": [scene.name for scene in bpy.data.scenes],
+        "active": bpy.context.view_layer.objects.active == plane,
+        "results": [len(result.collections(scene)) for scene in (first, second)],
+    }
+    bpy.ops.interflect.clear()
+    found["results_after"] = [len(result.collections(scene)) for scene in (first, second)]
+    return found
+
+
+def instances() -> dict:
+    """A collection with an area lamp, which is in the scene twice as instances."""
+    make_room()
+    scene = bpy.context.scene
+    fitting = bpy.data.collections.new("fitting")
+    lamp = bpy.data.objects["lamp"]
+    scene.collection.objects.unlink(lamp)
+    fitting.objects.link(lamp)
+    lamp.location = (0, 0, 0)
+    for x in (-1, 1):
+        empty = put("instance", None, (x, 0, 2.4))
+        empty.instance_type, empty.instance_collection = "COLLECTION", fitting
+    bpy.context.view_layer.update()
+    found = bake()
+    panels = [o for o in lit_meshes() if o.name.startswith("lamp")]
+    found["lamps_at"] = sorted(round(sum(x for x, _, _ in corners(o)) / len(corners(o)), 3) for o in panels)
+    found["instances_hidden"] = all(o.hide_render for o in scene.objects if o.name.startswith("instance"))
+    return found
+
+
+SHAPES = {"SQUARE": (0.8, 0.3), "RECTANGLE": (0.9, 0.4), "DISK": (0.8, 0.3), "ELLIPSE": (0.9, 0.4)}
+
+
+def panels() -> dict:
+    """Area lamps of all shapes: light that Cycles finds below each lamp, and below the panel in its place."""
+    scene, lamps = bpy.context.scene, []
+    bpy.ops.mesh.primitive_plane_add(size=8, location=(1.5, 0, 0.5))
+    floor, glass = bpy.context.object, bpy.data.materials.new("glass")
+    glass.use_nodes = True
+    nodes = glass.node_tree.nodes
+    through = nodes.new("ShaderNodeBsdfTranslucent").outputs["BSDF"]
+    glass.node_tree.links.new(through, nodes["Material Output"].inputs["Surface"])
+    floor.data.materials.append(glass)
+    for i, (shape, (width, height)) in enumerate(SHAPES.items()):
+        light = bpy.data.lights.new(shape, "AREA")
+        light.energy, light.shape, light.size, light.size_y, light.color = 1, shape, width, height, (1, 0.5, 0.25)
+        lamps.append(put(shape, light, (i, 0, 1)))
+    lamps[1].scale = (0.5, -1.5, 1)
+    camera = put("below", bpy.data.cameras.new("below"), (1.5, 0, 0))
+    camera.data.type, camera.data.ortho_scale, camera.rotation_euler = "ORTHO", 4, (math.pi, 0, 0)
+    scene.camera = camera
+    bpy.context.view_layer.update()
+    by_lamps = powers_seen()
+    before = in_file()
+    with area_lamps.as_panels(scene) as warnings:
+        for lamp in lamps:
+            lamp.hide_render = True
+        by_panels = powers_seen()
+        faces = [o for o in scene.objects if o.type == "MESH" and o != floor]
         bpy.context.view_layer.update()
-        (face,) = made.data.polygons
-        surface = made.data.materials[0].node_tree.nodes["Principled BSDF"]
-        found = {
-            "area": face.area,
-            "expected_area": 0.5,
-            "strength": surface.inputs["Emission Strength"].default_value,
-            "expected_strength": 100 / (4 * 0.5),  # what Cycles takes for the lamp's radiance
-            "normal": list(made.matrix_world.to_3x3() @ face.normal),
-        }
-    return {**found, "objects_before": before, "objects_after": [o.name for o in bpy.data.objects]}
+        normals = [list(o.matrix_world.to_3x3() @ o.data.polygons[0].normal) for o in faces]
+    return {"lamps": by_lamps, "panels": by_panels, "normals": normals, "warnings": warnings, "left": [before, in_file()]}
+
+
+def powers_seen() -> list:
+    """Mean light in each quarter of a picture from below, which has a lamp in its middle."""
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 1, False
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 256, 64, 100
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath = str(Path(folder, "below.exr"))
+        bpy.ops.render.render(write_still=True)
+        picture = bpy.data.images.load(scene.render.filepath)
+        pixels = list(picture.pixels)
+        bpy.data.images.remove(picture)
+    red = [pixels[4 * i] for i in range(256 * 64)]
+    return [sum(red[i] for i in range(256 * 64) if i % 256 // 64 == part) / 64**2 for part in range(4)]
+
+
+def warnings() -> dict:
+    make_room()
+    metal = bpy.data.materials.new("metal")
+    metal.use_nodes = True
+    metal.node_tree.nodes["Principled BSDF"].inputs["Metallic"].default_value = 1
+    bpy.data.objects["table"].data.materials[0] = metal
+    bpy.data.lights["lamp"].spread = 1
+    bpy.ops.object.metaball_add(location=(-1, 0, 1))
+    bpy.context.object.name = "ball"
+    found = bake()
+    return {**found, "warnings": result.warnings(bpy.context.scene), "ball_hidden": bpy.data.objects["ball"].hide_render}
+
+
+def failures() -> dict:
+    """Failing exports and imports restore the scene and allow the next bake."""
+    make_room()
+    before = in_file(), shown()
+    found = {}
+    for name in ("export_scene", "import_scene"):
+        whole = getattr(bpy.ops, name)
+
+        class Broken:
+            def gltf(self, **_):
+                raise RuntimeError(f"Error: {name} is broken")
+
+        setattr(bpy.ops, name, Broken())
+        found[name] = bake()["said"]
+        setattr(bpy.ops, name, whole)
+        found[name + "_left"] = [before, (in_file(), shown())]
+    return {**found, **bake()}
+
+
+def long_bake(folder: Path) -> pipeline.Bake:
+    """One that takes hours, at work."""
+    scene = folder / "scene.glb"
+    exchange.export_scene(bpy.context.scene, scene)
+    wanted = pipeline.Settings(command=command, rays=10**11)
+    start = time.monotonic()
+    running = pipeline.Bake(pipeline.stages(scene, folder / "light.h5", folder / "lit.glb", wanted))
+    while running.fraction == 0 and running.is_running() and time.monotonic() - start < 5:
+        time.sleep(0.05)
+    return running
 
 
 def cancel() -> dict:
     make_room()
     with tempfile.TemporaryDirectory() as folder:
-        scene = Path(folder, "scene.glb")
-        exchange.export_scene(scene)
-        wanted = pipeline.Settings(rays=10**11)
-        start = time.monotonic()
-        running = pipeline.Bake(command, pipeline.stages(scene, Path(folder, "light.h5"), Path(folder, "lit.glb"), wanted))
-        while running.fraction == 0 and running.is_running() and time.monotonic() - start < 5:
-            time.sleep(0.05)
+        running = long_bake(Path(folder))
+        cancelled = time.monotonic()
         running.cancel()
         running.wait()
-    return {"was_cancelled": running.is_cancelled and not running.error, "seconds": time.monotonic() - start}
+    return {"was_cancelled": running.is_cancelled and not running.error, "seconds": time.monotonic() - cancelled}
 
 
-def world() -> dict:
+def disable() -> dict:
+    """While a bake runs there is no other, and disabling the add-on ends it."""
+    make_room()
+    folder = Path(tempfile.mkdtemp(prefix="interflect-"))
+    running = long_bake(folder)
+    interflect.Bake.running, interflect.Bake.folder = running, folder
+    found = {"may_bake": bpy.ops.interflect.bake.poll(), "may_clear": bpy.ops.interflect.clear.poll()}
+    bpy.ops.preferences.addon_disable(module="interflect")
+    return {**found, "is_running": running.is_running(), "was_cancelled": running.is_cancelled and not running.error}
+
+
+def new_world():
+    world = bpy.context.scene.world = bpy.data.worlds.new("sky")
+    world.use_nodes = True
+    return world.node_tree.nodes, world.node_tree.links
+
+
+def plain_world() -> dict:
     """A grey floor under a sky of one colour, of radiance L: as bright as the sky times its reflectance."""
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
-    sky = bpy.data.worlds.new("sky")
-    sky.use_nodes = True
-    sky.node_tree.nodes["Background"].inputs["Color"].default_value = (0.2, 0.4, 0.8, 1)
-    sky.node_tree.nodes["Background"].inputs["Strength"].default_value = 2
-    bpy.context.scene.world = sky
-    settings = bpy.context.scene.interflect
-    settings.rays, settings.kind, settings.use_camera = 0.5, "VERTEX", False
-    result = list(bpy.ops.interflect.bake())
-    (lit,) = [o for o in bpy.data.collections[exchange.LIT_COLLECTION].objects if o.type == "MESH"]
-    nodes = lit.data.materials[0].node_tree.nodes
-    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
-    front = output.inputs["Surface"].links[0].from_node.inputs[1].links[0].from_node
-    strength = front.inputs["Strength"].default_value
-    colours = [list(c.color)[:3] for c in lit.data.color_attributes[0].data]
-    return {"result": result, "brightest": [strength * max(c[i] for c in colours) for i in range(3)]}
+    nodes, _ = new_world()
+    nodes["Background"].inputs["Color"].default_value = (-0.1, 0.4, 0.8, 1)
+    nodes["Background"].inputs["Strength"].default_value = 2
+    found = bake(rays=0.5)
+    (lit,) = lit_meshes()
+    light = colours(lit)
+    return {**found, "brightest": [max(texel[c] for texel in light) for c in range(3)]}
 
 
-cases = {"world": world, "vertex": lambda: bake("VERTEX"), "lightmap": lambda: bake("LIGHTMAP"), "panel": panel, "cancel": cancel}
-Path(out).write_text(json.dumps(cases[case]()))
+def hdri_world() -> dict:
+    """A cube in an image that is bright towards x, turned by a quarter, and other light that cameras alone would see."""
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
+    scene = bpy.context.scene
+    scene.camera = put("camera", bpy.data.cameras.new("camera"), (0, -4, 0))  # it sees the lit side, for the exposure
+    scene.camera.rotation_euler = (math.pi / 2, 0, 0)
+    nodes, links = new_world()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "sky.hdr")
+        width, height = 32, 16
+        texels = [(128, 128, 128, 132 if abs(x - 15.5) < 2 and abs(y - 7.5) < 2 else 0) for y in range(height) for x in range(width)]
+        header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
+        file.write_bytes(header.encode() + b"".join(map(bytes, texels)))
+        coordinates, turn, image = (nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "Mapping", "TexEnvironment"))
+        turn.inputs["Rotation"].default_value = (0, 0, math.pi / 2)
+        image.image = bpy.data.images.load(str(file))
+        links.new(coordinates.outputs["Generated"], turn.inputs["Vector"])
+        links.new(turn.outputs["Vector"], image.inputs["Vector"])
+        links.new(image.outputs["Color"], nodes["Background"].inputs["Color"])
+        path, seen, mixed = (nodes.new(f"ShaderNode{kind}") for kind in ("LightPath", "Background", "MixShader"))
+        seen.inputs["Strength"].default_value = 1000
+        links.new(path.outputs["Is Camera Ray"], mixed.inputs["Fac"])
+        links.new(nodes["Background"].outputs["Background"], mixed.inputs[1])
+        links.new(seen.outputs["Background"], mixed.inputs[2])
+        links.new(mixed.outputs["Shader"], nodes["World Output"].inputs["Surface"])
+        before = in_file()
+        found = bake(rays=1)
+    (lit,) = lit_meshes()
+    light = colours(lit)
+    sides = {}
+    for face in lit.data.polygons:
+        normal = lit.matrix_world.to_3x3() @ face.normal
+        axis = max(range(3), key=lambda i: abs(normal[i]))
+        side = ("-" if normal[axis] < 0 else "+") + "xyz"[axis]
+        red = [light[i][0] for i in face.loop_indices]
+        area, power = sides.get(side, (0, 0))
+        sides[side] = area + face.area, power + face.area * sum(red) / len(red)
+    bpy.ops.interflect.clear()
+    return {**found, "sides": {side: power / area for side, (area, power) in sides.items()}, "left": [before, in_file()]}
+
+
+CASES = {
+    "vertex": lambda: first_bake("VERTEX"),
+    "lightmap": lambda: first_bake("LIGHTMAP"),
+    "three_vertex": lambda: three_bakes("VERTEX"),
+    "three_lightmaps": lambda: three_bakes("LIGHTMAP"),
+    **{each.__name__: each for each in (visibility, user, scenes, instances, panels, warnings, failures)},
+    **{each.__name__: each for each in (plain_world, hdri_world, cancel, disable)},
+}
+Path(out).write_text(json.dumps(CASES[case]()))

@@ -1,12 +1,14 @@
 """Blender add-on: finds the diffuse light of the scene with Interflect and puts it onto its surfaces."""
 
+import os
 import shutil
 import tempfile
+import textwrap
 from pathlib import Path
 
 import bpy
 
-from . import exchange, pipeline
+from . import exchange, pipeline, result, world
 from .lit_materials import glTF2ImportUserExtension  # found here by the importer
 
 bl_info = {
@@ -20,6 +22,7 @@ bl_info = {
 }
 
 POLL = 0.2  # [s]
+LETTER = 7  # width of a letter in panels, about [pixels]
 
 
 class Preferences(bpy.types.AddonPreferences):
@@ -57,15 +60,29 @@ class Bake(bpy.types.Operator):
 
     bl_idname = "interflect.bake"
     bl_label = "Bake Light"
+    bl_options = {"UNDO"}
+
+    running: pipeline.Bake | None = None  # at most one for all windows
+    folder: Path | None = None  # its temporary files
+
+    @classmethod
+    def poll(cls, _context):
+        if Bake.running:
+            cls.poll_message_set("Interflect is baking already")
+        return Bake.running is None
 
     def execute(self, context):
         """Without a user interface: waits until it is done."""
-        self._start(context)
-        self._bake.wait()
-        return self._finish(context)
+        if not self._start(context):
+            return {"CANCELLED"}
+        Bake.running.wait()
+        return self._finish()
 
     def invoke(self, context, _event):
-        self._start(context)
+        if bpy.app.background:
+            return self.execute(context)
+        if not self._start(context):
+            return {"CANCELLED"}
         self._timer = context.window_manager.event_timer_add(POLL, window=context.window)
         context.window_manager.progress_begin(0, 100)
         context.window_manager.modal_handler_add(self)
@@ -73,52 +90,127 @@ class Bake(bpy.types.Operator):
 
     def modal(self, context, event):
         if event.type == "ESC":
-            self._bake.cancel()
+            Bake.running.cancel()
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if self._bake.is_running():
-            percent = 100 * self._bake.fraction
+        if Bake.running.is_running():
+            percent = 100 * Bake.running.fraction
             context.window_manager.progress_update(percent)
-            context.workspace.status_text_set(f"Interflect: {self._bake.stage} {percent:.0f}%  (Esc: cancel)")
+            context.workspace.status_text_set(f"Interflect: {Bake.running.stage} {percent:.0f}%  (Esc: cancel)")
+            _redraw_panels(context)
             return {"RUNNING_MODAL"}
         context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
-        return self._finish(context)
+        _end_progress(context)
+        return self._finish()
 
-    def _start(self, context):
-        settings = context.scene.interflect
-        self._folder = Path(tempfile.mkdtemp(prefix="interflect-"))
-        scene, solution, self._lit = (self._folder / name for name in ("scene.glb", "light.h5", "lit.glb"))
-        exchange.export_scene(scene)
-        wanted = pipeline.Settings(
-            rays=round(settings.rays * 1e6),
-            views=[context.scene.camera.name] if settings.use_camera and context.scene.camera else [],
-            kind=settings.kind,
-            texels_per_metre=settings.texels_per_metre,
-            gather=settings.gather,
-        )
-        radiance = exchange.world_radiance()
-        if radiance is None:
-            self.report({"WARNING"}, "The world's light varies and is left out: only a plain background is baked")
-        elif max(radiance) > 0:
-            environment = self._folder / "world.hdr"
-            exchange.write_environment(environment, radiance)
-            wanted.options += ["--environment", str(environment), "--zenith", "0,1,0"]
-        command = context.preferences.addons[__name__].preferences.command
-        self._bake = pipeline.Bake(command, pipeline.stages(scene, solution, self._lit, wanted))
+    def cancel(self, context):
+        """Called by Blender where it closes or opens another file."""
+        context.window_manager.event_timer_remove(self._timer)
+        Bake.stop(context)
 
-    def _finish(self, context):
+    @classmethod
+    def stop(cls, context):
+        """Ends a running bake at once."""
+        cls.running.cancel()
+        cls.running.wait()
+        _end_progress(context)
+        cls._end()
+
+    def _start(self, context) -> bool:
+        settings, scene = context.scene.interflect, context.scene
+        self._scene = scene.name  # undo replaces the scene itself
+        Bake.folder = Path(tempfile.mkdtemp(prefix="interflect-"))
+        file, solution, self._lit = (self.folder / name for name in ("scene.glb", "light.h5", "lit.glb"))
         try:
-            if self._bake.error:
-                self.report({"ERROR"}, str(self._bake.error))
+            exported = exchange.export_scene(scene, file)
+            self._baked, self._warnings = exported.objects, exported.warnings
+            wanted = pipeline.Settings(
+                command=context.preferences.addons[__name__].preferences.command,
+                rays=round(settings.rays * 1e6),
+                views=self._views(scene, file) if settings.use_camera else [],
+                kind=settings.kind,
+                texels_per_metre=settings.texels_per_metre,
+                gather=settings.gather,
+            )
+            before = self._world(scene, wanted)
+        except Exception as error:
+            self._end()
+            if isinstance(error, RuntimeError):  # reported by the exporter
+                self.report({"ERROR"}, str(error))
+                return False
+            raise
+        Bake.running = pipeline.Bake([*before, *pipeline.stages(file, solution, self._lit, wanted)])
+        return True
+
+    def _views(self, scene, file):
+        if scene.camera is None:
+            return []
+        if scene.camera.name in exchange.camera_names(file):
+            return [scene.camera.name]
+        self._warnings.append(f"The camera '{scene.camera.name}' is left out: the rays go to all surfaces alike")
+        return []
+
+    def _world(self, scene, wanted) -> list[pipeline.Stage]:
+        """Adds the world's light to the settings. Returns the stages that run before."""
+        radiance = world.plain_radiance(scene.world)
+        if radiance is None:
+            environment = self.folder / "world.exr"
+            stages = [pipeline.Stage("Rendering the world", world.rendering(scene, self.folder, environment))]
+        else:
+            if min(radiance) < 0:
+                self._warnings.append("The world's colour is negative: it is baked as 0")
+            if max(radiance) <= 0:
+                return []
+            environment, stages = self.folder / "world.hdr", []
+            world.write_plain(environment, radiance)
+        wanted.options += ["--environment", str(environment), "--zenith", "0,1,0"]
+        return stages
+
+    def _finish(self):
+        done = Bake.running
+        scene = bpy.data.scenes.get(self._scene)
+        in_folder = str(self.folder) + os.sep  # removed from messages
+        warnings = [each.replace(in_folder, "") for each in dict.fromkeys(self._warnings + done.warnings)]
+        try:
+            if done.error:
+                self.report({"ERROR"}, str(done.error).replace(in_folder, "").removeprefix("error: "))
                 return {"CANCELLED"}
-            if self._bake.is_cancelled:
+            if done.is_cancelled:
+                self.report({"INFO"}, "Interflect: cancelled")
                 return {"CANCELLED"}
-            exchange.import_lit(self._lit)
+            if scene is None:
+                self.report({"ERROR"}, f"The scene '{self._scene}' is there no longer: its light is lost")
+                return {"CANCELLED"}
+            for warning in warnings:
+                self.report({"WARNING"}, warning)
+            exchange.import_lit(scene, self._lit, self._baked, warnings)
             return {"FINISHED"}
+        except RuntimeError as error:  # reported by the importer
+            result.remove(scene)
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         finally:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            self._end()
+
+    @classmethod
+    def _end(cls):
+        shutil.rmtree(cls.folder, ignore_errors=True)
+        Bake.running = Bake.folder = None
+
+
+class Cancel(bpy.types.Operator):
+    """End the bake that is running, and leave the scene as it is"""
+
+    bl_idname = "interflect.cancel"
+    bl_label = "Cancel"
+
+    @classmethod
+    def poll(cls, _context):
+        return Bake.running is not None
+
+    def execute(self, _context):
+        Bake.running.cancel()
+        return {"FINISHED"}
 
 
 class Clear(bpy.types.Operator):
@@ -128,8 +220,12 @@ class Clear(bpy.types.Operator):
     bl_label = "Clear"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, _context):
-        exchange.remove_lit()
+    @classmethod
+    def poll(cls, _context):
+        return Bake.running is None
+
+    def execute(self, context):
+        result.remove(context.scene)
         return {"FINISHED"}
 
 
@@ -149,11 +245,33 @@ class Panel(bpy.types.Panel):
             layout.prop(settings, "texels_per_metre")
             layout.prop(settings, "gather")
         row = layout.row()
-        row.operator(Bake.bl_idname)
-        row.operator(Clear.bl_idname)
+        if Bake.running:
+            row.label(text=f"{Bake.running.stage} {100 * Bake.running.fraction:.0f}%")
+            row.operator(Cancel.bl_idname)
+        else:
+            row.operator(Bake.bl_idname)
+            row.operator(Clear.bl_idname)
+        letters = max(20, int(context.region.width / (LETTER * context.preferences.system.ui_scale)))
+        for warning in result.warnings(context.scene):
+            column = layout.column(align=True)
+            for i, line in enumerate(textwrap.wrap(warning, letters)):
+                column.label(text=line, icon="BLANK1" if i else "ERROR")
 
 
-CLASSES = (Preferences, BakeSettings, Bake, Clear, Panel)
+def _end_progress(context):
+    context.window_manager.progress_end()
+    context.workspace.status_text_set(None)
+    _redraw_panels(context)
+
+
+def _redraw_panels(context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "PROPERTIES":
+                area.tag_redraw()
+
+
+CLASSES = (Preferences, BakeSettings, Bake, Cancel, Clear, Panel)
 
 
 def register():
@@ -163,6 +281,8 @@ def register():
 
 
 def unregister():
+    if Bake.running:
+        Bake.stop(bpy.context)
     del bpy.types.Scene.interflect
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)

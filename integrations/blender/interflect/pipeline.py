@@ -1,14 +1,14 @@
-"""Runs the `interflect` command: solve, then export. Knows nothing of Blender."""
+"""Runs the commands of a bake in order. Independent of Blender."""
 
 import re
-import signal
 import subprocess
 import threading
 from dataclasses import dataclass, field
 from pathlib import Path
 
 PERCENT = re.compile(rb"^\s*(\d+)%")
-KEPT_LINES = 20  # of what the command said, for messages
+WARNING = re.compile(rb"^warning: (.*(?:\n  .*)*)", re.MULTILINE)  # indented lines go on with it
+KEPT_LINES = 20  # of the command's last output, in error messages
 
 
 class BakeError(Exception):
@@ -18,7 +18,7 @@ class BakeError(Exception):
 @dataclass
 class Stage:
     name: str  # as shown beside the progress
-    arguments: list[str]
+    command: list[str]
 
 
 @dataclass
@@ -36,24 +36,28 @@ def stages(scene: Path, solution: Path, lit: Path, settings: Settings) -> list[S
     solve = [str(scene), "-o", str(solution), "--rays", str(settings.rays), *settings.options]
     for view in settings.views:
         solve += ["--view", view]
-    export = [str(solution), "-o", str(lit)]
+    export = [str(solution), "-o", str(lit), "--up", "0,1,0"]
     if settings.kind == "LIGHTMAP":
         export += ["--lightmap", "--texels-per-metre", f"{settings.texels_per_metre:g}"]
         if settings.gather:
             export += ["--shading", "gather"]
-    return [Stage("Solving", ["solve", *solve]), Stage("Exporting", ["export", *export])]
+    return [
+        Stage("Solving", [settings.command, "solve", *solve]),
+        Stage("Exporting", [settings.command, "export", *export]),
+    ]
 
 
 class Bake:
     """The stages one after the other, in a thread of its own, so that a user interface can look at it now and then."""
 
-    def __init__(self, command: str, stages: list[Stage]):
+    def __init__(self, stages: list[Stage]):
         self.stage, self.fraction = stages[0].name, 0.0
+        self.warnings: list[str] = []
         self.error: BakeError | None = None
         self.is_cancelled = False
         self._process: subprocess.Popen | None = None
         self._lock = threading.Lock()  # of the two members above
-        self._thread = threading.Thread(target=self._run, args=(command, stages), daemon=True)
+        self._thread = threading.Thread(target=self._run, args=(stages,), daemon=True)
         self._thread.start()
 
     def is_running(self) -> bool:
@@ -63,35 +67,38 @@ class Bake:
         self._thread.join()
 
     def cancel(self) -> None:
+        """Ends the command at once: its files are temporary."""
         with self._lock:
             self.is_cancelled = True
             if self._process and self._process.poll() is None:
-                self._process.send_signal(signal.SIGINT)
+                self._process.kill()
 
-    def _run(self, command: str, stages: list[Stage]) -> None:
+    def _run(self, stages: list[Stage]) -> None:
         try:
             for stage in stages:
                 self.stage, self.fraction = stage.name, 0.0
-                self._run_stage(command, stage)
+                self._run_stage(stage)
                 if self.is_cancelled:
                     return
         except BakeError as error:
             self.error = error
         except OSError as error:
-            self.error = BakeError(f"cannot run '{command}': {error.strerror}. Set its path in the add-on's preferences")
+            self.error = BakeError(f"cannot run '{stage.command[0]}': {error.strerror}. Set its path in the add-on's preferences")
 
-    def _run_stage(self, command: str, stage: Stage) -> None:
+    def _run_stage(self, stage: Stage) -> None:
         with self._lock:
             if self.is_cancelled:
                 return
             self._process = subprocess.Popen(
-                [command, *stage.arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL
+                stage.command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL
             )
-        said: list[bytes] = []
+        said = b""
         for line in self._process.stderr:
             if found := PERCENT.match(line):
                 self.fraction = int(found[1]) / 100
             else:
-                said = [*said[1 - KEPT_LINES :], line]
+                said += line
+        self.warnings += [" ".join(each.decode(errors="replace").split()) for each in WARNING.findall(said)]
         if self._process.wait() != 0 and not self.is_cancelled:
-            raise BakeError(b"".join(said).decode(errors="replace").strip() or f"{stage.name} failed")
+            last = b"".join(said.splitlines(keepends=True)[-KEPT_LINES:])
+            raise BakeError(last.decode(errors="replace").strip() or f"{stage.name} failed")

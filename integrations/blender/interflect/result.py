@@ -1,0 +1,77 @@
+"""The result of a bake in Blender's file: its data, and the hidden objects that it represents.
+
+Custom properties mark both. They survive renaming, deletion by hand, undo and saving."""
+
+from contextlib import contextmanager
+
+import bpy
+
+RESULT = "interflect_result"  # marks data that a bake made
+HIDDEN = "interflect_hidden"  # marks objects that a bake hid: names of the view layers that showed them, one per line
+WARNINGS = "interflect_warnings"  # of the result's collection: one per line
+
+KINDS = ("collections", "objects", "meshes", "cameras", "lights", "materials", "node_groups", "images")
+
+
+@contextmanager
+def marking():
+    """Marks the data made meanwhile as a result."""
+    before = {kind: set(getattr(bpy.data, kind)) for kind in KINDS}
+    try:
+        yield
+    finally:
+        for kind in KINDS:
+            for made in set(getattr(bpy.data, kind)) - before[kind]:
+                made[RESULT] = True
+
+
+def is_result(data) -> bool:
+    return RESULT in data
+
+
+def collections(scene) -> list:
+    return [collection for collection in scene.collection.children_recursive if is_result(collection)]
+
+
+def warnings(scene) -> list[str]:
+    """Of the bake that the result is from."""
+    return [warning for collection in collections(scene) for warning in collection.get(WARNINGS, "").splitlines()]
+
+
+def hide(scene, names) -> None:
+    """Hides the objects of these names from pictures and from all view layers."""
+    for original in (scene.objects[name] for name in names if name in scene.objects):
+        layers = [layer for layer in scene.view_layers if original.name in layer.objects]
+        original[HIDDEN] = "\n".join(layer.name for layer in layers if not original.hide_get(view_layer=layer))
+        original.hide_render = True
+        for layer in layers:
+            original.hide_set(True, view_layer=layer)
+
+
+def remove(scene) -> None:
+    """Removes the result of a scene with its unused data, and shows the objects that it represents."""
+    bpy.data.batch_remove([made for made in scene.objects if is_result(made)])
+    for collection in collections(scene):
+        for kept in collection.objects:  # put there by the user
+            if kept.name not in scene.collection.objects:
+                scene.collection.objects.link(kept)
+        for kept in collection.children:
+            if kept.name not in scene.collection.children:
+                scene.collection.children.link(kept)
+        bpy.data.collections.remove(collection)
+    purge()
+    for original in scene.objects:
+        shown_in = original.pop(HIDDEN, None)
+        if shown_in is None:
+            continue
+        original.hide_render = False
+        for name in shown_in.splitlines():
+            layer = scene.view_layers.get(name)
+            if layer and original.name in layer.objects:
+                original.hide_set(False, view_layer=layer)
+
+
+def purge() -> None:
+    """Removes unused data of bakes, users before the data that they use."""
+    for kind in KINDS:
+        bpy.data.batch_remove([made for made in getattr(bpy.data, kind) if is_result(made) and made.users == 0])
