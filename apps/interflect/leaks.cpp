@@ -13,6 +13,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
+#include "interflect/render/path_samples.h"
 #include "interflect/scene/core.h"
 #include "interflect/solver/materials.h"
 #include "interflect/solver/ray_source.h"
@@ -28,25 +29,46 @@ constexpr float least_leak = 1e-3f, most_leak = 0.05f;
 constexpr float distance_beside = 0.02f;
 constexpr std::size_t rays_beside = 8;
 
-/// Systematic samples of the patches, in proportion to the power that leaves them.
-std::vector<std::uint32_t> sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    const Materials materials(scene, ray_caster);
+/// Systematic samples of the leaves, in proportion to the power that leaves them.
+struct Sources {
+    std::vector<std::uint32_t> leaves;
+    double power = 0;  ///< Total power of the leaves, the sum of the channels.
+
+    double power_of_each() const { return power / static_cast<double>(leaves.size()); }
+};
+
+Sources sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    const ElementForest& forest = *solution.forest;
+    Materials materials(scene, ray_caster);
+    materials.grow(forest);
+    const std::vector<Rgb> b = radiosity(materials, forest, solution.irradiance);
+    const std::vector<std::uint32_t> leaves = forest.leaves();
     std::vector<double> cumulative;
-    cumulative.reserve(scene.patches.size());
-    double sum = 0;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const float b = channel_sum(materials.exitance(i) + materials.reflectance(i) * solution.irradiance[i]);
-        if (std::isfinite(b)) sum += static_cast<double>(b * solution.forest->area(i));
-        cumulative.push_back(sum);
+    cumulative.reserve(leaves.size());
+    Sources result;
+    for (const std::uint32_t leaf : leaves) {
+        const float sum = channel_sum(b[leaf]);
+        if (std::isfinite(sum)) result.power += static_cast<double>(sum * forest.area(leaf));
+        cumulative.push_back(result.power);
     }
-    std::vector<std::uint32_t> patches;
-    std::uint32_t i = 0;
-    for (std::int64_t k = 0; sum > 0 && k < rays_traced; ++k) {
-        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(rays_traced) * sum;
+    std::size_t i = 0;
+    for (std::int64_t k = 0; result.power > 0 && k < rays_traced; ++k) {
+        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(rays_traced) * result.power;
         while (cumulative[i] < at) ++i;
-        patches.push_back(i);
+        result.leaves.push_back(leaves[i]);
     }
-    return patches;
+    return result;
+}
+
+/// A ray of light that a leaf reflects or emits.
+Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
+             PointBlock& points) {
+    const std::uint32_t patch = forest.patch(leaf);
+    Ray ray;
+    Parameters origin;
+    shoot_rays(forest.geometry(patch), forest.cell(leaf), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
+               sample, points, {&ray, 1}, {&origin, 1});
+    return ray;
 }
 
 /// Whether most of the rays around a ray, parallel to it, hit something.
@@ -65,70 +87,126 @@ bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distanc
            static_cast<std::ptrdiff_t>(rays_beside);
 }
 
-/// Counts the rays that do not find the way back.
+/// Light, and the faces that cause it.
+struct LightByFace {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // by object and material
+    double sum = 0, reflected = 0;
+
+    /// @param received  How often the light is received, the first time included.
+    void add(const Patch& face, double arriving, double received) {
+        power[{face.object, face.material}] += arriving * received;
+        sum += arriving * received;
+        if (received > 1) reflected += arriving * (received - 1);
+    }
+    std::pair<std::uint32_t, std::uint32_t> object_and_material() const {
+        return std::max_element(power.begin(), power.end(),
+                                [](const auto& a, const auto& b) { return a.second < b.second; })
+            ->first;
+    }
+};
+
+/// Compares the hits of light rays with the hits of rays in the opposite direction.
 class WaysBack {
   public:
-    WaysBack(const Scene& scene, const RayCaster& ray_caster) : scene_(scene), ray_caster_(ray_caster) {}
+    WaysBack(const Scene& scene, const RayCaster& ray_caster)
+        : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
     /// @param source  The patch that the ray leaves; none for a luminaire.
-    void add(const Ray& ray, std::uint32_t source) {
-        Hit hit, back;
-        ray_caster_.trace({&ray, 1}, {&hit, 1});
+    void add(const Ray& ray, std::uint32_t source, double power) {
+        Hit hit = trace(ray);
         if (hit.patch == none) return;
-        ++hits_;
-        const float offset = ray_caster_.ray_offset(hit.patch);
-        const PatchGeometry geometry(scene_, scene_.patches[hit.patch]);
-        const Ray reversed{ray.origin + hit.distance * ray.direction + offset * geometry.normal(), -ray.direction};
-        ray_caster_.trace({&reversed, 1}, {&back, 1});
-        constexpr float rounding = 1e-4f, offsets = 8;
-        const float nearest = hit.distance * (1 - rounding) - offsets * offset;
-        if (back.patch == none || back.patch == source || back.distance >= nearest) return;
-        ++lost_;
-        const Patch& face = scene_.patches[back.patch];
-        ++in_the_way_[{face.object, face.material}];
+        received_ += power;
+        V3f place = ray.origin + hit.distance * ray.direction;
+        if (const std::uint32_t face = face_between(ray.origin, source, place, hit.patch); face != none) {
+            extra_.add(scene_.patches[face], power, spread(place, hit.patch));
+            return;
+        }
+        // Faces behind a one-sided one may see the source through its back.
+        const std::uint32_t stops = hit.patch;
+        while (scene_.patches[hit.patch].other_side == none) {
+            const Ray behind{place - ray_caster_.ray_offset(hit.patch) * normal(hit.patch), ray.direction};
+            hit = trace(behind);
+            if (hit.patch == none) return;
+            place = behind.origin + hit.distance * ray.direction;
+            if (face_between(ray.origin, source, place, hit.patch) != none) return;
+            missing_.add(scene_.patches[stops], power, spread(place, hit.patch));
+        }
     }
     OneWayLight result() const {
-        if (lost_ == 0) return {};
-        const auto most = std::max_element(in_the_way_.begin(), in_the_way_.end(),
-                                           [](const auto& a, const auto& b) { return a.second < b.second; });
-        return {static_cast<double>(lost_) / static_cast<double>(hits_), most->first.first, most->first.second};
+        const LightByFace& most = extra_.sum > missing_.sum ? extra_ : missing_;
+        if (!(most.sum > 0)) return {};
+        const auto [object, material] = most.object_and_material();
+        return {(extra_.sum - missing_.sum) / received_, (extra_.reflected - missing_.reflected) / received_, object,
+                material};
     }
 
   private:
+    Hit trace(const Ray& ray) const {
+        Hit hit;
+        ray_caster_.trace({&ray, 1}, {&hit, 1});
+        return hit;
+    }
+    V3f normal(std::uint32_t patch) const { return PatchGeometry(scene_, scene_.patches[patch]).normal(); }
+
+    /// The patch that hides the start of a light ray from a place on `patch`; none if it is visible.
+    std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, std::uint32_t patch) const {
+        constexpr float rounding = 1e-4f, offsets = 8;
+        const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
+        const Hit back = trace({place + offset * normal(patch), (start - place) / distance});
+        const bool is_seen =
+            back.patch == none || back.patch == source || back.distance >= distance * (1 - rounding) - offsets * offset;
+        return is_seen ? none : back.patch;
+    }
+
+    /// Number of times that light is received from `place` on, by one random walk. The walk ends at a line of sight
+    /// that works in one direction only; so light inside a closed solid counts 0.
+    double spread(V3f place, std::uint32_t patch) {
+        constexpr float longest_walk = 1000;
+        float sum = 0;
+        while (sum < longest_walk) {
+            const std::array<std::uint32_t, 4> words = random_words(leak_seed, walk_steps_++);
+            const Ray ray{place + ray_caster_.ray_offset(patch) * normal(patch),
+                          cosine_direction(normal(patch), unit_float(words[0]), unit_float(words[1]))};
+            const Hit hit = trace(ray);
+            const V3f next = ray.origin + hit.distance * ray.direction;
+            if (hit.patch != none && face_between(ray.origin, patch, next, hit.patch) != none) break;
+            ++sum;
+            if (hit.patch == none || unit_float(words[2]) >= materials_.mean_reflectance(patch)) break;
+            place = next;
+            patch = hit.patch;
+        }
+        return static_cast<double>(sum);
+    }
+
     const Scene& scene_;
     const RayCaster& ray_caster_;
-    std::int64_t hits_ = 0, lost_ = 0;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> in_the_way_;  // by object and material
+    Materials materials_;
+    double received_ = 0;
+    LightByFace extra_, missing_;
+    std::uint64_t walk_steps_ = 0;
 };
 
-OneWayLight of_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    WaysBack ways(scene, ray_caster);
+void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution, WaysBack& ways) {
     PointBlock points;
     std::uint64_t sample = 0;
-    for (const std::uint32_t patch : sources(scene, ray_caster, solution)) {
-        Ray ray;
-        Parameters origin;
-        shoot_rays(solution.forest->geometry(patch), Cell(), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
-                   sample++, points, {&ray, 1}, {&origin, 1});
-        ways.add(ray, patch);
-    }
-    return ways.result();
+    const Sources from = sources(scene, ray_caster, solution);
+    for (const std::uint32_t leaf : from.leaves)
+        ways.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
+                 from.power_of_each());
 }
 
 /// As many rays of each part as its power asks for, rounded up.
-OneWayLight of_luminaires(const Scene& scene, const RayCaster& ray_caster) {
+void add_luminaires(const Scene& scene, WaysBack& ways) {
     const Emission emission(scene);
-    const double power = channel_sum(emission.total_power());
-    WaysBack ways(scene, ray_caster);
+    const double total = channel_sum(emission.total_power());
     PointBlock points;
     std::vector<Ray> rays;
-    for (std::size_t part = 0; part < emission.part_count(); ++part) {
-        rays.resize(static_cast<std::size_t>(
-            std::ceil(rays_traced * (power > 0 ? channel_sum(emission.power(part)) / power : 0))));
+    for (std::size_t part = 0; part < emission.part_count() && total > 0; ++part) {
+        const double power = channel_sum(emission.power(part));
+        rays.resize(static_cast<std::size_t>(std::ceil(rays_traced * (power / total))));
         emission.shoot(part, PointSet::random, leak_seed, 0, points, rays);
-        for (const Ray& ray : rays) ways.add(ray, none);
+        for (const Ray& ray : rays) ways.add(ray, none, power / static_cast<double>(rays.size()));
     }
-    return ways.result();
 }
 
 }  // namespace
@@ -137,20 +215,19 @@ OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, 
     const bool has_one_sided_faces = std::any_of(scene.patches.begin(), scene.patches.end(),
                                                  [](const Patch& patch) { return patch.other_side == none; });
     if (!has_one_sided_faces) return {};
-    const OneWayLight surfaces = of_surfaces(scene, ray_caster, solution),
-                      luminaires = of_luminaires(scene, ray_caster);
-    return surfaces.share > luminaires.share ? surfaces : luminaires;
+    WaysBack ways(scene, ray_caster);
+    add_surfaces(scene, ray_caster, solution, ways);
+    add_luminaires(scene, ways);
+    return ways.result();
 }
 
 Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
     const float distance = distance_beside * core_bounds(scene).size().length();
     Escapes escapes;
     PointBlock points;
-    for (const std::uint32_t patch : sources(scene, ray_caster, solution)) {
-        Ray ray;
-        Parameters origin;
-        shoot_rays(solution.forest->geometry(patch), Cell(), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
-                   static_cast<std::uint64_t>(escapes.rays++), points, {&ray, 1}, {&origin, 1});
+    for (const std::uint32_t leaf : sources(scene, ray_caster, solution).leaves) {
+        const auto sample = static_cast<std::uint64_t>(escapes.rays++);
+        const Ray ray = ray_from(leaf, *solution.forest, ray_caster, sample, points);
         Hit hit;
         ray_caster.trace({&ray, 1}, {&hit, 1});
         if (hit.patch != none) continue;

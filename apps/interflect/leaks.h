@@ -23,14 +23,18 @@ Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solu
 /// window open loses more), and most of those that do pass through gaps.
 bool leaks(const Escapes& escapes);
 
-/// Light that goes through the backs of one-sided faces to where nothing that looks the other way sees it come from:
-/// paths from the camera are stopped by their fronts.
+/// Error of a solution that one-sided faces cause. The solver follows light; path tracing and gathering trace rays in
+/// the opposite direction, which see different sides. Extra light passes through backs to places from which the fronts
+/// hide the source. Missing light is stopped by fronts, although places behind them see the source through the backs.
+/// Shares are relative to the light that all surfaces receive.
 struct OneWayLight {
-    double share = 0;  ///< Of the light that hits anything, of surfaces or of luminaires, where that is more.
-    std::uint32_t object = 0, material = 0;  ///< Of the faces that are in the way most often.
+    double share = 0;                        ///< Extra minus missing light, both with their interreflection.
+    double reflected_share = 0;              ///< Interreflection only: the error of light gathered from the solution.
+    std::uint32_t object = 0, material = 0;  ///< The faces that cause most of the error.
 };
 
-/// Traces 2^16 rays of each, forth and back.
+/// Traces 2^16 rays from surfaces and 2^16 from luminaires, each in both directions. Closed solids whose faces look
+/// outwards cause no error: no light leaves them along a line of sight.
 OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
 
 }  // namespace interflect::command

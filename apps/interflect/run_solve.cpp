@@ -31,18 +31,20 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
             percent(escapes.share()));
 }
 
-/// Where a face lets light through one way only, what the solver finds depends on who looks.
+/// One-sided faces can stop light and let paths of the opposite direction through, or the reverse.
 void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    constexpr double least_share = 0.02;
+    constexpr double least_share = 0.02, least_reflected = 0.01;
     const OneWayLight found = find_one_way_light(scene, ray_caster, solution);
-    if (found.share < least_share) return;
+    if (std::abs(found.share) < least_share && std::abs(found.reflected_share) < least_reflected) return;
+    const bool is_bright = found.share > 0;
     const bool has_name = found.object < scene.objects.size() && !scene.objects[found.object].empty();
     spdlog::warn(
-        "{} of the light goes through the backs of one-sided faces, most of it in '{}' (material '{}'): path tracing "
-        "and "
-        "gathering are stopped by their fronts and see less; faces that keep light in or out need two sides",
-        percent(found.share), has_name ? scene.objects[found.object] : scene.name,
-        scene.materials[found.material].name);
+        "the solution is too {} by {}, what is gathered from it by {}: {}, most of it in '{}' (material '{}'); faces "
+        "that keep light in or out need two sides",
+        is_bright ? "bright" : "dark", percent(std::abs(found.share)), percent(std::abs(found.reflected_share)),
+        is_bright ? "light goes through the backs of one-sided faces, whose fronts stop path tracing and gathering"
+                  : "the fronts of one-sided faces stop light that path tracing and gathering see through the backs",
+        has_name ? scene.objects[found.object] : scene.name, scene.materials[found.material].name);
 }
 
 /// What is emitted is absorbed or escapes; what is left over tells how far to trust the solution.

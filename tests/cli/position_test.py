@@ -20,6 +20,13 @@ def room_with_hole(width):
     return room().replace("f v4 v6 v7 v5\n", "") + "m paint\n" + ceiling
 
 
+def box():
+    """Five one-sided faces that look outwards, on the floor of the room."""
+    corners = [(x, y, z) for z in (0, 0.6) for y in (1, 2) for x in (0.5, 1.5)]
+    faces = "f v4 v5 v7 v6\nf v0 v4 v6 v2\nf v1 v3 v7 v5\nf v0 v1 v5 v4\nf v2 v6 v7 v3\n"
+    return vertices(*corners) + "m box =\n\tc\n\tsides 1\n\trd .5\n" + faces
+
+
 class Position(CommandTest):
     def setUp(self):
         super().setUp()
@@ -91,6 +98,16 @@ class LostLight(CommandTest):
             self.assertNotIn("backs", self.warnings(room(LAMP.replace("sides 1", "sides 2")) + lit))
         self.assertIn("most of it in 'shade' (material 'paint')", self.warnings(one_sided + shade))
         self.assertNotIn("backs", self.warnings(one_sided))
+
+    def test_a_one_sided_sheet_that_is_seen_from_behind_is_reported(self):
+        """Half the light of the room's lamp meets a sheet that the floor looks through."""
+        sheet = vertices((0.5, 1, 1.2), (1.5, 1, 1.2), (1.5, 2, 1.2), (0.5, 2, 1.2)) + "m sheet =\n\tc\n\tsides 1\n\trd .5\no sheet\nf {}\no\n"
+        upwards, downwards = "v0 v1 v2 v3", "v3 v2 v1 v0"
+        said = self.warnings(room() + sheet.format(upwards))
+        self.assertRegex(said, r"too dark by \d+%, .*most of it in 'sheet' \(material 'sheet'\)")
+        self.assertRegex(self.warnings(room() + sheet.format(downwards)), r"too bright by \d")
+        for harmless in (room() + sheet.replace("sides 1", "sides 2").format(upwards), room() + box()):
+            self.assertNotIn("one-sided", self.warnings(harmless))
 
     def test_covered_lamps_are_counted(self):
         lamp = "f v0 v1 v2 v3\n"
