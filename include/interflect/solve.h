@@ -58,7 +58,6 @@ struct Method {
     const char* no_importance = nullptr;            ///< Why importance cannot steer it; null: it can.
     bool is_stochastic = true;                      ///< Its noise is measured, and falls with the rays.
     bool takes_luminaires = true;                   ///< Light sources that are no surfaces shine.
-    bool passes_glass = true;                       ///< Light goes through Material::transmittance.
     bool separates_groups = false;                  ///< Keeps what each light group brings apart.
     bool follows_dimming = false;  ///< Can go on with groups that shine otherwise, see Solver::set_exitance().
 };

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -49,9 +48,6 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(o.method.takes_luminaires || scene.luminaires.empty(),
             fmt::format("lights that are no surfaces: {} knows only surfaces that emit; choose another method",
                         o.method.name));
-    const auto is_glass = [](const Material& m) { return largest_channel(m.transmittance) > 0; };
-    require(o.method.passes_glass || std::none_of(scene.materials.begin(), scene.materials.end(), is_glass),
-            fmt::format("thin glass: {} lets no light through; choose another method", o.method.name));
     require(o.method.separates_groups || scene.light_groups.empty(),
             fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
     require_no_faults(faults, "cannot solve", scene);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
@@ -115,15 +116,21 @@ FormFactors form_factors(const ElementForest& forest, const Quadrature& points, 
     return result;
 }
 
+/// Of each channel.
+Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
+Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
+
 /// Casts rays along lines between elements, and counts them.
 struct LinesOfSight {
     const ElementForest& forest;
     const RayCaster& ray_caster;
+    const Panes& panes;
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// The share of free lines from the points of the smaller element, each weighted by what goes along it.
-    double visibility(std::uint32_t small, std::uint32_t large, const Quadrature& points) {
+    /// Sets what the lines from the points of the smaller element transmit: their mean, each weighted by what goes
+    /// along it, and how much they differ.
+    void look(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
         const Cell cell = forest.cell(large);
@@ -131,7 +138,9 @@ struct LinesOfSight {
         PointBlock random;
         fill_points(PointSet::sobol, mix(mix(seed, place(forest, small)), place(forest, large)), 0, points.count,
                     random);
-        double all = 0, free = 0;
+        double all = 0;
+        RgbD free(0, 0, 0);
+        Rgb least(1), most(0);
         for (std::size_t k = 0; k < points.count; ++k) {
             const V3f x = points.point[k];
             const V3f y = geometry.point(geometry.uniform_parameters(random.coordinate[0][k], random.coordinate[1][k],
@@ -143,19 +152,30 @@ struct LinesOfSight {
             const double along_line = points.weight[k] * static_cast<double>(kernel);
             all += along_line;
             // Both ways: the back of a one-sided face stops no ray, and of coincident faces only one answers.
-            if (sees(small, x, normal_x, large, y) && sees(large, y, normal_y, small, x)) free += along_line;
+            Rgb line = transmittance(small, x, normal_x, large, y);
+            if (line != Rgb(0)) line = smaller(line, transmittance(large, y, normal_y, small, x));
+            free += RgbD(line) * along_line;
+            least = smaller(least, line);
+            most = larger(most, line);
         }
-        return all > 0 ? free / all : 1;  // 1: too little of the two faces each other for a line
+        exchange.transmittance = all > 0 ? Rgb(free / all) : Rgb(1);  // 1: too little of the two faces each other
+        exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 
-    /// Whether a point of an element is the first that a ray to it, from a point of another, meets.
-    bool sees(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
+    /// Of the panes before a point of an element, on a ray to it from a point of another; 0 if anything else is first.
+    Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
         const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};
         Hit hit;
         ray_caster.trace(std::span(&ray, 1), std::span(&hit, 1));
         ++rays;
-        return hit.patch == forest.patch(element);
+        const std::uint32_t target = forest.patch(element);
+        if (hit.patch == target) return Rgb(1);
+        std::vector<Panes::HitBehind> behind;
+        panes.trace(std::span(&ray, 1), std::span(&hit, 1), behind);
+        const auto found =
+            std::find_if(behind.begin(), behind.end(), [&](const auto& b) { return b.hit.patch == target; });
+        return found == behind.end() ? Rgb(0) : found->transmittance;
     }
 };
 
@@ -198,9 +218,11 @@ Exchange ExchangeEstimator::estimate(const ElementPair& pair, Effort effort, std
     if (exchange.area == 0) return exchange;
     exchange.spread_over_a = static_cast<float>(area_a * from_a.spread);
     exchange.spread_over_b = static_cast<float>(area_b * from_b.spread);
-    LinesOfSight lines{forest_, ray_caster_, seed_, rays};
-    exchange.visibility = static_cast<float>(a_is_smaller ? lines.visibility(pair.a, pair.b, points_of_a)
-                                                          : lines.visibility(pair.b, pair.a, points_of_b));
+    LinesOfSight lines{forest_, ray_caster_, panes_, seed_, rays};
+    if (a_is_smaller)
+        lines.look(pair.a, pair.b, points_of_a, exchange);
+    else
+        lines.look(pair.b, pair.a, points_of_b, exchange);
     return exchange;
 }
 

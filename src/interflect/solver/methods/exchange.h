@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <span>
 
+#include "interflect/colour.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
+#include "interflect/raycast/panes.h"
 
 namespace interflect::inline detail {
 
@@ -33,8 +35,11 @@ struct Exchange {
     /// How much that varies over a, and over b, unoccluded: the element's area times the difference between the form
     /// factors to the other element from those of its points that see most and least of it [m^2].
     float spread_over_a = 0, spread_over_b = 0;
-    /// The share of `area` that arrives, in [0, 1]; 0 or 1 where no line of sight was free, or all were.
-    float visibility = 0;
+    /// The share of `area` that arrives, in [0, 1]; 0 or 1 where no line of sight was free, or all were. Behind panes
+    /// the lines count by what the panes transmit.
+    Rgb transmittance{0, 0, 0};
+    /// The largest difference between two lines of sight, in [0, 1]; 0 where all are free or go through the same panes.
+    float variation = 0;
 };
 
 /// How closely an exchange is looked at: so many points, squared, on the smaller element, and a line of sight from
@@ -44,12 +49,12 @@ enum class Effort { quick = 2, thorough = 4 };
 /// Estimates what pairs of elements exchange. The unoccluded part is Lambert's closed form over the larger element,
 /// integrated over the smaller one by Gauss' rule: no noise, and exact in the limit of small elements. Visibility is
 /// sampled along lines between Gauss' points and points spread over the larger element; a line is free where each end
-/// is the first thing that a ray from the other meets. May be called by any number of threads.
+/// is the first thing that a ray from the other meets, panes left out. May be called by any number of threads.
 class ExchangeEstimator {
   public:
     /// @param seed  Of the points; these depend on it and on the two elements' places in the forest alone.
-    ExchangeEstimator(const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
-        : forest_(forest), ray_caster_(ray_caster), seed_(seed) {}
+    ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
+        : forest_(forest), ray_caster_(ray_caster), panes_(scene, ray_caster), seed_(seed) {}
 
     /// Whether each of the two reaches above the other's plane, by more than rounding.
     bool face_each_other(const ElementPair& pair) const;
@@ -60,6 +65,7 @@ class ExchangeEstimator {
   private:
     const ElementForest& forest_;
     const RayCaster& ray_caster_;
+    Panes panes_;
     std::uint64_t seed_;
 };
 

@@ -14,6 +14,7 @@
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/tangent_frame.h"
+#include "interflect/raycast/panes.h"
 #include "interflect/solver/methods/passes.h"
 #include "interflect/solver/state_archive.h"
 
@@ -25,7 +26,7 @@ namespace {
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
 /// How many times a patch may receive from a line, on average over all lines, before its sums overflow. It is crossed
-/// once; more looks back through it where it is one-sided.
+/// once; more looks back through it where it is one-sided, and to it through panes.
 constexpr double lines_headroom = 0x1p8;
 
 /// A sphere that holds the scene.
@@ -64,6 +65,7 @@ struct LineBundle {
     std::vector<std::uint32_t> crossed;  ///< The last patch that each line hit.
     std::vector<Hit> hits, seen;
     std::vector<LineSegment> segments;
+    std::vector<Panes::HitBehind> behind;  ///< Seen through panes; by index of the segment.
 };
 
 /// Uniform lines: the direction is uniform on the sphere, the line crosses the disk through the centre uniformly.
@@ -83,10 +85,10 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
     }
 }
 
-/// Finds the next patch that faces each line, and the first patch in the opposite direction. Moves each line behind its
-/// patch. Drops lines that meet no patch. Also drops a line that meets the same patch again, which rounding may cause:
-/// a line crosses a flat patch once.
-void find_segments(const ElementForest& forest, const RayCaster& ray_caster, LineBundle& bundle) {
+/// Finds the next patch that faces each line, and the first patch in the opposite direction with the patches behind
+/// panes. Moves each line behind its patch. Drops lines that meet no patch. Also drops a line that meets the same patch
+/// again, which rounding may cause: a line crosses a flat patch once.
+void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
     constexpr float offsets_apart = 4;  // at most, what coincides; as RayCaster::ray_offset()
     bundle.segments.clear();
     bundle.looking_back.clear();
@@ -111,9 +113,11 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, Lin
     bundle.lines.resize(bundle.segments.size());
     bundle.seen.resize(bundle.segments.size());
     ray_caster.trace(bundle.looking_back, bundle.seen);
+    panes.trace(bundle.looking_back, bundle.seen, bundle.behind);
     for (std::size_t i = 0; i < bundle.segments.size(); ++i) {
-        bundle.segments[i].back = bundle.seen[i].patch;
-        bundle.segments[i].is_mutual = bundle.seen[i].distance <= bundle.hits[i].distance;
+        const auto [back, distance] = bundle.seen[i];
+        bundle.segments[i].back = back;
+        bundle.segments[i].is_mutual = back != none && distance <= bundle.hits[i].distance;
     }
 }
 
@@ -134,19 +138,21 @@ class LineSums {
         received_.resize(radiosity_.size());
         squares_.resize(radiosity_.size(), 0);
         started_.resize(radiosity_.size(), 0);
-        escaped_.resize(radiosity_.size(), 0);
+        escaped_.resize(radiosity_.size());
+        escaped_rays_.resize(radiosity_.size(), 0);
     }
 
     void add(const LineSegment& segment) {
         add_concurrently(started_[segment.front], 1);
-        if (segment.back == none) {
-            add_concurrently(escaped_[segment.front], 1);
-            return;
-        }
-        carry(segment.front, segment.back, segment.is_mutual ? 1 : 2);
+        carry(segment.front, segment.back, Rgb(segment.is_mutual ? 1.0f : 2.0f));
         if (!segment.is_mutual) return;
         add_concurrently(started_[segment.back], 1);
-        carry(segment.back, segment.front, 1);
+        carry(segment.back, segment.front, Rgb(1));
+    }
+    /// Light goes on through the panes that the patch of a segment sees. The light of the other direction belongs to
+    /// the lines that come from the other side: a pane may have one side only.
+    void add(const LineSegment& segment, const Panes::HitBehind& behind) {
+        carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
 
     Received received(const ElementForest& forest) const {
@@ -154,14 +160,13 @@ class LineSums {
         for (std::uint32_t i = 0; i < received_.size(); ++i) {
             const double area = forest.area(i);
             const RgbD arrived = power_.to_colour(received_[i]);
-            // Only lines that come from one side tell that nothing is in sight: each counts for two.
-            const RgbD lost = RgbD(radiosity_[i]) * (2 * quantum_ * static_cast<double>(escaped_[i]));
+            const RgbD lost = power_.to_colour(escaped_[i]);
             r.irradiance.emplace_back(arrived / area);
             r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
             if (channel_sum(radiosity_[i]) > 0)
-                r.escaped_rays += escaped_[i];  // not those of the dark outside of a room
+                r.escaped_rays += escaped_rays_[i];  // not those of the dark outside of a room
         }
         return r;
     }
@@ -169,9 +174,15 @@ class LineSums {
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param quanta  2 where no line that comes from the other side carries the same.
-    void carry(std::uint32_t from, std::uint32_t to, int quanta) {
-        const RgbD power = RgbD(radiosity_[from]) * (quanta * quantum_);
+    /// @param quanta  Of each channel; 2 where no line that comes from the other side carries the same, as where
+    /// nothing is in sight.
+    void carry(std::uint32_t from, std::uint32_t to, const Rgb& quanta) {
+        const RgbD power = RgbD(radiosity_[from]) * RgbD(quanta) * quantum_;
+        if (to == none) {
+            add_concurrently(escaped_[from], power_.from(power));
+            add_concurrently(escaped_rays_[from], 1);
+            return;
+        }
         const double y = luminance(power);
         add_concurrently(received_[to], power_.from(power));
         add_concurrently(squares_[to], square_.from(y * y));
@@ -180,15 +191,16 @@ class LineSums {
     double quantum_;
     std::vector<Rgb> radiosity_;
     FixedPoint power_, square_;
-    std::vector<FixedPoint::Value> received_;
-    std::vector<std::int64_t> squares_, started_, escaped_;
+    std::vector<FixedPoint::Value> received_, escaped_;
+    std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
 /// Passes whose bounces are carried by global lines (Sbert 1993, 1997): lines of uniform density through a sphere
 /// around the scene, whatever shines. A line crosses each patch with a probability in proportion to its area
 /// (Cauchy and Crofton), at an angle that is cosine-distributed there, and every pair of patches that see each other
 /// along it exchange light both ways. So a line's segments stand for all of the scene at once, but few of them meet
-/// what is small: where the light comes from small emitters the noise is large.
+/// what is small: where the light comes from small emitters the noise is large. Behind a pane the transmitted part of
+/// the light goes straight on.
 ///
 /// N lines through a sphere of radius R: with B_a 4 pi R^2 / (2 N) along each segment, an expected A_a F_ab B_a goes
 /// from a to b. A line costs 1 + 2 h rays, of which h = sum A / (4 pi R^2) is the expected number of patches that face
@@ -196,7 +208,7 @@ class LineSums {
 /// log(patches)) time.
 class GlobalLines final : public Passes {
   public:
-    explicit GlobalLines(const SolverState& state) : domain_(state.scene) {
+    explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
         for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i)
             area_ += state.forest->area(i) * state.ray_caster.uncovered_share(i);
     }
@@ -227,8 +239,9 @@ class GlobalLines final : public Passes {
                     is_cut_short = true;
                     return;
                 }
-                find_segments(forest, state.ray_caster, bundle);
+                find_segments(forest, state.ray_caster, panes_, bundle);
                 for (const LineSegment& segment : bundle.segments) sums.add(segment);
+                for (const Panes::HitBehind& behind : bundle.behind) sums.add(bundle.segments[behind.ray], behind);
             }
         };
         parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop, trace_some);
@@ -246,6 +259,7 @@ class GlobalLines final : public Passes {
   private:
     static constexpr std::uint64_t line_purpose = 0x6c696e6573;
     const LineDomain domain_;
+    const Panes panes_;
     double area_ = 0;          // of the patches that lines can meet [m^2]
     std::uint64_t steps_ = 0;  // bounces that had lines of their own
 };

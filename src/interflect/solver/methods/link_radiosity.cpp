@@ -56,13 +56,16 @@ double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double 
 }
 
 /// What every element receives, per unit of area, of what leaves each of the elements that it is linked to.
+/// @param area_of  Link::area or Link::mean_area.
 template <class T>
-std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving) {
+std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
+                      T (Link::*area_of)() const) {
     std::vector<T> received(forest.size(), T(0));
     for (const Link& link : links) {
         const auto [a, b] = link.ends;
-        received[a] += leaving[b] * link.area();
-        received[b] += leaving[a] * link.area();
+        const T area = (link.*area_of)();
+        received[a] += leaving[b] * area;
+        received[b] += leaving[a] * area;
     }
     for (std::uint32_t e = 0; e < forest.size(); ++e) received[e] /= forest.area(e);
     push(forest, received);
@@ -101,7 +104,7 @@ class RelativeChange {
 LinkedElements::LinkedElements(SolverState& state, std::size_t link_limit)
     : state_(state),
       forest_(*state.forest),
-      estimator_(*state.forest, state.ray_caster, state.options.seed),
+      estimator_(state.scene, *state.forest, state.ray_caster, state.options.seed),
       link_limit_(link_limit),
       refines_(state.options.method.refines) {}
 
@@ -168,14 +171,17 @@ void LinkedElements::link_candidates() {
 
 RgbD LinkedElements::gather_light() {
     const std::vector<Rgb> b = present_radiosity(state_);
-    const std::vector<RgbD> received = gather(forest_, links_, std::vector<RgbD>(b.begin(), b.end()));
+    const std::vector<RgbD> received = gather(forest_, links_, std::vector<RgbD>(b.begin(), b.end()), &Link::area);
     RelativeChange change;
     RgbD escaped = integral(forest_, b);
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
         Rgb& irradiance = state_.solution.irradiance[e];
         change.add(forest_.area(e), channel_sum(RgbD(irradiance)), channel_sum(received[e]));
         irradiance = Rgb(received[e]);
-        if (e < forest_.patch_count()) escaped -= received[e] * static_cast<double>(forest_.area(e));
+        const RgbD power = received[e] * static_cast<double>(forest_.area(e));
+        if (e < forest_.patch_count()) escaped -= power;
+        // What panes transmit arrives twice.
+        if (forest_.is_leaf(e)) escaped += RgbD(state_.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
     light_change_ = change.value();
     return escaped;
@@ -187,7 +193,7 @@ void LinkedElements::gather_importance() {
     for (std::uint32_t e = 0; e < forest_.size(); ++e)
         reflected[e] = static_cast<double>(state_.materials.mean_reflectance(forest_.patch(e), e)) * psi[e];
     if (state_.materials.has_textures()) pull(forest_, reflected);
-    const std::vector<double> received = gather(forest_, links_, reflected);
+    const std::vector<double> received = gather(forest_, links_, reflected, &Link::mean_area);
     RelativeChange change;
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
         float& importance = state_.solution.indirect_importance[e];
@@ -216,8 +222,9 @@ struct RadiosityRange {
 
 /// Bound on the error of what a link carries [m^2]: the variation of the form factor; all of it where partly occluded.
 double error_bound(const Exchange& exchange, float spread) {
-    if (exchange.visibility == 0) return exchange.area * bound_if_blocked;
-    return exchange.visibility < 1 ? exchange.area : spread;
+    const float transmittance = largest_channel(exchange.transmittance);
+    if (transmittance == 0) return exchange.area * bound_if_blocked;
+    return exchange.variation * exchange.area + (1 - exchange.variation) * transmittance * spread;
 }
 
 }  // namespace
@@ -298,7 +305,8 @@ void LinkedElements::subdivide_links() {
         const std::uint32_t child =
             forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);
         if (child == none) continue;
-        const Effort effort = link.exchange.visibility == 1 ? Effort::quick : Effort::thorough;
+        const bool is_occluded = link.exchange.transmittance == Rgb(0) || link.exchange.variation > 0;
+        const Effort effort = is_occluded ? Effort::thorough : Effort::quick;
         for (std::uint32_t k = 0; k < 4; ++k) candidates_.push_back({{child + k, other}, effort});
         link.exchange.area = 0;  // link_candidates() removes it
     }

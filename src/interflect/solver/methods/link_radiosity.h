@@ -11,7 +11,7 @@
 
 namespace interflect::inline detail {
 
-/// As many as fit the memory of a common computer: 24 bytes each.
+/// As many as fit the memory of a common computer: 36 bytes each.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
 
 /// Two elements that exchange light.
@@ -19,7 +19,10 @@ struct Link {
     ElementPair ends;
     Exchange exchange;
 
-    double area() const { return static_cast<double>(exchange.area) * static_cast<double>(exchange.visibility); }
+    /// What arrives of an exchange of 1 per unit of area [m^2].
+    RgbD area() const { return RgbD(exchange.transmittance) * static_cast<double>(exchange.area); }
+    /// The same for importance, one number.
+    double mean_area() const { return channel_sum(area()) / 3; }
 };
 
 /// Two elements that are to be linked.
@@ -38,6 +41,9 @@ struct RefinementCandidate;
 /// and Salesin 1992, its variation over an element, and all of it where the pair is partly occluded. Each sweep gathers
 /// one bounce over all links and ends with push-pull; whenever light has settled the links are refined, so that no mesh
 /// is made for light that is yet to come.
+///
+/// A link through panes carries light by what they transmit along its lines of sight; where these differ, the bound has
+/// as much of the whole exchange as they differ by.
 ///
 /// With importance (Smits et al.), psi travels the same links backwards, so that sum v P = sum psi W holds on any mesh,
 /// and the error bound is weighted by psi_i / psi_max as in Eq. 15.
