@@ -123,6 +123,8 @@ Emission::Emission(const Scene& scene, std::span<const Imath::Box3f> targets) {
         std::visit([&](const auto& light) { add(light); }, scene.luminaires[i].kind);
         for (std::size_t e = first; e < emitters_.size(); ++e) emitters_[e].luminaire = i;
     }
+    of_boxes_.resize(boxes_.size());
+    for (std::size_t e = 0; e < emitters_.size(); ++e) of_boxes_[emitters_[e].box].push_back(e);
 }
 
 RgbD Emission::power_of_boxes(std::size_t begin, std::size_t end) const {
@@ -214,8 +216,8 @@ void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyG
             for (std::size_t b = 0; b < boxes_.size(); ++b) {
                 const BoxSide side = side_of(boxes_[b]);
                 const RgbD power = RgbD(component.colour) * (places->sum() * double{part_area(side)});
-                emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, places,
-                                             component, part_area(outer)},
+                emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, places, component,
+                                             part_area(outer)},
                                      component.colour, power, b});
             }
         }
@@ -325,9 +327,8 @@ std::vector<Emission::PartAlong> Emission::parts_along(const Ray& light, std::ui
         const auto cell = [](float x) { return static_cast<std::size_t>(x * float{cells_per_side}); };
         parts.push_back({e * parts_per_emitter + cell(v) * cells_per_side + cell(u), brightness});
     };
-    for (std::size_t e = 0; e < emitters_.size(); ++e) {
+    for (const std::size_t e : of_boxes_[box]) {
         const Emitter& emitter = emitters_[e];
-        if (emitter.box != box) continue;
         if (const SkySide* side = std::get_if<SkySide>(&emitter.shape); side && sun == none) {
             const float amount = side->component.amount(side->sky->towards(-light.direction));
             add_if_from(e, side->corner, side->edge_u, side->edge_v, side->normal,

@@ -100,8 +100,8 @@ class Emission {
     struct Window {
         V3f corner, edge_u, edge_v;
         V3f direction, s, t;
-        float sine;  // of that angle; 0: parallel; 1: diffuse
-        float part_area;   // of the scene's box: what the oracle is to see of a part, whatever the box
+        float sine;       // of that angle; 0: parallel; 1: diffuse
+        float part_area;  // of the scene's box: what the oracle is to see of a part, whatever the box
         bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };
@@ -146,8 +146,9 @@ class Emission {
     RgbD power_of_boxes(std::size_t begin, std::size_t end) const;
     Ray of_box(const Ray& ray, std::size_t box) const;
 
-    std::vector<Imath::Box3f> boxes_;  // around the scene, then targets; empty without patches
-    std::vector<std::size_t> suns_;    // emitters, of the scene's box
+    std::vector<Imath::Box3f> boxes_;                 // around the scene, then targets; empty without patches
+    std::vector<std::size_t> suns_;                   // emitters, of the scene's box
+    std::vector<std::vector<std::size_t>> of_boxes_;  // emitters of each box
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;
 };

@@ -82,9 +82,20 @@ struct LineFinder {
     }
 };
 
+/// Every so manieth line, for all of them, where there are more than are needed.
+std::vector<OutdoorLine> some_of(const std::vector<OutdoorLine>& lines) {
+    constexpr std::size_t enough = 1 << 14;
+    const std::size_t stride = (lines.size() + enough - 1) / enough;
+    std::vector<OutdoorLine> some;
+    for (std::size_t i = 0; i < lines.size(); i += stride) {
+        some.push_back(lines[i]);
+        some.back().importance *= static_cast<double>(stride);
+    }
+    return some;
+}
+
 std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t rays) {
-    const TransportStep step =
-        importance_step(state.materials, state.solution, importance_of(state.solution), rays);
+    const TransportStep step = importance_step(state.materials, state.solution, importance_of(state.solution), rays);
     const std::uint64_t key = mix(state.streams.seed, purpose);
     const SampleStreams streams(state.streams.points, key);
     const RayMaker maker(*state.forest, state.ray_caster, step, streams);
@@ -99,7 +110,7 @@ std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t ra
     });
     std::vector<OutdoorLine> lines;
     for (const std::vector<OutdoorLine>& some : found) lines.insert(lines.end(), some.begin(), some.end());
-    return lines;
+    return some_of(lines);
 }
 
 /// A line and its weight, while targets are looked for.
@@ -108,13 +119,26 @@ struct Weighed {
     double weight;
 };
 double weight_of(const std::vector<Weighed>& lines) {
-    return std::accumulate(lines.begin(), lines.end(), 0.0, [](double sum, const Weighed& l) { return sum + l.weight; });
+    return std::accumulate(lines.begin(), lines.end(), 0.0,
+                           [](double sum, const Weighed& l) { return sum + l.weight; });
 }
 std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     std::vector<Weighed> found;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(found),
                  [&](const Weighed& line) { return line_crosses(box, line.light); });
     return found;
+}
+
+/// Weight of the lines that cross a box, more the nearer they come to its middle: where they come together, not beside.
+double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
+    const float farthest = (box.size() / 2).length2();  // of a line that crosses it, squared
+    double sum = 0;
+    for (const Weighed& line : lines) {
+        if (!line_crosses(box, line.light)) continue;
+        const float distance = line.light.direction.cross(box.center() - line.light.origin).length2();
+        sum += line.weight * std::max(0.0, 1 - static_cast<double>(distance / farthest));
+    }
+    return sum;
 }
 
 /// The part of a box, half as wide where it is wide, that most of the lines cross.
@@ -134,7 +158,7 @@ Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& bo
                     part.min[axis] = box.min[axis] + place[axis] * size[axis] / 4;
                     part.max[axis] = part.min[axis] + size[axis] / 2;
                 }
-                const double weight = weight_of(crossing(lines, part));
+                const double weight = centred_weight(lines, part);
                 if (weight > most) most = weight, best = part;
             }
     return best;
@@ -145,7 +169,7 @@ Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& bo
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box) {
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
-    constexpr int most_levels = 20, most_places = 4;
+    static_assert(most_targets % most_places == 0);
     constexpr double share_of_rest = 0.05;  // of all, that is worth a place of its own
     // Of lines that are spread evenly a quarter crosses half a box, of those that come together all do.
     constexpr double worthwhile_share = 0.4;
@@ -166,7 +190,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
         }
         std::vector<Imath::Box3f> halves;
         std::size_t worthwhile = 0;
-        for (int level = 0; level < most_levels && inside.size() >= fewest_lines; ++level) {
+        for (int level = 0; level < most_targets / most_places && inside.size() >= fewest_lines; ++level) {
             box = best_half(inside, box);
             std::vector<Weighed> in_half = crossing(inside, box);
             halves.push_back(box);
@@ -186,6 +210,23 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 }
 
 namespace {
+
+/// What a line counts for where targets are looked for: light that arrives along it, as a share of the root of what its
+/// source brings. All lines of a sun are parallel: those of a dimmer sky must tell at which place they come together.
+std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
+    const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
+    std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
+    for (const OutdoorLine& line : lines) {
+        double brightness = 0;
+        for (const Emission::PartAlong& along : emission.parts_along(line.light, line.sun))
+            brightness += along.brightness;
+        weights.push_back(line.importance * brightness);
+        of_sources[source(line)] += weights.back();
+    }
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        if (weights[i] > 0) weights[i] /= std::sqrt(of_sources[source(lines[i])]);
+    return weights;
+}
 
 /// What the lines tell of the parts' importance, as if that were known from few of their rays. One line more is taken
 /// to be anywhere in each box.
@@ -211,19 +252,17 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 
 }  // namespace
 
-std::int64_t aim_outdoor_light(SolverState& state, std::int64_t rays) {
-    if (importance_use(state.solution) != ImportanceUse::full || rays < 1) return 0;
+std::int64_t aim_outdoor_light(SolverState& state) {
+    // Few importance leaves through a small window; so many rays take a moment, and are few of all.
+    constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 64;
+    if (importance_use(state.solution) != ImportanceUse::full) return 0;
+    const std::int64_t rays =
+        std::max(state.schedule.start_rays() / 2, std::min(most_rays, state.options.limits.rays / all_over_rays));
+    if (rays == 0) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
     if (!state.emission.has_sky() && suns == 0) return 0;
     const std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
-    std::vector<double> weights;
-    for (const OutdoorLine& line : lines) {
-        double brightness = 0;
-        for (const Emission::PartAlong& along : state.emission.parts_along(line.light, line.sun))
-            brightness += along.brightness;
-        weights.push_back(line.importance * brightness);
-    }
-    set_targets(state, find_targets(lines, weights, state.emission.scene_box()));
+    set_targets(state, find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box()));
     if (!state.targets.empty()) state.part_importance = importance_of_parts(state.emission, lines);
     return rays * ((state.emission.has_sky() ? 1 : 0) + suns);
 }

@@ -11,6 +11,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
+#include "interflect/solver/light_targets.h"
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/transport_steps.h"
@@ -181,7 +182,16 @@ void SolverState::archive(StateArchive& archive) {
     archive("risk", risk_check);
     quanta.archive(archive);
     archive("targets", targets);
-    if (archive.reads() && !targets.empty()) emission = Emission(*lit, targets);
+    if (archive.reads() && !targets.empty()) {
+        const auto is_inside = [&](const Imath::Box3f& target) {
+            const Imath::Box3f& box = emission.scene_box();
+            return !target.isEmpty() && box.intersects(target.min) && box.intersects(target.max);
+        };
+        require(emission.part_count() > 0 && targets.size() <= most_targets &&
+                    std::all_of(targets.begin(), targets.end(), is_inside),
+                "expected targets within the scene");
+        emission = Emission(*lit, targets);
+    }
     archive("points/used", streams.used);
     archive("points/used_by_parts", streams.used_by_parts);
     archive("part_importance", part_importance);

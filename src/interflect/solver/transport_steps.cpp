@@ -79,7 +79,8 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
         second += power[b] * boxes[b].mean() * boxes[b].mean();
     }
     if (!(second > 0)) return boxes;
-    for (BoxImportance& box : boxes) box.factor = std::pow(static_cast<float>(box.mean() * first / second), 1 - exponent);
+    for (BoxImportance& box : boxes)
+        box.factor = std::pow(static_cast<float>(box.mean() * first / second), 1 - exponent);
     return boxes;
 }
 
