@@ -88,24 +88,49 @@ DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<c
     return {grid, weights};
 }
 
+/// Where the line of a ray is within a box: distances along it, before the ray's start negative.
+struct Crossing {
+    float begin, end;  // begin > end: nowhere
+};
+Crossing crossing(const Imath::Box3f& box, const Ray& ray) {
+    Crossing within{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
+    for (int k = 0; k < 3; ++k) {
+        if (ray.direction[k] == 0) {
+            if (ray.origin[k] < box.min[k] || ray.origin[k] > box.max[k]) return {1, 0};
+            continue;
+        }
+        const float a = (box.min[k] - ray.origin[k]) / ray.direction[k],
+                    b = (box.max[k] - ray.origin[k]) / ray.direction[k];
+        within.begin = std::max(within.begin, std::min(a, b));
+        within.end = std::min(within.end, std::max(a, b));
+    }
+    return within;
+}
+
 }  // namespace
 
-Emission::Emission(const Scene& scene) {
+bool line_crosses(const Imath::Box3f& box, const Ray& ray) {
+    const Crossing within = crossing(box, ray);
+    return within.begin <= within.end;
+}
+
+Emission::Emission(const Scene& scene, std::span<const Imath::Box3f> targets) {
     if (scene.luminaires.empty() || scene.patches.empty()) return;
-    const Imath::Box3f box = box_around(scene);
-    for (const float x : {box.min.x, box.max.x})
-        for (const float y : {box.min.y, box.max.y})
-            for (const float z : {box.min.z, box.max.z}) corners_.emplace_back(x, y, z);
+    boxes_.push_back(box_around(scene));
+    boxes_.insert(boxes_.end(), targets.begin(), targets.end());
     for (std::size_t i = 0; i < scene.luminaires.size(); ++i) {
         const std::size_t first = emitters_.size();
         std::visit([&](const auto& light) { add(light); }, scene.luminaires[i].kind);
         for (std::size_t e = first; e < emitters_.size(); ++e) emitters_[e].luminaire = i;
     }
+    of_boxes_.resize(boxes_.size());
+    for (std::size_t e = 0; e < emitters_.size(); ++e) of_boxes_[emitters_[e].box].push_back(e);
 }
 
-RgbD Emission::total_power() const {
+RgbD Emission::power_of_boxes(std::size_t begin, std::size_t end) const {
     RgbD sum(0, 0, 0);
-    for (const Emitter& e : emitters_) sum += e.part_power * static_cast<double>(parts_per_emitter);
+    for (const Emitter& e : emitters_)
+        if (e.box >= begin && e.box < end) sum += e.part_power * static_cast<double>(parts_per_emitter);
     return sum;
 }
 
@@ -126,30 +151,38 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Starts on the rectangle that the scene's box fills as seen along the light, widened so that slanted rays from a disc
-/// reach all of the box too.
+/// Starts on the rectangle that a box fills as seen along the light, widened so that slanted rays from a disc reach all
+/// of the box too.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
-    V3f low(std::numeric_limits<float>::max()), high(-low);
-    for (const V3f& corner : corners_) {
-        const V3f p(corner.dot(frame.s), corner.dot(frame.t), corner.dot(direction));
-        for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+    suns_.push_back(emitters_.size());
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+        V3f low(std::numeric_limits<float>::max()), high(-low);
+        for (const float x : {boxes_[b].min.x, boxes_[b].max.x})
+            for (const float y : {boxes_[b].min.y, boxes_[b].max.y})
+                for (const float z : {boxes_[b].min.z, boxes_[b].max.z}) {
+                    const V3f corner(x, y, z), p(corner.dot(frame.s), corner.dot(frame.t), corner.dot(direction));
+                    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+                }
+        const float sine = light.disc_sine(), margin = (high.z - low.z) * sine / std::sqrt(1 - sine * sine);
+        for (int k = 0; k < 2; ++k) low[k] -= margin, high[k] += margin;
+        const V3f corner = frame.s * low.x + frame.t * low.y + direction * low.z;
+        add_window(
+            {corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, sine, 0},
+            light.irradiance, b);
     }
-    const float sine = light.disc_sine(), margin = (high.z - low.z) * sine / std::sqrt(1 - sine * sine);
-    for (int k = 0; k < 2; ++k) low[k] -= margin, high[k] += margin;
-    const V3f corner = frame.s * low.x + frame.t * low.y + direction * low.z;
-    add_window({corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, sine, 0},
-               light.irradiance);
 }
 
 /// Within a convex surface that emits diffusely everywhere, radiance is the same in all directions: here the six sides
-/// of the scene's box, which nothing is ever hit by.
+/// of a box, which nothing is ever hit by.
 void Emission::add(const UniformSky& sky) {
-    for (const BoxSide& side : sides_of(corners_.front(), corners_.back() - corners_.front())) {
-        const TangentFrame frame(side.normal);
-        add_window({side.corner, side.edge_u, side.edge_v, side.normal, frame.s, frame.t, 1, 0}, sky.radiance * pi);
-    }
+    for (std::size_t b = 0; b < boxes_.size(); ++b)
+        for (const BoxSide& side : sides_of(boxes_[b].min, boxes_[b].size())) {
+            const TangentFrame frame(side.normal);
+            add_window({side.corner, side.edge_u, side.edge_v, side.normal, frame.s, frame.t, 1, 0}, sky.radiance * pi,
+                       b);
+        }
 }
 
 void Emission::add(const SkyDome& dome) {
@@ -165,26 +198,36 @@ void Emission::add(const EnvironmentMap& map) {
     add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
 }
 
-/// As for a uniform sky, but with directions in proportion to radiance times cosine.
+/// As for a uniform sky, but with directions in proportion to radiance times cosine. Sides that face the same way have
+/// the same directions.
 void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                        std::span<const SkyComponent> components) {
     const std::vector<Rgb> integrals = sky->cell_integrals(grid);
-    for (const BoxSide& side : sides_of(corners_.front(), corners_.back() - corners_.front()))
+    for (std::size_t s = 0; s < 6; ++s)
         for (const SkyComponent& component : components) {
-            auto places =
-                std::make_shared<DirectionTable>(table_for(grid, sky->frame(), integrals, component, side.normal));
+            const auto side_of = [&](const Imath::Box3f& box) { return sides_of(box.min, box.size())[s]; };
+            const auto part_area = [](const BoxSide& side) {
+                return side.edge_u.length() * side.edge_v.length() / float{parts_per_emitter};
+            };
+            const BoxSide outer = side_of(boxes_.front());
+            const auto places =
+                std::make_shared<DirectionTable>(table_for(grid, sky->frame(), integrals, component, outer.normal));
             if (!(places->sum() > 0)) continue;
-            const float part_area = side.edge_u.length() * side.edge_v.length() / float{parts_per_emitter};
-            const RgbD power = RgbD(component.colour) * (places->sum() * double{part_area});
-            emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, std::move(places),
-                                         component, part_area},
-                                 component.colour, power});
+            for (std::size_t b = 0; b < boxes_.size(); ++b) {
+                const BoxSide side = side_of(boxes_[b]);
+                const RgbD power = RgbD(component.colour) * (places->sum() * double{part_area(side)});
+                emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, places, component,
+                                             part_area(outer)},
+                                     component.colour, power, b});
+            }
         }
 }
 
-void Emission::add_window(Window window, const Rgb& exitance) {
-    window.part_area = window.edge_u.length() * window.edge_v.length() / float{parts_per_emitter};
-    emitters_.push_back({window, exitance, RgbD(exitance) * double{window.part_area}});
+void Emission::add_window(Window window, const Rgb& exitance, std::size_t box) {
+    const float part_area = window.edge_u.length() * window.edge_v.length() / float{parts_per_emitter};
+    const std::size_t outer = emitters_.size() - box * (window.is_sky() ? 6 : 1);  // the same side of the scene's box
+    window.part_area = box == 0 ? part_area : std::get<Window>(emitters_[outer].shape).part_area;
+    emitters_.push_back({window, exitance, RgbD(exitance) * double{part_area}, box});
 }
 
 /// All rays of a web's sampler carry the same power, whatever the web.
@@ -192,7 +235,7 @@ void Emission::add(const MeasuredLight& light) {
     std::shared_ptr<const WebSampler>& sampler = samplers_[light.web.get()];
     if (!sampler) sampler = std::make_shared<WebSampler>(*light.web);
     float reach = 0;  // largest coordinate
-    for (const V3f& corner : {corners_.front(), corners_.back()})
+    for (const V3f& corner : {boxes_.front().min, boxes_.front().max})
         for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(corner[k]));
     constexpr float relative_offset = 0x1p-17f;  // as RayCaster::ray_offset()
     emitters_.push_back({Web{sampler, light.web, LuminaireFrame(light), light.position, relative_offset * reach},
@@ -241,7 +284,63 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
                     shape.ray((column + a[i]) / cells_per_side, (row + b[i]) / cells_per_side, c[i], d[i]);
         };
         std::visit(shoot_from, emitter.shape);
+        const bool is_from_outside =
+            std::holds_alternative<Window>(emitter.shape) || std::holds_alternative<SkySide>(emitter.shape);
+        if (boxes_.size() == 1 || !is_from_outside) continue;
+        for (Ray& ray : rays.subspan(begin, count)) ray = of_box(ray, emitter.box);
     }
+}
+
+/// The ray as it comes from outside the scene, if its line is one of that box: if it crosses it, and no later one.
+/// Else a ray that meets nothing.
+Ray Emission::of_box(const Ray& ray, std::size_t box) const {
+    const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
+    const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
+    const bool is_missing = (box > 0 && !crosses(*own)) || std::any_of(own + 1, boxes_.end(), crosses);
+    if (is_missing) return {boxes_.front().max + boxes_.front().size(), V3f(1, 1, 1).normalized()};
+    if (box == 0) return ray;
+    return {ray.origin + std::min(0.0f, crossing(boxes_.front(), ray).begin) * ray.direction, ray.direction};
+}
+
+bool Emission::has_sky() const {
+    return std::any_of(emitters_.begin(), emitters_.end(), [](const Emitter& e) {
+        const Window* window = std::get_if<Window>(&e.shape);
+        return std::holds_alternative<SkySide>(e.shape) || (window && window->is_sky());
+    });
+}
+
+V3f Emission::sun_direction(std::size_t sun, float c, float d) const {
+    return std::get<Window>(emitters_[suns_[sun]].shape).ray(0, 0, c, d).direction;
+}
+
+std::vector<Emission::PartAlong> Emission::parts_along(const Ray& light, std::uint32_t sun) const {
+    std::size_t box = boxes_.size() - 1;
+    while (box > 0 && !line_crosses(boxes_[box], light)) --box;
+    std::vector<PartAlong> parts;
+    const auto add_if_from = [&](std::size_t e, const V3f& corner, const V3f& edge_u, const V3f& edge_v,
+                                 const V3f& normal, double brightness) {
+        const float cosine = light.direction.dot(normal);
+        if (!(cosine > 0)) return;
+        const V3f start = light.origin + light.direction * ((corner - light.origin).dot(normal) / cosine) - corner;
+        const float u = start.dot(edge_u) / edge_u.length2(), v = start.dot(edge_v) / edge_v.length2();
+        if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return;
+        const auto cell = [](float x) { return static_cast<std::size_t>(x * float{cells_per_side}); };
+        parts.push_back({e * parts_per_emitter + cell(v) * cells_per_side + cell(u), brightness});
+    };
+    for (const std::size_t e : of_boxes_[box]) {
+        const Emitter& emitter = emitters_[e];
+        if (const SkySide* side = std::get_if<SkySide>(&emitter.shape); side && sun == none) {
+            const float amount = side->component.amount(side->sky->towards(-light.direction));
+            add_if_from(e, side->corner, side->edge_u, side->edge_v, side->normal,
+                        channel_sum(RgbD(emitter.rating)) * double{amount});
+        }
+        const Window* window = std::get_if<Window>(&emitter.shape);
+        if (!window || window->is_sky() != (sun == none)) continue;
+        if (sun != none && emitter.luminaire != emitters_[suns_[sun]].luminaire) continue;
+        add_if_from(e, window->corner, window->edge_u, window->edge_v, window->direction,
+                    channel_sum(RgbD(emitter.rating)) / (sun == none ? std::numbers::pi : 1));
+    }
+    return parts;
 }
 
 Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance) const {
@@ -258,9 +357,9 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
         return of_side(side->normal, side->part_area,
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Window& window = std::get<Window>(emitter.shape);
-    if (window.sine == 1) return of_side(window.direction, window.part_area, emitter.rating);
+    if (window.is_sky()) return of_side(window.direction, window.part_area, emitter.rating);
     // So far away that direction and distance are the same for the whole scene.
-    const float far = 100 * (corners_.back() - corners_.front()).length();
+    const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
 }
 

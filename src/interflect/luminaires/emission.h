@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ImathBox.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -24,24 +26,50 @@ struct SkyComponent {
     float (*amount)(const Rgb& radiance);  ///< Of that colour.
 };
 
+/// Whether a ray, and what continues it backwards, crosses a box.
+bool line_crosses(const Imath::Box3f& box, const Ray& ray);
+
 /// Rays from the luminaires of a scene. What a luminaire emits is divided into parts of equal power, by direction
 /// (point, spot and measured lights) or by place (a directional light, a sky): each part gets rays of its own, so that
-/// importance can tell which of them matter. Immutable, shared by all threads.
+/// importance can tell which of them matter. Where light from outside matters within small boxes alone, its lines are
+/// divided first: each is shot from the sides of the last box that it crosses. Immutable, shared by all threads.
 class Emission {
   public:
     Emission() = default;  ///< There are no luminaires.
-    explicit Emission(const Scene& scene);
+    /// @param targets  Boxes within that around the scene.
+    explicit Emission(const Scene& scene, std::span<const Imath::Box3f> targets = {});
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
     /// What a part emits [lm or W]. Of directional light and of a sky: what crosses the box around the scene, on which
-    /// its rays start.
+    /// its rays start, or one of the targets; rays along lines that are another box's meet nothing.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
-    RgbD total_power() const;
+    /// Of all luminaires; of light from outside what crosses the box around the scene.
+    RgbD total_power() const { return power_of_boxes(0, 1); }
+    /// Of the power of all parts, what goes along lines that are another box's.
+    RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
     /// Index in Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
     /// Neighbouring parts, those of one luminaire or of one side of the sky, are alike in what their importance is
     /// worth: part / parts_per_emitter tells which belong together.
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
+
+    bool has_sky() const;
+    /// Of directional light.
+    std::size_t sun_count() const { return suns_.size(); }
+    /// In which light of a sun goes, for c and d uniform in (0, 1).
+    V3f sun_direction(std::size_t sun, float c, float d) const;
+    const Imath::Box3f& scene_box() const { return boxes_.front(); }
+    /// The scene's box is 0, targets follow.
+    std::size_t box_count() const { return boxes_.size(); }
+    std::size_t box(std::size_t part) const { return emitters_[part / parts_per_emitter].box; }
+
+    /// A part of light from outside that shoots along a line.
+    struct PartAlong {
+        std::size_t part;
+        double brightness;  ///< Channels together: a sky's radiance, or a sun's irradiance of what faces it.
+    };
+    /// @param light  Any point of the line, and the way that light goes. @param sun  none: of skies.
+    std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
     /// Makes the rays of samples first_sample, first_sample + 1, ... of a part; all carry the same power.
     /// @param key     Names the part's point sequence (fill_points).
@@ -72,8 +100,9 @@ class Emission {
     struct Window {
         V3f corner, edge_u, edge_v;
         V3f direction, s, t;
-        float sine;  // of that angle; 0: parallel; 1: diffuse
-        float part_area;
+        float sine;       // of that angle; 0: parallel; 1: diffuse
+        float part_area;  // of the scene's box: what the oracle is to see of a part, whatever the box
+        bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };
     /// Starts on a side of the scene's box, from the directions of a sky.
@@ -82,7 +111,7 @@ class Emission {
         std::shared_ptr<const SkyRadiance> sky;
         std::shared_ptr<const DirectionTable> places;
         SkyComponent component;
-        float part_area;
+        float part_area;  // as a window's
         Ray ray(float u, float v, float c, float d) const;
     };
     /// In the directions of a photometric web, from its opening; from `offset` above it, where a surface is that it is
@@ -99,6 +128,7 @@ class Emission {
         std::variant<Beam, Window, SkySide, Web> shape;
         Rgb rating;
         RgbD part_power;
+        std::size_t box = 0;
         std::size_t luminaire = 0;
     };
 
@@ -112,9 +142,13 @@ class Emission {
     void add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                  std::span<const SkyComponent> components);
     void add_beam(const Beam& beam, const Rgb& intensity);
-    void add_window(Window window, const Rgb& exitance);
+    void add_window(Window window, const Rgb& exitance, std::size_t box);
+    RgbD power_of_boxes(std::size_t begin, std::size_t end) const;
+    Ray of_box(const Ray& ray, std::size_t box) const;
 
-    std::vector<V3f> corners_;  // of the box around the scene; empty without patches
+    std::vector<Imath::Box3f> boxes_;                 // around the scene, then targets; empty without patches
+    std::vector<std::size_t> suns_;                   // emitters, of the scene's box
+    std::vector<std::vector<std::size_t>> of_boxes_;  // emitters of each box
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;
 };

@@ -11,6 +11,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
+#include "interflect/solver/light_targets.h"
 #include "interflect/solver/radiosity.h"
 #include "interflect/solver/state_archive.h"
 #include "interflect/solver/transport_steps.h"
@@ -78,16 +79,28 @@ void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
 }
 
 void set_sources(SolverState& state, const Scene& lit) {
+    state.lit = &lit;
     state.materials = Materials(lit, state.ray_caster);
     state.materials.grow(*state.forest);
-    state.emission = Emission(lit);
+    state.emission = Emission(lit, state.targets);
     state.solution.emitted_power =
         radiated_power(*state.forest, Radiosity(state.materials, std::vector<Rgb>(state.forest->size(), Rgb(0))));
     state.solution.emitted_power += state.emission.total_power();
 }
 
-void look(SolverState& state) {
+void set_targets(SolverState& state, std::vector<Imath::Box3f> targets) {
+    state.targets = std::move(targets);
+    state.emission = Emission(*state.lit, state.targets);
     state.part_importance.assign(state.emission.part_count(), {});
+    std::vector<std::uint64_t>& used = state.streams.used_by_parts;
+    used.resize(std::min(used.size(), state.emission.part_count()));
+}
+
+void look(SolverState& state) {
+    if (state.targets.empty())
+        state.part_importance.assign(state.emission.part_count(), {});
+    else
+        set_targets(state, {});
     state.view = ViewImportance(state.options.views, state.options.seed);
     state.floor = ElementFloor(state.scene, state.options);
     state.view.trace_view_rays(*state.forest, state.ray_caster, Panes(state.scene, state.ray_caster),
@@ -168,6 +181,17 @@ void SolverState::archive(StateArchive& archive) {
     schedule.archive(archive);
     archive("risk", risk_check);
     quanta.archive(archive);
+    archive("targets", targets);
+    if (archive.reads() && !targets.empty()) {
+        const auto is_inside = [&](const Imath::Box3f& target) {
+            const Imath::Box3f& box = emission.scene_box();
+            return !target.isEmpty() && box.intersects(target.min) && box.intersects(target.max);
+        };
+        require(emission.part_count() > 0 && targets.size() <= most_targets &&
+                    std::all_of(targets.begin(), targets.end(), is_inside),
+                "expected targets within the scene");
+        emission = Emission(*lit, targets);
+    }
     archive("points/used", streams.used);
     archive("points/used_by_parts", streams.used_by_parts);
     archive("part_importance", part_importance);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ImathBox.h>
+
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -29,8 +31,10 @@ struct SolverState {
     SolverState(const SolverState&) = delete;
 
     const Scene& scene;
+    const Scene* lit = &scene;  // the same, with sources as they are dimmed
     Materials materials;
-    Emission emission;  // of the luminaires
+    std::vector<Imath::Box3f> targets;  // for light from outside, for the present views
+    Emission emission;                  // of the luminaires
     const RayCaster& ray_caster;
     const SourceGroups groups;
     Solution solution;
@@ -76,6 +80,9 @@ struct SolverState {
 
 /// The sources emit what those of another scene do, which must outlive the state: the same but for that.
 void set_sources(SolverState& state, const Scene& lit);
+
+/// Light from outside is shot at these from now on; what was known of the luminaires' parts is not any more.
+void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
 /// Finds what the views of the options show; importance is not known then.
 void look(SolverState& state);

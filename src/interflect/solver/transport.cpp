@@ -310,6 +310,10 @@ Received commit(TransportStep& step, const Shooting& shooting, ElementForest& fo
     received.quanta = shooting.all.quanta;
     received.escaped_rays = escaped.rays;
     received.escaped_power = shooting.units.power.to_colour(escaped.power);
+    if (step.emission) {
+        received.shot_power -= step.emission->repeated_power();
+        received.escaped_power -= step.emission->repeated_power();
+    }
     return received;
 }
 

@@ -1,5 +1,6 @@
 #include "interflect/solver/transport_steps.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -52,24 +53,56 @@ std::vector<float> total_importance(const Solution& so_far) {
 
 namespace {
 
+/// By box of light from outside: the mean importance of its parts, and the factor that makes up for an exponent.
+struct BoxImportance {
+    PartImportance all;
+    float factor = 1;
+    double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
+};
+
+/// An exponent allows for rays of which few matter. Between boxes it would be wrong, for those of the smallest are the
+/// ones that matter: there parts go by their importance as it is, in the unit that the exponent makes of the importance
+/// of what most light comes from.
+std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
+                                               float exponent) {
+    std::vector<BoxImportance> boxes(emission.box_count());
+    std::vector<double> power(boxes.size(), 0.0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        PartImportance& all = boxes[emission.box(i)].all;
+        all.found += found[i].found, all.rays += found[i].rays;
+        power[emission.box(i)] += channel_sum(emission.power(i));
+    }
+    if (boxes.size() == 1) return boxes;
+    double first = 0, second = 0;  // moments of importance
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+        first += power[b] * boxes[b].mean();
+        second += power[b] * boxes[b].mean() * boxes[b].mean();
+    }
+    if (!(second > 0)) return boxes;
+    for (BoxImportance& box : boxes)
+        box.factor = std::pow(static_cast<float>(box.mean() * first / second), 1 - exponent);
+    return boxes;
+}
+
 /// Importance of the luminaires' parts, and of parts alike (those of one emitter). Few rays of a part say little: what
 /// they found counts beside the mean of its like as if that were known from a few rays as well.
-void weigh_parts(const std::vector<PartImportance>& found, float exponent, ImportanceWeights& weights) {
+void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
+                 ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;
     constexpr double rays_of_mean = 8;
-    PartImportance all;
-    for (const PartImportance& part : found) all.found += part.found, all.rays += part.rays;
-    if (!(all.rays > 0)) return;
+    const std::vector<BoxImportance> boxes = importance_of_boxes(emission, found, exponent);
+    if (std::none_of(boxes.begin(), boxes.end(), [](const BoxImportance& box) { return box.all.rays > 0; })) return;
     weights.parts.resize(found.size());
     weights.parts_nearby.resize(found.size());
     for (std::size_t begin = 0; begin < found.size(); begin += alike) {
-        PartImportance group{rays_of_mean * all.found / all.rays, rays_of_mean};
+        const BoxImportance& box = boxes[emission.box(begin)];
+        PartImportance group{rays_of_mean * box.mean(), rays_of_mean};
         for (std::size_t i = begin; i < begin + alike; ++i) group.found += found[i].found, group.rays += found[i].rays;
         const double mean = group.found / group.rays;
         for (std::size_t i = begin; i < begin + alike; ++i) {
             const double own = (found[i].found + rays_of_mean * mean) / (found[i].rays + rays_of_mean);
-            weights.parts[i] = std::pow(static_cast<float>(own), exponent);
-            weights.parts_nearby[i] = std::pow(static_cast<float>(mean), exponent);
+            weights.parts[i] = box.factor * std::pow(static_cast<float>(own), exponent);
+            weights.parts_nearby[i] = box.factor * std::pow(static_cast<float>(mean), exponent);
         }
     }
 }
@@ -77,7 +110,7 @@ void weigh_parts(const std::vector<PartImportance>& found, float exponent, Impor
 }  // namespace
 
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
-                                     const std::vector<PartImportance>& found) {
+                                     const Emission& emission, const std::vector<PartImportance>& found) {
     const SolveOptions& o = so_far.options;
     const ElementForest& forest = *so_far.forest;
     if (power_step_shares(so_far, false, false).weighted_power == 0) return {};
@@ -86,7 +119,7 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
                                                                            : Importance(so_far.indirect_importance);
     ImportanceWeights weights{
         importance_weight(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
-    weigh_parts(found, static_cast<float>(o.importance.exponent), weights);
+    weigh_parts(emission, found, static_cast<float>(o.importance.exponent), weights);
     if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
     neighbourhoods.smooth(forest, weights.nearby, taken_over);

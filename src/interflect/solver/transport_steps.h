@@ -30,7 +30,7 @@ struct ImportanceWeights {
 };
 /// @param found  By the rays of the luminaires' parts so far.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
-                                     const std::vector<PartImportance>& found = {});
+                                     const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
 /// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
 /// drives rays (Eq. 9, 10; 0 where none does).

@@ -7,6 +7,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/detail.h"
+#include "interflect/solver/light_targets.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/methods/one_bounce.h"
 #include "interflect/solver/state_archive.h"
@@ -81,7 +82,7 @@ void Passes::begin_pass(SolverState& state, std::int64_t rays, bool oracle_refin
     pass_.is_under_way = true;
     escaped_power_ = RgbD(0, 0, 0);
     pass_.budget = BounceBudget(rays, bounces_);
-    pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+    pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     pass_.unshot.assign(state.forest->size(), Rgb(0));
     pass_.unshot_groups.assign(state.groups.size(), pass_.unshot);
     if (!oracle_refines) pass_.reflecting_where_received = leaves_that_blur(state);
@@ -165,6 +166,7 @@ void Passes::prepare(SolverState& state) {
     const std::int64_t rays = state.schedule.start_rays();
     if (stage_ == Stage::importance) {
         if (importance_use(state.solution) == ImportanceUse::full) start_importance(state, rays);
+        state.importance_rays += aim_outdoor_light(state);
         stage_ = Stage::coarse_pass;
     }
     for (const Stage pass : {Stage::coarse_pass, Stage::refining_pass}) {
@@ -173,6 +175,7 @@ void Passes::prepare(SolverState& state) {
         stage_ = pass == Stage::coarse_pass ? Stage::refining_pass : Stage::report;
     }
     if (stage_ == Stage::report) {
+        state.importance_rays += aim_outdoor_light(state);  // importance is known better now
         state.schedule.began_with(0, rays_so_far(state));
         if (rays_so_far(state) > 0) report(state, 0, escaped_power_);
         stage_ = Stage::done;
@@ -191,7 +194,8 @@ namespace {
 /// How rays that carry power are shared among the elements now; those of luminaires are left out.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
-    const ImportanceWeights weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+    const ImportanceWeights weights =
+        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     std::vector<float> q = power_step(state.materials, state.emission, state.solution, light, weights, false, 0).step.q;
     q.resize(state.forest->size());
     return q;
@@ -236,7 +240,7 @@ void Passes::retarget(SolverState& state) {
     IterationMethod::retarget(state);
     importance_ = {};
     if (pass_.is_under_way)
-        pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+        pass_.weights = importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     finds_importance_ = stage_ != Stage::importance && importance_use(state.solution) == ImportanceUse::full;
     if (!finds_importance_) old_q_.clear(), old_importance_.clear();
 }
@@ -246,6 +250,7 @@ void Passes::retarget(SolverState& state) {
 void Passes::adapt_to_views(SolverState& state) {
     if (!importance_.is_under_way) rays_before_adaptation_ = rays_so_far(state);
     start_importance(state, state.schedule.start_rays());
+    state.importance_rays += aim_outdoor_light(state);
     finds_importance_ = false;
     state.schedule.count_other_rays(rays_so_far(state) - rays_before_adaptation_);
     std::vector<float> old_q = std::exchange(old_q_, {});

@@ -182,7 +182,7 @@ void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t ra
 void ProgressiveRefinement::begin_power(SolverState& state, std::int64_t rays) {
     power_budget_.begin(rays);
     emits_ = true;
-    weights_ = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+    weights_ = importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     const std::size_t elements = state.forest->size();
     unshot_.resize(elements, Rgb(0));
     for (Rgb& h : unshot_) h *= static_cast<float>(static_cast<double>(power_rays_) / static_cast<double>(rays));
@@ -264,7 +264,7 @@ void ProgressiveRefinement::retarget(SolverState& state) {
     importance_history_ = 0;
     importance_budget_ = {};
     if (power_budget_.is_under_way)
-        weights_ = importance_weights(state.solution, state.neighbourhoods, state.part_importance);
+        weights_ = importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
 }
 
 void ProgressiveRefinement::archive(StateArchive& archive) {
