@@ -327,7 +327,7 @@ def failures() -> dict:
 
 
 def long_bake(folder: Path) -> pipeline.Bake:
-    """One that takes hours, at work."""
+    """A running bake of many hours."""
     scene = folder / "scene.glb"
     exchange.export_scene(bpy.context.scene, scene)
     wanted = pipeline.Settings(command=command, rays=10**11)
@@ -349,7 +349,7 @@ def cancel() -> dict:
 
 
 def disable() -> dict:
-    """While a bake runs there is no other, and disabling the add-on ends it."""
+    """A second bake is refused, and disabling the add-on ends the first."""
     make_room()
     folder = Path(tempfile.mkdtemp(prefix="interflect-"))
     running = long_bake(folder)

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 
 import bpy
 
+from .result import is_result
+
 DISC_CORNERS = 32
 WIDEST_SPREAD = math.pi  # [rad]; of a lamp without an angle limit
 
@@ -20,6 +22,7 @@ def as_panels(scene):
         and (instance.is_instance or not instance.object.original.hide_render)
     ]
     panels, warnings = [], []
+    names = _reserve_names(tuple(lamp.name for lamp, _ in shown))
     try:
         for lamp, matrix in shown:
             corners, area = _outline(lamp.data)
@@ -36,6 +39,18 @@ def as_panels(scene):
             bpy.data.objects.remove(panel)
             bpy.data.meshes.remove(mesh)
             bpy.data.materials.remove(material)
+        for data, name in names:
+            data.name = name
+
+
+def _reserve_names(names):
+    """Renames data of an earlier result that begins with these names, so that all bakes have the same. Returns the former."""
+    former = []
+    for data in (*bpy.data.objects, *bpy.data.meshes, *bpy.data.materials):
+        if is_result(data) and not data.library and data.name.startswith(names):
+            former.append((data, data.name))
+            data.name = "result"
+    return former
 
 
 def _left_out(lamp, area):

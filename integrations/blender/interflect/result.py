@@ -40,8 +40,9 @@ def warnings(scene) -> list[str]:
 
 def hide(scene, names) -> None:
     """Hides the objects of these names from pictures and from all view layers."""
-    for original in (scene.objects[name] for name in names if name in scene.objects):
-        layers = [layer for layer in scene.view_layers if original.name in layer.objects]
+    names, members = set(names), [(layer, set(layer.objects)) for layer in scene.view_layers]
+    for original in [each for each in scene.objects if each.name in names]:
+        layers = [layer for layer, objects in members if original in objects]
         original[HIDDEN] = "\n".join(layer.name for layer in layers if not original.hide_get(view_layer=layer))
         original.hide_render = True
         for layer in layers:
@@ -60,14 +61,12 @@ def remove(scene) -> None:
                 scene.collection.children.link(kept)
         bpy.data.collections.remove(collection)
     purge()
-    for original in scene.objects:
-        shown_in = original.pop(HIDDEN, None)
-        if shown_in is None:
-            continue
+    members = [(layer, set(layer.objects)) for layer in scene.view_layers]
+    for original in [each for each in scene.objects if HIDDEN in each]:
+        shown_in = original.pop(HIDDEN).splitlines()
         original.hide_render = False
-        for name in shown_in.splitlines():
-            layer = scene.view_layers.get(name)
-            if layer and original.name in layer.objects:
+        for layer, objects in members:
+            if layer.name in shown_in and original in objects:
                 original.hide_set(False, view_layer=layer)
 
 

@@ -22,21 +22,19 @@ def only_rendered(scene):
             changed.append((owner, name, before))
             setattr(owner, name, value)
 
-    for each in scene.objects:
-        change(each, "hide_render", each not in rendered and each != scene.camera)
-    for data in (*bpy.data.objects, *bpy.data.meshes, *bpy.data.materials):
-        if is_result(data):
-            change(data, "name", "result")  # reserves the names for the panels of lamps: all bakes have the same
-    for part in parts:
-        change(part, "hide_viewport", False)
-        change(part.collection, "hide_viewport", False)
-    for each in rendered:
-        change(each, "hide_viewport", False)
-    layer.update()
-    by_eye = [each for each in rendered if each.hide_get(view_layer=layer)]
-    for each in by_eye:
-        each.hide_set(False, view_layer=layer)
+    by_eye = []
     try:
+        for each in scene.objects:
+            change(each, "hide_render", each not in rendered and each != scene.camera)
+        for part in parts:
+            change(part, "hide_viewport", False)
+            change(part.collection, "hide_viewport", False)
+        for each in rendered:
+            change(each, "hide_viewport", False)
+        layer.update()
+        by_eye += [each for each in rendered if each.hide_get(view_layer=layer)]
+        for each in by_eye:
+            each.hide_set(False, view_layer=layer)
         layer.update()
         yield rendered
     finally:
