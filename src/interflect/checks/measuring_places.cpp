@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
 
-/// Whether something hides the start of a ray from where it ends, so that the ray came through its back.
+/// Whether the reversed ray is blocked: the ray has passed the back of a one-sided face.
 bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray, const Hit& hit) {
     constexpr float rounding = 1e-4f, offsets = 8;
     const float offset = ray_caster.ray_offset(hit.patch);

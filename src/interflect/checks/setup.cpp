@@ -26,7 +26,7 @@ bool is_far_light(const Luminaire& luminaire) {
     return is_sky(luminaire) || std::holds_alternative<DirectionalLight>(luminaire.kind);
 }
 
-/// Whether somebody is to see the inside: a view lies there, or there is none and the scene is as high as a room.
+/// Whether the inside matters: a view lies there, or the scene has no view and the height of a room.
 bool is_seen_inside(const Scene& scene, const SightLines& lines) {
     constexpr float least_height = 2;
     if (scene.views.empty()) {
@@ -55,7 +55,7 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
     findings.push_back(std::move(found.front()));
 }
 
-/// Formats whose files say neither their unit nor what is up.
+/// Formats without a unit and an up axis.
 bool is_bare_mesh(const Scene& scene) {
     const std::string extension = std::filesystem::path(scene.name).extension().string();
     constexpr std::string_view bare[] = {".obj", ".ply", ".stl", ".OBJ", ".PLY", ".STL"};

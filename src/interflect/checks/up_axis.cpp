@@ -60,7 +60,7 @@ std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, 
 
 constexpr std::size_t least_objects = 4;
 
-/// Of the file's objects, or, of fewer than four, of what shares vertices.
+/// Boxes of the file's objects, or, if there are fewer than four, of connected faces.
 std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
     std::vector<Imath::Box3f> boxes =
         boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
