@@ -67,13 +67,14 @@ bool has_integer_coordinates(const Scene& scene) {
     constexpr std::size_t least_vertices = 8;
     if (scene.vertices.size() < least_vertices) return false;
     constexpr double rounding = 1e-6;
+    const std::size_t coordinates = 3 * scene.vertices.size();
     std::size_t integers = 0;
     for (const V3f& vertex : scene.vertices) {
         const Imath::V3d x = scene.origin + Imath::V3d(vertex);
         for (int k = 0; k < 3; ++k)
             integers += std::abs(x[k] - std::round(x[k])) <= rounding * std::max(1.0, x.length());
     }
-    return 100 * integers >= 99 * 3 * scene.vertices.size();
+    return 100 * integers >= 99 * coordinates;
 }
 
 void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& findings) {

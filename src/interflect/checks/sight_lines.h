@@ -30,7 +30,6 @@ class SightLines {
     static V3f cosine_direction(const V3f& normal, std::uint64_t key, std::uint64_t index);
 
   private:
-    const Scene& scene_;
     const RayCaster& ray_caster_;
     Panes panes_;
 };
