@@ -46,7 +46,7 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 
 /// The part of validate() that costs milliseconds: probable mistakes of placing, units or axes. Problems:
 /// "close-luminaire" (more than half of its light is received by a surface within 2 cm, or within a hundredth of a
-/// scene smaller than 2 m), "outside-luminaire" (all of its light escapes; in a closed scene, more than half of it
+/// scene smaller than 2 m), "outside-luminaire" (all of its light escapes; in a closed room, more than half of it
 /// does, or a quarter of all directions are free), "wide-opening" (larger than the scene) and "shut-out-sky" (a sky or
 /// a sun, and a closed scene that is seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT in one scene),
 /// "probable-unit" and "probable-up-axis" (of formats without either). Point lights, spots and measured lights have 256

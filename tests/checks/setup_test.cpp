@@ -82,6 +82,19 @@ TEST(Setup, LuminaireBelowASkylight) {
     EXPECT_THAT(kinds(scene), IsEmpty());
 }
 
+/// A closed solid that is seen from outside, with lights around it.
+TEST(Setup, LuminaireBesideASolid) {
+    Scene scene = two_sided_room({1.9f, 4, 4});
+    scene.luminaires.push_back({"point", 0, PointLight{{-1, 1, 1}, Rgb(1)}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.views.push_back({"inside", {1, 1, 1}, {1, 2, 1}});
+    EXPECT_THAT(kinds(scene), ElementsAre("outside-luminaire"));
+    scene = two_sided_room(room_size);
+    scene.luminaires.push_back({"point", 0, PointLight{{-1, 1, 1}, Rgb(1)}});
+    scene.views.push_back({"outside", {-5, 2, 2}, {2, 2, 2}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
 /// A light beside an open scene may light it.
 TEST(Setup, LuminaireBesideAnOpenScene) {
     Scene scene;

@@ -38,7 +38,7 @@ float offset_of_points(const Scene& scene) {
 std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
                                      std::span<const MeasuringPoint> points) {
     const SightLines lines(scene, ray_caster);
-    const bool is_closed = find_shell(scene, ray_caster, lines).is_closed;
+    const bool is_room = find_shell(scene, ray_caster, lines).is_room;
     const float offset = offset_of_points(scene);
     std::vector<PointFault> faults(points.size(), PointFault::none);
     const std::size_t step = (points.size() + most_points - 1) / most_points;
@@ -59,7 +59,7 @@ std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_ca
             ++met;
             behind += is_one_way(scene, ray_caster, ray, hit);
         }
-        if (is_closed && 4 * escaped >= rays_per_point)
+        if (is_room && 4 * escaped >= rays_per_point)
             faults[p] = PointFault::outside;
         else if (2 * behind > met)
             faults[p] = PointFault::behind;

@@ -13,7 +13,7 @@ namespace interflect::inline detail {
 /// Reasons why a measurement at a point is useless.
 enum class PointFault {
     none,
-    outside,  ///< A quarter of the directions that it faces leave a closed scene.
+    outside,  ///< A quarter of the directions that it faces leave a closed room.
     behind    ///< Most rays from it pass the back of a one-sided face first: it lies inside a solid.
 };
 

@@ -26,17 +26,6 @@ bool is_far_light(const Luminaire& luminaire) {
     return is_sky(luminaire) || std::holds_alternative<DirectionalLight>(luminaire.kind);
 }
 
-/// Whether the inside matters: a view lies there, or the scene has no view and the height of a room.
-bool is_seen_inside(const Scene& scene, const SightLines& lines) {
-    constexpr float least_height = 2;
-    if (scene.views.empty()) {
-        const V3f extent = core_bounds(scene).size();
-        return std::min({extent.x, extent.y, extent.z}) >= least_height;
-    }
-    return std::any_of(scene.views.begin(), scene.views.end(),
-                       [&](const View& view) { return !lines.is_open(V3f(view.eye - scene.origin)); });
-}
-
 void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines, std::size_t places,
                         std::vector<Finding>& findings) {
     Finder shut_out(scene, places,
@@ -51,7 +40,7 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
             shut_out.add({scene.objects[luminaire.object], luminaire.name});
     std::vector<Finding> found;
     shut_out.append_to(found);
-    if (found.empty() || !is_seen_inside(scene, lines) || lets_light_in(scene, ray_caster, lines)) return;
+    if (found.empty() || lets_light_in(scene, ray_caster, lines)) return;
     findings.push_back(std::move(found.front()));
 }
 
@@ -115,8 +104,8 @@ std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_cas
     if (scene.patches.empty()) return {};
     const SightLines lines(scene, ray_caster);
     const Shell shell = find_shell(scene, ray_caster, lines);
-    std::vector<Finding> findings = find_misplaced_lights(scene, lines, shell.is_closed, options.places);
-    if (shell.is_closed) add_shut_out_light(scene, ray_caster, lines, options.places, findings);
+    std::vector<Finding> findings = find_misplaced_lights(scene, lines, shell.is_room, options.places);
+    if (shell.is_room) add_shut_out_light(scene, ray_caster, lines, options.places, findings);
     add_unit(scene, shell, findings);
     add_up_axis(scene, findings);
     return findings;

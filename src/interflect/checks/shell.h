@@ -9,6 +9,9 @@ struct Shell {
     /// Whether nine of ten faces that are seen from outside have an inner side, from which at most 2 of 32 rays leave
     /// the scene: a room with a window, but not one with a wall left out.
     bool is_closed = false;
+    /// Whether it is closed and seen from inside: a view lies there, or it has no view and is 2 m or more in each
+    /// direction. Closed solids that are seen from outside are no rooms.
+    bool is_room = false;
     float mean_free_path = 0;  ///< Mean length of rays between inner sides [m]; 0 unless closed.
 };
 
