@@ -15,7 +15,7 @@ namespace interflect::command {
 
 namespace {
 
-/// @param is_meant  Whether a point, by its index, is one of those that the warning is about.
+/// @param is_meant  Whether the warning is about the point of this index.
 void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                     const std::function<bool(std::size_t)>& is_meant) {
     std::size_t count = 0, first = 0;

@@ -11,7 +11,7 @@ namespace interflect::command {
 /// "object 'lamp', 'bulb' at (1, 2, 0.5)".
 std::string text_of(const Finding::Place& place);
 
-/// What to do about a finding, with the option of the command that does it.
+/// A finding's advice, followed by the option of the command for it.
 std::string remedy(const Finding& finding);
 
 /// Logs a line for each finding of validate_setup().

@@ -37,8 +37,8 @@ struct ValidateOptions {
 /// "inverted-face" (one-sided, and the scene is behind it), "inverted-lamp" (its front is against a surface, its back
 /// is not), "hidden-lamp" (covered, or enclosed by surfaces close to it), "zero-power-lamp", "high-reflectance",
 /// "no-light", "implausible-size", "maintenance-factor". Notes: "coincident-face" (another in its plane covers a part
-/// of it), "open-edge" (of one face alone) and "no-view"; then those of validate_setup(). What faces and lamps see is
-/// found with rays: 64 a face, of at most 4096 of a kind.
+/// of it), "open-edge" (of one face alone) and "no-view"; then the findings of validate_setup(). What faces and lamps
+/// see is found with rays: 64 a face, of at most 4096 of a kind.
 /// @param ray_caster  Of this scene.
 /// @return            In the order above. O(n log n) for n patches. @throws InputError where the ray caster is
 /// another's.
@@ -46,11 +46,11 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 
 /// The part of validate() that costs milliseconds: probable mistakes of placing, units or axes. Problems:
 /// "close-luminaire" (more than half of its light is received by a surface within 2 cm, or within a hundredth of a
-/// scene smaller than 2 m), "outside-luminaire" (all of its light escapes; in a closed scene, more than half of it
+/// scene smaller than 2 m), "outside-luminaire" (all of its light escapes; in a closed room, more than half of it
 /// does, or a quarter of all directions are free), "wide-opening" (larger than the scene) and "shut-out-sky" (a sky or
-/// a sun, and a closed scene that is seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT differ in what C0
-/// usually is), "probable-unit" and "probable-up-axis" (of formats that do not say). Point lights, spots and measured
-/// lights have 256 rays each, at most 1024 of them; 2^14 lines find where a sky enters.
+/// a sun, and a closed scene that is seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT in one scene),
+/// "probable-unit" and "probable-up-axis" (of formats without either). Point lights, spots and measured lights have 256
+/// rays each, at most 1024 of them; 2^14 lines find where a sky enters.
 /// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
 std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
                                     const ValidateOptions& options = {});

@@ -1,6 +1,7 @@
 #include "tests/checks/rooms.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 

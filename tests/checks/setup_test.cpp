@@ -1,4 +1,4 @@
-// Mistakes of placing, units and axes: each is found, is not found just beyond its limit, and sound scenes have none.
+// Mistakes of placing, units and axes on both sides of their limits. Sound scenes have no findings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,8 @@ std::vector<std::string> with_light(V3f position, V3f direction = {0, 0, -1}) {
 }
 
 TEST(Setup, LuminaireInACeilingOrBelowIt) {
-    for (const float z : {3.0f, 2.999f, 2.9f, 1.5f, 0.021f}) EXPECT_THAT(with_light({1, 1, z}), IsEmpty()) << z;
+    for (const float z : {3.000001f, 3.0f, 2.999f, 2.9f, 1.5f, 0.021f})
+        EXPECT_THAT(with_light({1, 1, z}), IsEmpty()) << z;
 }
 
 /// 0.1 mm above the ceiling half of the light was lost, 0.2 mm above it all.
@@ -68,7 +69,33 @@ TEST(Setup, LuminaireOutsideOfAClosedScene) {
     EXPECT_EQ(findings[0].places[0].position, Imath::V3d(-1, 1, 1));
 }
 
-/// Lights beside an open scene may be meant, but not those whose light misses it.
+TEST(Setup, LuminaireBelowASkylight) {
+    Scene scene = two_sided_room(room_size);
+    open_ceiling(scene, {1.4f, 1.8f}, {2.1f, 2.6f});  // 0.5 x 0.625 m about (1.75, 2.19)
+    SpotLight spot{{1.75f, 2.19f, 2}, {0, 0, 1}, Rgb(1)};
+    spot.outer_angle = 12;  // to 0.21 m from its axis
+    scene.luminaires.push_back({"spot", 0, spot});
+    EXPECT_THAT(kinds(scene), ElementsAre("outside-luminaire"));
+    spot.outer_angle = 40;
+    spot.inner_angle = 40;  // 0.31 m^2 of 2.2 m^2
+    scene.luminaires[0].kind = spot;
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+/// A closed solid that is seen from outside, with lights around it.
+TEST(Setup, LuminaireBesideASolid) {
+    Scene scene = two_sided_room({1.9f, 4, 4});
+    scene.luminaires.push_back({"point", 0, PointLight{{-1, 1, 1}, Rgb(1)}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.views.push_back({"inside", {1, 1, 1}, {1, 2, 1}});
+    EXPECT_THAT(kinds(scene), ElementsAre("outside-luminaire"));
+    scene = two_sided_room(room_size);
+    scene.luminaires.push_back({"point", 0, PointLight{{-1, 1, 1}, Rgb(1)}});
+    scene.views.push_back({"outside", {-5, 2, 2}, {2, 2, 2}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+/// A light beside an open scene may light it.
 TEST(Setup, LuminaireBesideAnOpenScene) {
     Scene scene;
     scene.name = "floor";

@@ -25,6 +25,9 @@ constexpr std::uint64_t seed_of_light = 31;
 /// smaller than 2 m.
 constexpr float least_gap = 0.02f, least_gap_relative = 0.01f;
 
+/// Surfaces count as close up to this times that distance along a ray, so that shades of lamps do not.
+constexpr float most_oblique = 5;
+
 /// Measured light starts this share of the scene's largest coordinate before its opening (Emission), from where a
 /// ceiling just below it is not met. The checks start at an eighth of that: 16 roundings of a coordinate.
 constexpr float start_offset = 0x1p-17f, checked_offset = 0x1p-20f;
@@ -74,7 +77,7 @@ struct Outcome {
     std::size_t escaped = 0, close = 0;
 };
 
-/// An Outcome for each luminaire of the sample. Surfaces are close if the luminaire is that close to their plane.
+/// An Outcome for each luminaire of the sample. Surfaces are close by the distance of their plane.
 std::vector<Outcome> outcomes(const Scene& scene, const Scene& sample, const SightLines& lines, float close_distance) {
     const Emission emission(sample);
     const float back = (start_offset - checked_offset) * reach_of(sample);
@@ -91,7 +94,8 @@ std::vector<Outcome> outcomes(const Scene& scene, const Scene& sample, const Sig
             result[light].escaped += hit.patch == none;
             if (hit.patch == none) continue;
             const V3f normal = PatchGeometry(scene, scene.patches[hit.patch]).normal();
-            result[light].close += -hit.distance * ray.direction.dot(normal) < close_distance;
+            result[light].close += hit.distance < most_oblique * close_distance &&
+                                   -hit.distance * ray.direction.dot(normal) < close_distance;
         }
     }
     return result;
@@ -117,7 +121,7 @@ bool is_eulumdat(const PhotometricWeb& web) {
 
 }  // namespace
 
-std::vector<Finding> find_misplaced_lights(const Scene& scene, const SightLines& lines, bool is_closed,
+std::vector<Finding> find_misplaced_lights(const Scene& scene, const SightLines& lines, bool is_room,
                                            std::size_t places) {
     const Scene sample = sample_of_lights(scene);
     std::vector<Finding> findings;
@@ -154,7 +158,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const SightLines&
         if (2 * outcome[i].close > rays_per_light)
             add_to(close);
         else if (outcome[i].escaped == rays_per_light ||
-                 (is_closed && (2 * outcome[i].escaped > rays_per_light || lines.is_open(before))))
+                 (is_room && (2 * outcome[i].escaped > rays_per_light || lines.is_open(before))))
             add_to(outside);
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
         if (!measured) continue;

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
 
-/// Whether something hides the start of a ray from where it ends, so that the ray came through its back.
+/// Whether the reversed ray is blocked: the ray has passed the back of a one-sided face.
 bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray, const Hit& hit) {
     constexpr float rounding = 1e-4f, offsets = 8;
     const float offset = ray_caster.ray_offset(hit.patch);
@@ -38,7 +38,7 @@ float offset_of_points(const Scene& scene) {
 std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
                                      std::span<const MeasuringPoint> points) {
     const SightLines lines(scene, ray_caster);
-    const bool is_closed = find_shell(scene, ray_caster, lines).is_closed;
+    const bool is_room = find_shell(scene, ray_caster, lines).is_room;
     const float offset = offset_of_points(scene);
     std::vector<PointFault> faults(points.size(), PointFault::none);
     const std::size_t step = (points.size() + most_points - 1) / most_points;
@@ -59,7 +59,7 @@ std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_ca
             ++met;
             behind += is_one_way(scene, ray_caster, ray, hit);
         }
-        if (is_closed && 4 * escaped >= rays_per_point)
+        if (is_room && 4 * escaped >= rays_per_point)
             faults[p] = PointFault::outside;
         else if (2 * behind > met)
             faults[p] = PointFault::behind;

@@ -10,11 +10,11 @@
 
 namespace interflect::inline detail {
 
-/// Why a measuring point measures nothing of use.
+/// Reasons why a measurement at a point is useless.
 enum class PointFault {
     none,
-    outside,  ///< A quarter of the directions that it faces leave a closed scene.
-    behind    ///< Most of what it faces is seen through the backs of one-sided faces: from within a solid.
+    outside,  ///< A quarter of the directions that it faces leave a closed room.
+    behind    ///< Most rays from it pass the back of a one-sided face first: it lies inside a solid.
 };
 
 /// The fault of each point. Traces 32 rays a point and back; of more than 2048 points it looks at 2048, evenly spaced.

@@ -26,17 +26,6 @@ bool is_far_light(const Luminaire& luminaire) {
     return is_sky(luminaire) || std::holds_alternative<DirectionalLight>(luminaire.kind);
 }
 
-/// Whether somebody is to see the inside: a view lies there, or there is none and the scene is as high as a room.
-bool is_seen_inside(const Scene& scene, const SightLines& lines) {
-    constexpr float least_height = 2;
-    if (scene.views.empty()) {
-        const V3f extent = core_bounds(scene).size();
-        return std::min({extent.x, extent.y, extent.z}) >= least_height;
-    }
-    return std::any_of(scene.views.begin(), scene.views.end(),
-                       [&](const View& view) { return !lines.is_open(V3f(view.eye - scene.origin)); });
-}
-
 void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines, std::size_t places,
                         std::vector<Finding>& findings) {
     Finder shut_out(scene, places,
@@ -51,11 +40,11 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
             shut_out.add({scene.objects[luminaire.object], luminaire.name});
     std::vector<Finding> found;
     shut_out.append_to(found);
-    if (found.empty() || !is_seen_inside(scene, lines) || lets_light_in(scene, ray_caster, lines)) return;
+    if (found.empty() || lets_light_in(scene, ray_caster, lines)) return;
     findings.push_back(std::move(found.front()));
 }
 
-/// Formats whose files say neither their unit nor what is up.
+/// Formats without a unit and an up axis.
 bool is_bare_mesh(const Scene& scene) {
     const std::string extension = std::filesystem::path(scene.name).extension().string();
     constexpr std::string_view bare[] = {".obj", ".ply", ".stl", ".OBJ", ".PLY", ".STL"};
@@ -67,13 +56,14 @@ bool has_integer_coordinates(const Scene& scene) {
     constexpr std::size_t least_vertices = 8;
     if (scene.vertices.size() < least_vertices) return false;
     constexpr double rounding = 1e-6;
+    const std::size_t coordinates = 3 * scene.vertices.size();
     std::size_t integers = 0;
     for (const V3f& vertex : scene.vertices) {
         const Imath::V3d x = scene.origin + Imath::V3d(vertex);
         for (int k = 0; k < 3; ++k)
             integers += std::abs(x[k] - std::round(x[k])) <= rounding * std::max(1.0, x.length());
     }
-    return 100 * integers >= 99 * 3 * scene.vertices.size();
+    return 100 * integers >= 99 * coordinates;
 }
 
 void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& findings) {
@@ -114,8 +104,8 @@ std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_cas
     if (scene.patches.empty()) return {};
     const SightLines lines(scene, ray_caster);
     const Shell shell = find_shell(scene, ray_caster, lines);
-    std::vector<Finding> findings = find_misplaced_lights(scene, lines, shell.is_closed, options.places);
-    if (shell.is_closed) add_shut_out_light(scene, ray_caster, lines, options.places, findings);
+    std::vector<Finding> findings = find_misplaced_lights(scene, lines, shell.is_room, options.places);
+    if (shell.is_room) add_shut_out_light(scene, ray_caster, lines, options.places, findings);
     add_unit(scene, shell, findings);
     add_up_axis(scene, findings);
     return findings;

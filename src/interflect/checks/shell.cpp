@@ -2,6 +2,8 @@
 
 #include <ImathBox.h>
 
+#include <algorithm>
+
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
@@ -43,6 +45,16 @@ MetFace met_face(const Scene& scene, const RayCaster& ray_caster, const Ray& lin
     return {x + offset, x - offset, normal};
 }
 
+bool is_seen_inside(const Scene& scene, const SightLines& lines) {
+    constexpr float least_extent = 2;
+    if (scene.views.empty()) {
+        const V3f extent = core_bounds(scene).size();
+        return std::min({extent.x, extent.y, extent.z}) >= least_extent;
+    }
+    return std::any_of(scene.views.begin(), scene.views.end(),
+                       [&](const View& view) { return !lines.is_open(V3f(view.eye - scene.origin)); });
+}
+
 }  // namespace
 
 Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {
@@ -65,7 +77,7 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         length += inner.distance;
     }
     if (met < least_met || 10 * enclosing < 9 * met) return {};
-    return {true, length / static_cast<float>(paths)};
+    return {true, is_seen_inside(scene, lines), length / static_cast<float>(paths)};
 }
 
 bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {

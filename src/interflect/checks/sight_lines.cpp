@@ -10,7 +10,7 @@
 namespace interflect::inline detail {
 
 SightLines::SightLines(const Scene& scene, const RayCaster& ray_caster)
-    : scene_(scene), ray_caster_(ray_caster), panes_(scene, ray_caster) {}
+    : ray_caster_(ray_caster), panes_(scene, ray_caster) {}
 
 Hit SightLines::first_surface(const Ray& ray) const {
     Ray rest = ray;

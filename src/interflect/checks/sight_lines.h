@@ -11,10 +11,10 @@ class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// What a ray meets first that is no pane, with its distance from the start of the ray.
+    /// First hit that is no pane, with its distance from the start of the ray.
     Hit first_surface(const Ray& ray) const;
 
-    /// What rays from one point meet.
+    /// Results of the rays from one point.
     struct Outlook {
         int escaped = 0, met = 0;  ///< Rays without and with a surface in their way.
         float distance = 0;        ///< Sum over the rays that met one [m].
@@ -22,8 +22,7 @@ class SightLines {
     static constexpr int rays_per_point = 32;
     /// Cosine-distributed rays from a point just before a surface; ends early once more than `most_escaped` escape.
     Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
-    /// Whether at least a quarter of all directions meet nothing: so it is outside of a closed scene, and in none of
-    /// the rooms that look_closed() accepts.
+    /// Whether at least a quarter of all directions meet nothing. True outside of a closed scene (Shell), false inside.
     bool is_open(const V3f& x) const;
 
     /// Uniform over the sphere; cosine-distributed about a normal.
@@ -31,7 +30,6 @@ class SightLines {
     static V3f cosine_direction(const V3f& normal, std::uint64_t key, std::uint64_t index);
 
   private:
-    const Scene& scene_;
     const RayCaster& ray_caster_;
     Panes panes_;
 };

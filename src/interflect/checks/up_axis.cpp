@@ -16,7 +16,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Least cosine between a direction and the axis that it stands for, and least share of what tells of one.
+/// Least cosine between a direction and its axis, and least share of the evidence for that axis.
 constexpr double least_cosine = 0.9, least_agreement = 0.5;
 
 constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
@@ -60,7 +60,7 @@ std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, 
 
 constexpr std::size_t least_objects = 4;
 
-/// Of the file's objects, or, of fewer than four, of what shares vertices.
+/// Bounding boxes of the objects. Fewer than four objects are divided into connected faces.
 std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
     std::vector<Imath::Box3f> boxes =
         boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });

@@ -17,7 +17,7 @@ std::optional<UpAxis> find_up_axis(const Scene& scene);
 
 /// The axis that is probably up in place of z: no view says otherwise, and two of three agree on it: the light
 /// (find_up_axis), half of the objects standing on one floor (and fewer along z), and an extent along it of at most 0.8
-/// of the others. Objects are the file's, or what shares vertices. Null where z may be right.
+/// of the others. Fewer than four objects are divided into connected faces. Null if z may be right.
 const char* find_other_up_axis(const Scene& scene);
 
 }  // namespace interflect::inline detail
