@@ -12,10 +12,12 @@ namespace interflect::command {
 struct MeasuredGrid {
     MeasuringGrid grid;
     std::vector<MeasuredIrradiance> measured;  ///< Of grid.points.
+    std::size_t missing = 0;                   ///< Points that were not reached.
 };
 
 /// Measures all grids with a progress bar. Ctrl-C ends it early with what there is.
 /// @param points  Of all grids, one after the other. @param solution  As in measure_irradiance().
+/// @throws Stopped if no point was reached.
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
                                         const PathOptions& options);
