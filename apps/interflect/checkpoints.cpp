@@ -46,6 +46,8 @@ void Checkpoints::save(Solver& solver) const {
     try {
         keep_previous(file);
         solver.save(file);
+    } catch (const std::bad_alloc&) {
+        spdlog::warn("no checkpoint: there is not enough memory");
     } catch (const std::exception& e) {
         spdlog::warn("no checkpoint: {}", e.what());
     }

@@ -14,7 +14,7 @@ void add_resume(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app);
-void add_export(CLI::App& app);
+void add_export(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_validate(CLI::App& app, int& exit_code);

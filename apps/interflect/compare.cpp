@@ -98,8 +98,12 @@ void run(const CompareArguments& options) {
         require_distinct_files(
             std::array<NamedFile, 2>{{{"the image", options.image}, {"the reference", options.reference}}},
             std::array<NamedFile, 1>{{{"--difference", *options.difference}}});
-        if (!is_tone_mapped(*options.difference))
-            throw InputError(*options.difference, 0, "the difference is drawn to be looked at: expected .png or .jpg");
+        const ImageFormat format =
+            check_option("--difference", [&] { return require_image_format(*options.difference); });
+        if (!needs_tone_mapping(format))
+            throw UsageError("--difference",
+                             fmt::format("the difference is drawn to be looked at: expected .png or .jpg, found '{}'",
+                                         options.difference->string()));
         difference_file.emplace(*options.difference);
     }
     const Image image = read_image(options.image), reference = read_image(options.reference);

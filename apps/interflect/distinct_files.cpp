@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <system_error>
 
-#include "interflect/error.h"
+#include "apps/interflect/parse.h"
 
 namespace interflect::command {
 
@@ -25,7 +26,8 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs) {
     const auto require_distinct = [](const NamedFile& a, const NamedFile& b) {
         if (!a.path.empty() && !b.path.empty() && is_same_file(a.path, b.path))
-            throw InputError(fmt::format("{} and {} are the same file, '{}': one would overwrite the other", a.argument,
+            throw UsageError(std::string(b.argument),
+                             fmt::format("{} and {} are the same file, '{}': one would overwrite the other", a.argument,
                                          b.argument, b.path.string()));
     };
     for (std::size_t i = 0; i < outputs.size(); ++i) {

@@ -12,8 +12,8 @@ struct NamedFile {
     std::filesystem::path path;  ///< Empty: it was not given.
 };
 
-/// @throws InputError where two outputs, or an input and an output, are the same file, so that one would overwrite the
-/// other. Devices may be named twice.
+/// @throws UsageError if an output is an input or another output: one would overwrite the other. Devices may be named
+/// twice.
 void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs);
 
 }  // namespace interflect::command

@@ -9,11 +9,17 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/light_group_options.h"
+#include "apps/interflect/long_work.h"
+#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
+#include "apps/interflect/read_light.h"
 #include "apps/interflect/shared_options.h"
+#include "apps/interflect/signals.h"
+#include "apps/interflect/threads.h"
 #include "interflect/checks/up_axis.h"
 #include "interflect/error.h"
+#include "interflect/formats/extension.h"
 #include "interflect/render.h"
 #include "interflect/scene/view.h"
 #include "interflect/solution_file.h"
@@ -34,6 +40,7 @@ struct ExportArguments {
     bool has_lightmap = false;
     LightmapOptions lightmap;
     DimmingOptions dimming;
+    int threads = 0;
 };
 
 /// Where the help lists them.
@@ -41,7 +48,7 @@ constexpr const char* lightmap_group = "Lightmaps";
 
 /// As `render` chooses it for the scene's first view, else for an overview.
 float automatic_exposure_of(const SolvedScene& solved) {
-    const RayCaster ray_caster(solved.scene);
+    const RayCaster ray_caster = make_ray_caster(solved.scene);
     const View view = solved.scene.views.empty() ? overview(solved.scene) : solved.scene.views.front();
     RenderOptions options;
     options.width = 160;
@@ -63,14 +70,13 @@ V3f up_of(const Scene& scene) {
 }
 
 SolvedScene read_dimmed(const ExportArguments& arguments) {
-    SolvedScene solved = read_solution(arguments.scene.path);
+    SolvedScene solved = read_light_of(arguments.scene.path);
     arguments.dimming.dim(solved);
     return solved;
 }
 
 void run_scene(const ExportArguments& arguments) {
     const bool is_solved = is_solution_file(arguments.scene.path);
-    if (!is_solved) arguments.dimming.require_solution(arguments.scene.path);
     const Scene scene = is_solved ? read_dimmed(arguments).scene : arguments.scene.load();
     const SceneExport exported =
         export_scene(arguments.output, scene, {arguments.size.width, arguments.size.height, arguments.samples});
@@ -78,9 +84,50 @@ void run_scene(const ExportArguments& arguments) {
     log_warnings(exported.warnings);
 }
 
-void run(const ExportArguments& arguments) {
+/// Whether the export traces rays and reports its progress.
+bool traces_rays(const std::filesystem::path& output, const ExportOptions& options) {
+    const std::string extension = lower_case_extension(output);
+    return (options.lightmap && options.lightmap->shading == LightmapShading::gather) || extension == ".json" ||
+           extension == ".exr";
+}
+
+/// Before the first rays a signal ends the process. Later it stops the rays, and a usable result is kept.
+std::vector<std::filesystem::path> write(const std::filesystem::path& path, const SolvedScene& solved,
+                                         ExportOptions options) {
+    LongWork work(fmt::format("exporting {}", path.string()));
+    const auto export_light = [&] { return export_solution(path, solved.scene, solved.solution, options); };
+    if (!traces_rays(path, options)) return export_light();
+    std::vector<std::filesystem::path> written;
+    with_path_progress([&](const PathMonitor& monitor) {
+        options.monitor = monitor;
+        options.monitor.on_progress = [&](const PathProgress& progress) {
+            stop_on_signal();
+            work.postpone();
+            monitor.on_progress(progress);
+        };
+        written = export_light();
+    });
+    return written;
+}
+
+std::vector<std::filesystem::path> write_or_explain(const std::filesystem::path& path, const SolvedScene& solved,
+                                                    const ExportOptions& options) {
+    try {
+        return write(path, solved, options);
+    } catch (const InputError& e) {
+        const bool is_too_large = std::string_view(e.what()).find("(max_bytes)") != std::string_view::npos;
+        throw is_too_large ? InputError(fmt::format("{}; see --texels-per-metre", e.what())) : e;
+    } catch (const Stopped& e) {
+        spdlog::warn("{}: nothing is written", e.what());
+        return {};
+    }
+}
+
+void run(const ExportArguments& arguments, int& exit_code) {
+    const ThreadLimit threads(arguments.threads);
     if (!is_scene_export(arguments.output))
         check_option("--output", [&] { return require_export_format(arguments.output); });
+    arguments.dimming.require_solution(arguments.scene.path);
     if (arguments.up && !(V3f(*arguments.up).length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
     const NamedFile output{"--output", arguments.output};
     require_distinct_files(input_files(arguments.scene, {}), {&output, 1});
@@ -91,20 +138,13 @@ void run(const ExportArguments& arguments) {
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
+    if (options.lightmap) options.lightmap->max_bytes = free_memory();
     Warnings warnings;
     options.warnings = &warnings;
-    std::vector<std::filesystem::path> written;
-    const auto write = [&] { written = export_solution(arguments.output, solved.scene, solved.solution, options); };
-    const bool traces_rays = options.lightmap && options.lightmap->shading == LightmapShading::gather;
-    if (traces_rays)
-        with_path_progress([&](const PathMonitor& monitor) {
-            options.monitor = monitor;
-            write();
-        });
-    else
-        write();
-    for (const auto& path : written) spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
+    for (const auto& path : write_or_explain(arguments.output, solved, options))
+        spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
     log_warnings(warnings);
+    if (is_stop_requested()) exit_code = interrupted;
 }
 
 void add_lightmap(CLI::App& command, ExportArguments& arguments) {
@@ -154,7 +194,7 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
 
 }  // namespace
 
-void add_export(CLI::App& app) {
+void add_export(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<ExportArguments>();
     CLI::App& command = *app.add_subcommand("export", "Write a solved scene, or a scene, for other programs");
     options->scene.add_to(command, "Solution file (.h5); for another renderer also a scene");
@@ -185,7 +225,8 @@ void add_export(CLI::App& app) {
         ->capture_default_str();
     add_lightmap(command, *options);
     options->dimming.add_to(command);
-    command.callback([options] { run(*options); });
+    add_threads(command, options->threads);
+    command.callback([options, &exit_code] { run(*options, exit_code); });
 }
 
 }  // namespace interflect::command

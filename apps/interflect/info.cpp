@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/long_work.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/print_views.h"
 #include "apps/interflect/run_solve.h"
@@ -168,7 +169,7 @@ void add_info(CLI::App& app) {
     command.callback([options] {
         if (is_solution_file(options->scene.path)) return print_solution_info(options->scene.path, options->json);
         const Scene scene = options->scene.load();
-        const RayCaster ray_caster(scene);
+        const RayCaster ray_caster = make_ray_caster(scene);
         warn_of_covered_emission(scene, ray_caster);
         const Summary summary = summarise(scene, ray_caster);
         const std::vector<std::string> outside = outside_files(scene, options->scene.path);

@@ -47,8 +47,11 @@ void DimmingOptions::dim(SolvedScene& solved) const {
 }
 
 void DimmingOptions::require_solution(const std::filesystem::path& scene) const {
-    if (!factors.empty())
-        throw InputError(scene, 0, "--dim needs the light of a solution: solve the scene with --light-groups first");
+    if (!factors.empty() && !is_solution_file(scene))
+        throw UsageError("--dim",
+                         fmt::format("{} is not solved, and only the light of a solution can be dimmed: expected "
+                                     "a solution file (.h5) of solve --light-groups",
+                                     scene.string()));
 }
 
 }  // namespace interflect::command

@@ -27,7 +27,7 @@ struct DimmingOptions {
     void add_to(CLI::App& app);
     /// @throws InputError that lists the groups, for a group that the solution does not have.
     void dim(SolvedScene& solved) const;
-    /// @throws InputError where groups are dimmed, but `scene` is no solution.
+    /// @throws UsageError where groups are dimmed, but `scene` is no solution.
     void require_solution(const std::filesystem::path& scene) const;
 };
 

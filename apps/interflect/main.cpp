@@ -2,9 +2,12 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/standard_streams.h"
@@ -45,7 +48,7 @@ int run(int argc, char** argv) {
     add_render(app, exit_code);
     add_probe(app, exit_code);
     add_report(app);
-    add_export(app);
+    add_export(app, exit_code);
     add_compare(app);
     add_validate(app, exit_code);
     add_bench(app);
@@ -68,6 +71,16 @@ void return_large_arrays() {
     mallopt(M_MMAP_THRESHOLD, large);
 }
 
+/// Reports an allocation that failed although no prediction had refused the work.
+int run_out_of_memory() {
+    spdlog::error(
+        "there is not enough memory: the limits of this process (its machine, ulimit -v, control groups) leave {} MiB. "
+        "Less is needed by a smaller picture (--size), a coarser lightmap (--texels-per-metre), fewer elements "
+        "(--memory, --mesh-size) and a scene of fewer faces (--curve-divisions, --max-patches)",
+        interflect::command::usable_memory() >> 20);
+    return interflect::command::failed;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -80,6 +93,10 @@ int main(int argc, char** argv) try {
 } catch (const interflect::InputError& e) {
     spdlog::error("{}", e.what());
     return interflect::command::bad_input;
+} catch (const std::bad_alloc&) {
+    return run_out_of_memory();
+} catch (const std::length_error&) {  // an array beyond the address space
+    return run_out_of_memory();
 } catch (const std::exception& e) {
     spdlog::error("{}", e.what());
     return interflect::command::failed;

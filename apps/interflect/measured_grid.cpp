@@ -9,6 +9,7 @@
 
 #include "apps/interflect/path_progress.h"
 #include "interflect/checks/measuring_places.h"
+#include "interflect/error.h"
 #include "interflect/photometry.h"
 
 namespace interflect::command {
@@ -59,6 +60,7 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const MeasuredIrradiance& e = measured[next++];
             if (!e.is_measured()) {
+                ++of_grid.missing;
                 ++lost;
                 continue;
             }
@@ -68,6 +70,7 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
         }
         of_grid.grid = std::move(grid);
     }
+    if (lost > 0 && lost == points.size()) throw Stopped("stopped before any point was measured");
     if (lost > 0) spdlog::warn("{} of {} points were not measured before the end", lost, points.size());
     return result;
 }

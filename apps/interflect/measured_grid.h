@@ -13,6 +13,7 @@ namespace interflect::command {
 struct MeasuredGrid {
     MeasuringGrid grid;
     std::vector<MeasuredIrradiance> measured;  ///< Of grid.points.
+    std::size_t missing = 0;                   ///< Points that were not reached.
 };
 
 /// Warns of points outside of the scene, inside solids and without any light.
@@ -22,6 +23,7 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
 
 /// Measures all grids with a progress bar. Ctrl-C ends it early with what there is.
 /// @param points  Of all grids, one after the other. @param solution  As in measure_irradiance().
+/// @throws Stopped if no point was reached.
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
                                         const PathOptions& options);

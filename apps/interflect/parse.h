@@ -74,6 +74,7 @@ Daylight::Environment parse_environment(const std::string& text);
 /// "640x360" -> {640, 360}, each from 1 to 32768.
 struct Size {
     int width = 1280, height = 720;
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 Size parse_size(const std::string& text);
 /// "2" -> {2, absolute}; "auto", "auto+1", "auto-0.5" -> {0, 1, -0.5 relative to the automatic one} [stops], from -100

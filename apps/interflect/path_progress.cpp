@@ -1,6 +1,8 @@
 #include "apps/interflect/path_progress.h"
 
 #include <chrono>
+#include <cmath>
+#include <optional>
 
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
@@ -13,7 +15,10 @@ double with_path_progress(const std::function<void(const PathMonitor&)>& work) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
     ProgressBar bar;
-    const auto show = [&](const PathProgress& p) { bar.show({p.fraction, seconds(), p.rays, p.relative_error}); };
+    const auto show = [&](const PathProgress& p) {
+        const bool has_error = !std::isnan(p.relative_error);
+        bar.show({p.fraction, seconds(), p.rays, has_error ? std::optional(p.relative_error) : std::nullopt});
+    };
     work({show, &stop_flag()});
     return seconds();
 }

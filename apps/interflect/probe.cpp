@@ -9,6 +9,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/csv_file.h"
 #include "apps/interflect/light_group_options.h"
+#include "apps/interflect/long_work.h"
 #include "apps/interflect/measured_grid.h"
 #include "apps/interflect/measuring_places.h"
 #include "apps/interflect/messages.h"
@@ -144,6 +145,9 @@ void print_text(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeA
                 const std::optional<double>& exterior) {
     print_line("{}: {}", g.grid.name, text_of(g.grid));
     print_line("  {}", name_of(options.quantity));
+    if (g.missing > 0)
+        print_line("  interrupted       {} of {} points were not measured", g.missing, g.missing + g.measured.size());
+    if (g.measured.empty()) return;
     print_line("  mean              {:.4g} lx, standard error {:.2g} lx", s.mean, s.mean_error);
     print_line("  minimum           {:.4g} lx, standard error {:.2g} lx", s.min, s.min_error);
     print_line("  maximum           {:.4g} lx", s.max);
@@ -159,6 +163,7 @@ Json to_json(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArgu
     Json json{{"name", g.grid.name},
               {"quantity", name_of(options.quantity)},
               {"points", s.points},
+              {"missing", g.missing},
               {"columns", g.grid.columns},
               {"rows", g.grid.rows},
               {"spacing", {g.grid.column_spacing, g.grid.row_spacing}},
@@ -182,13 +187,30 @@ void print_summaries(const Scene& scene, const std::vector<MeasuredGrid>& grids,
         else
             print_text(g, summary, options, exterior);
     }
-    if (options.json) std::cout << json_text({{"areas", areas}}, 2) << '\n';
+    if (options.json) std::cout << json_text({{"interrupted", is_stop_requested()}, {"areas", areas}}, 2) << '\n';
+}
+
+void measure_and_write(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                       std::vector<MeasuringGrid> grids, const ProbeArguments& options,
+                       std::optional<PendingFile>& output) {
+    if (options.quantity == ProbedQuantity::ugr) {
+        const std::vector<RatedGrid> rated =
+            rate_grids(scene, solution, ray_caster, grids, lines_of_sight(options), options.path);
+        if (output) write_ratings(*output, rated);
+        print_ratings(rated, options.json);
+    } else {
+        const std::vector<MeasuredGrid> measured = measure(scene, solution, ray_caster, std::move(grids), options);
+        if (output) write_csv(*output, measured);
+        print_summaries(scene, measured, options);
+    }
 }
 
 void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     const bool traces_paths = options.light == ProbedLight::path;
     if (traces_paths) refuse_solver_options(command);
+    PathTracerArguments::check_samples(command, options.path.samples);
+    options.dimming.require_solution(options.scene.path);
     options.places.check();
     check_direction(options);
     require_distinct_files(input_files(options.scene, {}),
@@ -206,7 +228,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     else if (!solved_before)
         solved.scene = options.mesh.cut(std::move(solved.scene), options.scene.read);
     StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
-    const RayCaster ray_caster(solved.scene);
+    const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_setup(solved.scene, ray_caster);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
@@ -214,16 +236,10 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     options.path.seed = options.solver.seed();
     stop_on_signal();
     const Solution* solution = traces_paths ? nullptr : &solved.solution;
-    if (options.quantity == ProbedQuantity::ugr) {
-        const std::vector<RatedGrid> rated =
-            rate_grids(solved.scene, solution, ray_caster, grids, lines_of_sight(options), options.path);
-        if (output) write_ratings(*output, rated);
-        print_ratings(rated, options.json);
-    } else {
-        const std::vector<MeasuredGrid> measured =
-            measure(solved.scene, solution, ray_caster, std::move(grids), options);
-        if (output) write_csv(*output, measured);
-        print_summaries(solved.scene, measured, options);
+    try {
+        measure_and_write(solved.scene, solution, ray_caster, std::move(grids), options, output);
+    } catch (const Stopped& e) {
+        spdlog::warn("{}: nothing is written", e.what());
     }
     if (solves) stats.write(solved.scene, solved.solution);
     if (is_stop_requested()) exit_code = interrupted;

@@ -13,6 +13,8 @@
 #include "apps/interflect/messages.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/print_views.h"
+#include "apps/interflect/signals.h"
+#include "interflect/error.h"
 #include "interflect/exports/json_text.h"
 
 namespace interflect::command {
@@ -45,7 +47,7 @@ void warn_of_large_sources(const std::vector<RatedGrid>& grids) {
 Json number_or_null(double rating) { return std::isfinite(rating) ? Json(rating) : Json(nullptr); }
 
 Json to_json(const RatedGrid& g) {
-    Json json{{"name", g.grid.name}, {"quantity", "UGR"}, {"points", g.observers.size()}};
+    Json json{{"name", g.grid.name}, {"quantity", "UGR"}, {"points", g.observers.size()}, {"missing", g.missing}};
     if (g.ratings.empty()) return json;
     const GlareRating& worst = g.ratings[g.worst()];
     Json sources = Json::array();
@@ -67,6 +69,7 @@ Json to_json(const RatedGrid& g) {
 
 void print_text(const RatedGrid& g) {
     print_line("{}: {}, {} ratings", g.grid.name, text_of(g.grid), g.ratings.size());
+    if (g.missing > 0) print_line("  interrupted       {} ratings are missing", g.missing);
     if (g.ratings.empty()) return;
     const GlareRating& worst = g.ratings[g.worst()];
     if (!std::isfinite(worst.ugr)) return print_line("  UGR               no source is seen");
@@ -112,6 +115,7 @@ std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, 
         rated.grid = grid;
         for (const std::size_t end = next + grid.points.size() * directions.size(); next < end; ++next) {
             if (!std::isfinite(ratings[next].standard_error)) {
+                ++rated.missing;
                 ++lost;
                 continue;
             }
@@ -119,6 +123,7 @@ std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, 
             rated.ratings.push_back(std::move(ratings[next]));
         }
     }
+    if (lost > 0 && lost == observers.size()) throw Stopped("stopped before any observer's glare was rated");
     if (lost > 0) spdlog::warn("{} of {} ratings were not found before the end", lost, observers.size());
     warn_of_large_sources(result);
     return result;
@@ -145,7 +150,7 @@ void print_ratings(const std::vector<RatedGrid>& grids, bool json) {
         else
             print_text(grid);
     }
-    if (json) std::cout << json_text({{"areas", areas}}, 2) << '\n';
+    if (json) std::cout << json_text({{"interrupted", is_stop_requested()}, {"areas", areas}}, 2) << '\n';
 }
 
 }  // namespace interflect::command

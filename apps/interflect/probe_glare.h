@@ -14,6 +14,7 @@ struct RatedGrid {
     MeasuringGrid grid;
     std::vector<Observer> observers;
     std::vector<GlareRating> ratings;
+    std::size_t missing = 0;  ///< Ratings that were not reached.
 
     /// Index of the largest rating; there is one.
     std::size_t worst() const;
@@ -21,6 +22,7 @@ struct RatedGrid {
 
 /// Rates what is seen from all grids, with a progress bar, and warns of sources that UGR is not made for.
 /// @param solution  As in rate_glare().
+/// @throws Stopped if no observer was reached.
 std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
                                   const PathOptions& options);

@@ -17,15 +17,14 @@ constexpr int bar_width = 24;
 constexpr double seconds_between_lines = 2;  // where stderr is no terminal
 constexpr double least_fraction = 1e-5;      // of the work; below, the time left is not known
 
+}  // namespace
+
 bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
 
-/// Progress is worth no exception where nobody can see it.
-void print(const std::string& text) {
+void print_progress(const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
 }
-
-}  // namespace
 
 std::string duration(double seconds) {
     if (seconds < 60) return fmt::format("{:.1f} s", seconds);
@@ -54,9 +53,9 @@ ProgressBar::ProgressBar() : terminal_(stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() {
     if (terminal_)
-        print("\n");
+        print_progress("\n");
     else
-        print(not_shown_);
+        print_progress(not_shown_);
 }
 
 void ProgressBar::show(const WorkDone& work) {
@@ -69,11 +68,12 @@ void ProgressBar::show(const WorkDone& work) {
                     magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
     if (terminal_) {
         const auto filled = static_cast<std::size_t>(std::lround(bar_width * fraction));
-        print(fmt::format("\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text));
+        print_progress(
+            fmt::format("\r\x1b[K[{}{}] {}", std::string(filled, '='), std::string(bar_width - filled, ' '), text));
     } else if (work.seconds < last_shown_ + seconds_between_lines) {
         not_shown_ = text + "\n";
     } else {
-        print(text + "\n");
+        print_progress(text + "\n");
         not_shown_.clear();
         last_shown_ = work.seconds;
     }

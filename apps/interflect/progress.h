@@ -31,6 +31,11 @@ class ProgressBar {
     std::string not_shown_;     // a later line
 };
 
+/// Whether stderr is a terminal, where lines can be overwritten.
+bool stderr_is_terminal();
+/// Prints to stderr and flushes it; ignores faults.
+void print_progress(const std::string& text);
+
 /// Share of the work that is done, by whichever limit comes first, in [0, 1].
 double fraction_done(const SolveOptions& options, const IterationReport& report);
 

@@ -8,6 +8,9 @@
 
 namespace interflect::command {
 
+/// Reads a solution, reported by LongWork.
+SolvedScene read_light_of(const std::filesystem::path& solution);
+
 /// Reads a solution, dimmed as asked for, or a scene that is not solved yet: then without elements.
 /// @param command       Whose options are refused where they have no effect on a solution.
 /// @param traces_paths  Whether rays are traced after solving, so that a seed and a target have one all the same.

@@ -39,8 +39,6 @@ void refuse_solver_options(const CLI::App& command) {
         if (is_given(option) && ((is_of_solving(*option) && !is_for_paths) || name == "--show"))
             throw UsageError(fmt::format("{}: --shading path makes no solution", name));
     }
-    if (is_given(command.get_option("--max-samples")) && !is_given(command.get_option("--until")))
-        throw UsageError("--max-samples: without --until every pixel gets --samples");
 }
 
 void refuse_path_options(const CLI::App& command) {

@@ -13,6 +13,8 @@
 #include "apps/interflect/drawing_progress.h"
 #include "apps/interflect/false_colour_options.h"
 #include "apps/interflect/light_group_options.h"
+#include "apps/interflect/long_work.h"
+#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/read_light.h"
 #include "apps/interflect/refused_options.h"
@@ -199,6 +201,7 @@ Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, co
 
 void write_picture(PendingFile& output, const Picture& picture, const View& view, const Scene& scene,
                    std::uint64_t seed, const RenderArguments& options) {
+    const LongWork work(fmt::format("writing {}", options.output.string()));
     write_image(output, picture.image,
                 {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)},
                 options.path.layers ? layers_of(picture.traced) : std::vector<ImageLayer>());
@@ -214,8 +217,6 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming, command, traces_paths(options.shading));
     const View view = view_to_draw(solved.scene, options);
     Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses what defines no picture
-    if (options.shown == Shown::mesh && !is_for_people(options))
-        throw InputError(options.output, 0, "outlines of the mesh are for pictures to look at: expected .png or .jpg");
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     // A plan shows all of the scene alike: nothing is gained by importance.
     const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
@@ -223,7 +224,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
-    const RayCaster ray_caster(solved.scene);
+    const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
     if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
@@ -232,10 +233,14 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     options.render.irradiance = options.shows_irradiance();
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
+    // A signal that has ended the solver would end gathering before its first ray.
+    const bool needs_paths = options.path.layers || !options.path.error_image.empty();
+    const bool gathers = traces_paths(options.shading) && (needs_paths || !is_stop_requested());
+    if (traces_paths(options.shading) && !gathers)
+        spdlog::warn("stopped before gathering: the light is drawn as by --shading smooth");
     const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                            : traces_paths(options.shading)
-                                ? draw_paths(solved.scene, &solved.solution, ray_caster, view, options)
-                                : draw_light(solved, ray_caster, view, options);
+                            : gathers ? draw_paths(solved.scene, &solved.solution, ray_caster, view, options)
+                                      : draw_light(solved, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
@@ -246,12 +251,20 @@ void run_paths(const RenderArguments& options, const CLI::App& command, PendingF
     Scene scene = read_scene_or_solution(options.scene, options.dimming, command, true).scene;
     if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
     const View view = view_to_draw(scene, options);
-    const RayCaster ray_caster(scene);
+    const RayCaster ray_caster = make_ray_caster(scene);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     warn_of_camera_outside(scene, ray_caster, view, aspect);
     const Picture picture = draw_paths(scene, nullptr, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(scene, ray_caster, view, aspect);
     write_picture(output, picture, view, scene, options.solver.seed(), options);
+}
+
+/// @throws std::runtime_error if a picture of elements does not fit into memory.
+void require_memory_for_elements(Size size) {
+    constexpr std::size_t bytes_per_pixel = 64;  // 56 were measured: light, its picture and that in false colours
+    require_free_memory(size.pixels() * bytes_per_pixel,
+                        fmt::format("a picture of {} x {} pixels", size.width, size.height),
+                        "a smaller --size needs less");
 }
 
 /// Curves and exposure are for light on a display. @throws UsageError for a display that no operator asks about.
@@ -291,6 +304,12 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         refuse_path_options(command);
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
         throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
+    if (options.shown == Shown::mesh && !is_for_people(options))
+        throw UsageError("--show", fmt::format("mesh is drawn to be looked at: expected an --output that ends in .png "
+                                               "or .jpg, found '{}'",
+                                               options.output.string()));
+    if (traces_paths(options.shading)) options.path.check_samples(command, path_options(options).samples);
+    options.dimming.require_solution(options.scene.path);
     if (options.shading == PictureShading::gather && command.get_option("--denoise")->count() == 0)
         options.path.denoise = is_for_people(options);
     check_tone_options(options, command);
@@ -302,6 +321,10 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
                            std::array<NamedFile, 3>{{{"--output", options.output},
                                                      {"--stats", options.solver.stats},
                                                      {"--error-image", options.path.error_image}}});
+    if (traces_paths(options.shading))
+        require_memory_for_paths(options.size);
+    else
+        require_memory_for_elements(options.size);
     PendingFile output(options.output);
     if (options.shading == PictureShading::path)
         run_paths(options, command, output);

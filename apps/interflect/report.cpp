@@ -10,10 +10,13 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/false_colour_options.h"
+#include "apps/interflect/long_work.h"
 #include "apps/interflect/measuring_places.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
+#include "apps/interflect/read_light.h"
 #include "apps/interflect/report_page.h"
+#include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
@@ -160,10 +163,11 @@ void run(const ReportArguments& options) {
     options.places.check(MeasuringPlaces::Least::none);
     require_distinct_files(std::array<NamedFile, 1>{{{"SOLUTION", options.solution}}},
                            std::array<NamedFile, 1>{{{"--output", options.output}}});
+    require_memory_for_paths(options.size);
     PendingFile output(options.output);
-    const SolvedScene solved = read_solution(options.solution);
+    const SolvedScene solved = read_light_of(options.solution);
     const std::vector<View> views = views_to_draw(solved.scene, options);
-    const RayCaster ray_caster(solved.scene);
+    const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_setup(solved.scene, ray_caster);
     const ReportContent content = make_content(solved, ray_caster, views, options);
     write(output, report_page(content, solved));

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 
+#include "apps/interflect/long_work.h"
+#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/percent.h"
@@ -14,6 +17,7 @@
 #include "interflect/error.h"
 #include "interflect/gather.h"
 #include "interflect/image_files.h"
+#include "interflect/render/path_picture.h"
 
 namespace interflect::command {
 
@@ -61,6 +65,20 @@ void PathTracerArguments::check() const {
                                      error_image.string()));
 }
 
+void PathTracerArguments::check_samples(const CLI::App& app, int samples) {
+    if (samples < 2)
+        throw UsageError("--samples", fmt::format("expected 2 or more, whose spread tells the error, found {}; "
+                                                  "--shading smooth and flat take 1",
+                                                  samples));
+    const CLI::Option& most = *app.get_option("--max-samples");
+    if (most.count() == 0) return;
+    if (app.get_option("--until")->count() == 0)
+        throw UsageError("--max-samples", "it has no effect without --until: there are --samples everywhere");
+    if (most.as<int>() < samples)
+        throw UsageError("--max-samples",
+                         fmt::format("expected no less than --samples, {}, found {}", samples, most.as<int>()));
+}
+
 std::vector<ImageLayer> layers_of(const PathTracing& traced) {
     const PictureLayers& l = traced.layers;
     const auto of_image = [](const std::string& name, const char* channels, const Image& image) {
@@ -79,10 +97,20 @@ std::vector<ImageLayer> layers_of(const PathTracing& traced) {
             {"indirect_variance", "V", l.reflected.indirect_variance}};
 }
 
+void require_memory_for_paths(Size size) {
+    require_free_memory(size.pixels() * path_bytes_per_pixel,
+                        fmt::format("a picture of {} x {} pixels", size.width, size.height),
+                        "a smaller --size, and --shading smooth, need less");
+}
+
 PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                             PathOptions options, const PathTracerArguments& arguments) {
     options.max_samples = arguments.max_samples;
     options.mirrors = arguments.mirrors;
+    require_free_memory(scene.patches.size() * path_bytes_per_patch +
+                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel,
+                        fmt::format("tracing paths in {}", scene.name),
+                        "a smaller --size, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     PathTracing traced;
@@ -91,7 +119,12 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         traced = solution ? gather(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);
     });
-    if (arguments.denoise) traced.image = denoise(traced.layers);
+    if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
+        spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
+    if (arguments.denoise) {
+        const LongWork work("filtering noise");
+        traced.image = denoise(traced.layers);
+    }
     log_outcome(solution ? "final gathering" : "path tracing", traced, seconds);
     if (error_image) {
         const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";

@@ -87,13 +87,10 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
     if (options.refinement.max_elements < scene.patches.size())
         throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
                                      options.refinement.max_elements, scene.patches.size(), scene.name));
-    const std::size_t there_is = std::min(machine_memory() / 10 * 9, addressable_memory());
+    const std::size_t there_is = usable_memory();
     const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
     const MemoryNeed need = memory_need(scene, ray_caster);
-    if (need.with(scene.patches.size()) > there_is)  // no fault of what was asked for
-        throw std::runtime_error(fmt::format(
-            "{} needs {} MiB of memory; the limits of this process (ulimit -v, control groups) leave {} MiB",
-            scene.name, (need.with(scene.patches.size()) >> 20) + 1, there_is >> 20));
+    require_memory(need.with(scene.patches.size()), scene.name);
     options.refinement.max_elements = std::min(options.refinement.max_elements, elements_within(need, bytes, scene));
     return options;
 }

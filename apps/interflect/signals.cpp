@@ -22,6 +22,8 @@ void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDER
 /// As the signal would have without a handler.
 void end_process(int signal) {
     remove_temporary_files();
+    if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar
+    say("ended by a signal, without a result\n");
     std::signal(signal, SIG_DFL);
     ::raise(signal);  // delivered when the handler returns
 }

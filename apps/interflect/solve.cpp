@@ -7,6 +7,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/light_group_options.h"
+#include "apps/interflect/long_work.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/setup_warnings.h"
@@ -31,6 +32,8 @@ void require_solution_name(const std::filesystem::path& path) {
 void write(PendingFile& output, const Scene& scene, const Solution& solution) {
     try {
         write_solution(output.temporary_path(), scene, solution);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& e) {
         throw std::runtime_error(fmt::format("cannot write '{}': {}", output.final_path().string(), e.what()));
     }
@@ -75,7 +78,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         // What was asked for comes first: `render` takes the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         StatsFile stats(options->solver.threads, options->solver.stats, scene);
-        const RayCaster ray_caster(scene);
+        const RayCaster ray_caster = make_ray_caster(scene);
         warn_of_setup(scene, ray_caster);
         const Solution solution =
             run_solve(scene, ray_caster, solve_options, options->solver.memory, options->checkpoints);

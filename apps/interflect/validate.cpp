@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/long_work.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/shared_options.h"
@@ -80,12 +81,12 @@ void print_prediction(const Prediction& prediction) {
 void run_validate(const ValidateArguments& arguments, int& exit_code) {
     const ThreadLimit limit(arguments.threads);
     Scene scene = arguments.scene.load();
-    const std::vector<Finding> findings = validate(scene, RayCaster(scene), arguments.validate);
+    const std::vector<Finding> findings = validate(scene, make_ray_caster(scene), arguments.validate);
     const auto problems =
         std::count_if(findings.begin(), findings.end(), [](const Finding& finding) { return finding.is_problem; });
     const std::string name = scene.name;
     scene = arguments.mesh.divide(std::move(scene), arguments.scene.read, true);
-    const Prediction prediction = predict(scene, RayCaster(scene));
+    const Prediction prediction = predict(scene, make_ray_caster(scene));
     if (arguments.json) {
         Json list = Json::array();
         for (const Finding& finding : findings) list.push_back(json_of(finding));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,8 @@ struct LightmapOptions {
     std::uint64_t seed = 1;
     std::string image = ".exr";  ///< Of the images beside the file: .exr or .hdr.
     bool own_charts = false;     ///< Ignores Scene::lightmap_coordinates.
+    /// Memory that it may take [bytes]: more is refused, before it is taken.
+    std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     bool groups = false;  ///< Adds images of each light group alone, on the same coordinates; they sum to the total.
 };
 
@@ -48,7 +51,7 @@ struct ExportOptions {
     V3f up{0, 0, 1};                          ///< Of the scene. Formats with an up axis of their own are turned.
     std::optional<LightmapOptions> lightmap;  ///< None: the light is at the vertices of the elements.
     ProbeOptions probes;                      ///< Of formats that hold probes in place of surfaces.
-    PathMonitor monitor;                      ///< Of gathering.
+    PathMonitor monitor;                      ///< Watches gathering and probes.
     Warnings* warnings = nullptr;             ///< Gets what could not be exported as it is; may be null.
 };
 
@@ -78,8 +81,9 @@ const ExportFormat& require_export_format(const std::filesystem::path& path);
 /// complete; the same arguments give the same bytes.
 /// @return  The files that were written.
 /// @throws InputError for an unknown extension, options out of range or without meaning in the format, lightmaps of
-///         light groups of a solution without groups, a path that
-///         cannot be written, and a solution of another scene; std::runtime_error where writing fails.
+///         light groups of a solution without groups, lightmaps beyond LightmapOptions::max_bytes, a path that
+///         cannot be written, and a solution of another scene; Stopped where ExportOptions::monitor ends it before
+///         each texel has some light, or each probe all of it; std::runtime_error where writing fails.
 std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
                                                    const Solution& solution, const ExportOptions& options = {});
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
 #include "interflect/image.h"
@@ -43,7 +44,7 @@ struct PathOptions {
 struct PathProgress {
     std::int64_t rays = 0;      ///< So far, of all kinds.
     double fraction = 0;        ///< Of the work foreseen so far, in [0, 1]; a target not yet reached foresees more.
-    double relative_error = 0;  ///< As in PathTracing.
+    double relative_error = 0;  ///< PathTracing::relative_error of a recent state; NaN if the work has none.
 };
 
 /// How a caller watches the progress of a picture, and ends it early.
@@ -51,6 +52,12 @@ struct PathMonitor {
     /// Called from the calling thread, about every quarter million paths.
     std::function<void(const PathProgress&)> on_progress;
     const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
+};
+
+/// Thrown by work that PathMonitor::stop ends before it has a usable result. The message names the missing part.
+class Stopped : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
 };
 
 /// Light of some of a picture's samples.
@@ -119,8 +126,8 @@ struct PathTracing {
 /// @param ray_caster  Of the same scene.
 /// @return            The same bits for the same seed and any number of threads, unless interrupted.
 /// @throws InputError for a view that defines no picture, an option out of range or a ray caster of another scene.
-/// Cost: two rays a vertex and, for reflectances about rho, 1 / (1 - rho) vertices a path or a few more; 110 bytes a
-/// patch and as many a pixel.
+/// Cost: two rays a vertex and, for reflectances about rho, 1 / (1 - rho) vertices a path or a few more; 250 bytes a
+/// patch and 600 a pixel.
 PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const View& view,
                         const PathOptions& options = {}, const PathMonitor& monitor = {});
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 #include "interflect/solve.h"
@@ -52,8 +53,9 @@ inline constexpr std::int64_t most_probes = 1'000'000;
 /// @param ray_caster  Of the same scene, as is `solution`.
 /// @return            The same bits for any number of threads.
 /// @throws InputError for an option out of range, more than most_probes, or another scene.
+/// Stopped where `monitor` ends it.
 /// Cost: about 2 rays a direction and probe.
 ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                            const ProbeOptions& options = {});
+                            const ProbeOptions& options = {}, const PathMonitor& monitor = {});
 
 }  // namespace interflect

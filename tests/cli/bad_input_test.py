@@ -88,8 +88,9 @@ class BadScene(BadInput):
 class SameFiles(CommandTest):
     def assert_refused(self, *arguments):
         before = {name: self.bytes(name) for name in self.files()}
-        result = self.interflect(*arguments, exit_code=BAD_INPUT)
+        result = self.interflect(*arguments, exit_code=WRONG_USAGE)
         self.assertIn("are the same file", result.stderr)
+        self.assertRegex(result.stderr, "^error: --")
         self.assertEqual({name: self.bytes(name) for name in self.files()}, before)
 
     def test_outputs_and_inputs(self):

@@ -121,9 +121,13 @@ class Compare(CommandTest):
     def test_difference_picture_that_cannot_be_drawn(self):
         self.render("a.exr")
         before = self.files()
-        for name, words in {"d.exr": ".png", "d.txt": "d.txt", "missing/d.png": "missing"}.items():
-            text = self.interflect("compare", "a.exr", "a.exr", "--difference", name, exit_code=BAD_INPUT).stderr
-            self.assertIn(words, text)
+        for name, words, exit_code in (
+            ("d.exr", "--difference: .*.png", WRONG_USAGE),
+            ("d.txt", "--difference: .*d.txt", WRONG_USAGE),
+            ("missing/d.png", "missing", BAD_INPUT),
+        ):
+            text = self.interflect("compare", "a.exr", "a.exr", "--difference", name, exit_code=exit_code).stderr
+            self.assertRegex(text, words)
         self.interflect("compare", "a.exr", "b.exr", "--difference", "d.png", exit_code=BAD_INPUT)
         self.assertEqual(self.files(), before)
 

@@ -117,7 +117,7 @@ class Export(CommandTest):
         self.assertAlmostEqual(self.irradiance("--dim", "r=0", "--dim", "l=0.5") / left, 0.5, places=3)
         result = self.interflect("export", "scene.h5", "--dim", "x=1", "-o", "out.glb", exit_code=BAD_INPUT)
         self.assertIn("'l'", result.stderr)
-        self.interflect("export", "scene.mgf", "--dim", "l=1", "-o", "out.rad", exit_code=BAD_INPUT)
+        self.interflect("export", "scene.mgf", "--dim", "l=1", "-o", "out.rad", exit_code=WRONG_USAGE)
 
     def test_lists_light_groups(self):
         self.solve_groups()
@@ -134,6 +134,13 @@ class Export(CommandTest):
         result = self.interflect("export", "scene.h5", "--lightmap", "--lightmap-groups", "-o", "a.glb", exit_code=BAD_INPUT)
         self.assertIn("light groups", result.stderr)
         self.assertNotIn("a.glb", self.files())
+
+    def test_threads_do_not_change_the_result(self):
+        self.solve()
+        gathered = ("--lightmap", "--shading", "gather", "--samples", "8", "--texels-per-metre", "4")
+        for threads, name in (("1", "a.glb"), ("2", "b.glb")):
+            self.interflect("export", "scene.h5", *gathered, "--threads", threads, "-o", name)
+        self.assertEqual(self.bytes("a.glb").replace(b"a.lightmap", b"b.lightmap"), self.bytes("b.glb"))
 
     def test_lightmaps_are_beside_the_file(self):
         self.solve()

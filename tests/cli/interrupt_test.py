@@ -14,6 +14,7 @@ from command import COMMAND, DONE, INTERRUPTED, SMALL, VIEW, CommandTest, room
 ENDLESS = ("--rays", "10T", "--mesh-size", "0.5")
 SHORT_ITERATIONS = ("--rays-per-iteration", "20k")
 ONE_LONG_ITERATION = ("--rays-per-iteration", "100G")
+GATHERED = ("--lightmap", "--shading", "gather", "--texels-per-metre", "4")
 METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk", "global-lines", "pr")
 SOON = 30  # [s]
 A_MOMENT = 10  # [s], on a machine that is busy and under a sanitizer
@@ -90,6 +91,49 @@ class Interrupt(CommandTest):
             self.assertEqual(self.files(), ["error.exr", "out.exr", "room.h5", "room.mgf"])
             self.assertEqual(self.json("compare", "out.exr", "out.exr")["non_finite_pixels"], 0)
 
+    def test_render_that_is_stopped_while_it_solves_shows_the_light(self):
+        self.interrupt_after_first_progress(
+            "render", "room.mgf", "-o", "out.exr", *VIEW, *SMALL, *ENDLESS, *SHORT_ITERATIONS
+        )
+        self.interflect("render", "room.mgf", "-o", "whole.exr", *VIEW, *SMALL, "--mesh-size", "0.5", "--rays", "200k")
+        self.assertAlmostEqual(self.json("compare", "out.exr", "whole.exr")["ratio_of_means"], 1, delta=0.1)
+
+    def test_an_export_that_gathers_keeps_a_lightmap(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
+        self.interrupt_after_first_progress("export", "room.h5", "-o", "out.gltf", *GATHERED, "--samples", "16000000")
+        lightmap = "out.lightmap-0.exr"
+        self.assertEqual(self.files(), ["out.gltf", lightmap, "room.h5", "room.mgf"])
+        self.interflect("export", "room.h5", "-o", "whole.gltf", *GATHERED, "--samples", "256")
+        compared = self.json("compare", lightmap, "whole.lightmap-0.exr")
+        self.assertAlmostEqual(compared["ratio_of_means"], 1, delta=0.02)
+
+    def test_an_export_without_a_result_says_so(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
+        for by, reason, *arguments in (
+            (signal.SIGINT, r"stopped when \d+ of \d+ texels", "out.glb", *GATHERED[:3], "--texels-per-metre", "100"),
+            (signal.SIGTERM, r"stopped at \d+ of \d+ probes", "out.json", "--probe-spacing", "0.03"),
+        ):
+            process = self.start("export", "room.h5", "-o", *arguments)
+            self.assertIn("rays", process.stderr.readline())
+            process.send_signal(by)
+            said = process.communicate(timeout=SOON)[1]
+            self.assertEqual(process.returncode, INTERRUPTED, said)
+            self.assertRegex(said, reason + ".*: nothing is written")
+            self.assertEqual(self.files(), ["room.h5", "room.mgf"])
+
+    def test_a_probe_without_a_result_says_so(self):
+        for quantity, what in (("horizontal", "any point was measured"), ("ugr", "any observer's glare was rated")):
+            process = self.start(
+                *("probe", "room.mgf", "--shading", "path", "--quantity", quantity, "--samples", "4096", "-o", "out.csv"),
+                *("--line", "0.1,0.1,1:1.9,2.9,1:100000"),
+            )
+            self.assertIn("rays", process.stderr.readline())
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=SOON)[1]
+            self.assertEqual(process.returncode, INTERRUPTED, said)
+            self.assertIn(f"stopped before {what}: nothing is written", said)
+            self.assertEqual(self.files(), ["room.mgf"])
+
     def test_drawing_ends_at_once_and_leaves_nothing(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
         large = ("render", "room.h5", "-o", "out.png", *VIEW, "--size", "4000x3000", "--samples", "4096", "--shading")
@@ -99,6 +143,7 @@ class Interrupt(CommandTest):
             process.send_signal(signal.SIGINT)
             rest = process.communicate(timeout=SOON)[1]
             self.assertEqual(process.returncode, -signal.SIGINT, rest)
+            self.assertIn("ended by a signal, without a result", rest)
             self.assertEqual(self.files(), ["room.h5", "room.mgf"])
 
     def test_a_request_to_terminate_is_heeded_alike(self):
@@ -145,6 +190,14 @@ class Interrupt(CommandTest):
         self.assertEqual(process.wait(timeout=SOON), INTERRUPTED)
         self.interflect("render", "out.h5", "-o", "out.exr", *VIEW, *SMALL)
         self.assertEqual(self.temporary_files(), [])
+
+    def test_long_work_is_reported(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
+        os.mkfifo(self.folder / "pipe.exr")
+        process = self.start("render", "room.h5", "-o", "pipe.exr", "--shading", "flat", *VIEW, *SMALL)
+        self.assertRegex(process.stderr.readline(), r"^writing pipe\.exr: \d\.\d s so far, \d+ MiB of memory$")
+        self.assertTrue((self.folder / "pipe.exr").read_bytes())
+        self.assertEqual(process.wait(timeout=SOON), DONE)
 
     def test_the_second_ends_at_once_and_leaves_nothing(self):
         process = self.start_writing_into_a_pipe()

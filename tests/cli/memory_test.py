@@ -1,12 +1,16 @@
 """The limit of memory: refinement ends before it is reached, and what `info` predicts is what a run takes."""
 
+import base64
 import json
 import os
+import re
 import resource
+import struct
 import subprocess
+import time
 import unittest
 
-from command import BAD_INPUT, COMMAND, DONE, FAILED, CommandTest
+from command import BAD_INPUT, COMMAND, DONE, FAILED, LAMP, CommandTest, room, vertices
 
 FINE = ("--refinement-criterion", "power", "--rays", "1500k", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
 MIB = 1 << 20
@@ -85,6 +89,96 @@ class LimitedAddressSpace(CommandTest):
     def test_says_what_is_missing(self):
         said = self.under(250 * MIB, "solve", "maze:2", "-o", "out.h5", "--rays", "100k", exit_code=FAILED)
         self.assertRegex(said, r"maze:2 needs \d+ MiB of memory; the limits of this process .* leave \d+ MiB")
+
+
+class Predictions(CommandTest):
+    """Work beyond the available memory is refused at once, with the reason and a remedy."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+
+    def refused(self, *arguments, exit_code=FAILED, limit=2000 * MIB):
+        before = self.files()
+        start = time.monotonic()
+        result = subprocess.run(
+            [COMMAND, *arguments],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        )
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        self.assertLess(time.monotonic() - start, 20, arguments)
+        self.assertEqual(self.files(), before)
+        for word in ("bad_alloc", "std::", "terminate"):
+            self.assertNotIn(word, result.stderr)
+        return result.stderr
+
+    # Seen to end with std::bad_alloc, some after minutes.
+    def test_of_pictures(self):
+        for shading, needed in (("path", 100_000), ("gather", 100_000), ("smooth", 10_000)):
+            said = self.refused("render", "room.mgf", "-o", "out.png", "--size", "16384x16384", "--shading", shading)
+            needs, there_is = map(int, re.search(r"needs (\d+) MiB of memory; .* leave (\d+) MiB", said).groups())
+            self.assertGreater(needs, needed)
+            self.assertLess(there_is, 2000)
+            for words in ("a picture of 16384 x 16384 pixels", "a smaller --size"):
+                self.assertIn(words, said)
+
+    def test_of_curved_surfaces(self):
+        self.write("ball.mgf", vertices((0, 0, 0)) + LAMP + "sph v0 1\n")
+        said = self.refused("info", "ball.mgf", "--curve-divisions", "1000")
+        self.assertRegex(said, r"ball\.mgf:\d+: this would give more than \d+ patches .* there is memory for no more")
+        self.assertIn("--curve-divisions", said)
+
+    def test_of_lightmaps(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k")
+        self.refused_lightmap("--texels-per-metre", "4000", "--lightmap-max-size", "16384")
+        self.refused_lightmap("--texels-per-metre", "400", "--shading", "gather")
+
+    def refused_lightmap(self, *options):
+        said = self.refused("export", "room.h5", "-o", "out.glb", "--lightmap", *options, exit_code=BAD_INPUT)
+        self.assertRegex(said, r"million texels need \d+ MiB of memory, the limit \(max_bytes\) is \d+ MiB")
+        self.assertIn("--texels-per-metre", said)
+
+    def test_where_there_is_none_the_message_says_what_to_do(self):
+        said = self.refused("info", "maze:3000:furniture", limit=500 * MIB)
+        self.assertIn("there is not enough memory", said)
+
+
+class Copies(MemoryCase):
+    """A small glTF file that asks for many copies of a triangle (EXT_mesh_gpu_instancing)."""
+
+    def write_copies(self, count):
+        corners = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+        data = "data:application/octet-stream;base64," + base64.b64encode(corners).decode()
+        instancing = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}
+        document = {
+            "asset": {"version": "2.0"},
+            "extensionsUsed": list(instancing),
+            "nodes": [{"mesh": 0, "extensions": instancing}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [
+                {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                {"componentType": 5126, "count": count, "type": "VEC3"},  # all 0
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": len(corners)}],
+            "buffers": [{"byteLength": len(corners), "uri": data}],
+        }
+        self.write("copies.gltf", json.dumps(document))
+
+    # Seen to take 3 GB and 15 s, and hours to be cut at contacts.
+    def test_at_one_place_are_read_once(self):
+        self.write_copies(10_000_000)
+        peak, said = self.peak("info", str(self.folder / "copies.gltf"))
+        self.assertIn("copies of a mesh", said)
+        self.assertLess(peak, 200 * MIB)
+
+    def test_beyond_the_limit_are_refused_at_once(self):
+        self.write_copies(1_000_000_000_000)
+        said = self.interflect("info", "copies.gltf", exit_code=BAD_INPUT, timeout=20).stderr
+        self.assertIn("its 1000000000000 instances of 1 faces would give more than 50000000 patches", said)
 
 
 class LongRuns(MemoryCase):

@@ -185,7 +185,7 @@ class Faults(ProbeTest):
         self.assert_refused(["--point", "1,1,1", "--spacing", "1"], "--spacing", exit_code=WRONG_USAGE)
         self.assert_refused(["--point", "1,1,1", "--over", "floor"], "--over", exit_code=WRONG_USAGE)
         self.assert_refused(["--point", "1,1,1", "--rays", "1M"], "--rays", exit_code=WRONG_USAGE)
-        self.assert_refused(["--point", "1,1,1", "-o", "floor.mgf"], "floor.mgf")
+        self.assert_refused(["--point", "1,1,1", "-o", "floor.mgf"], "floor.mgf", exit_code=WRONG_USAGE)
 
     def test_of_usage(self):
         for arguments in (

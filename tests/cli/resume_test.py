@@ -78,7 +78,7 @@ class Resume(CommandTest):
             (("resume", "result.h5", "-o", "out.h5"), "not its state", BAD_INPUT),
             (("resume", "room.mgf", "-o", "out.h5"), "a checkpoint is a solution file", BAD_INPUT),
             ((*RUN, "-o", "out.h5", "--checkpoint", "run.mgf"), "ends in .h5", WRONG_USAGE),
-            ((*RUN, "-o", "out.h5", "--checkpoint", "out.h5"), "same file", BAD_INPUT),
+            ((*RUN, "-o", "out.h5", "--checkpoint", "out.h5"), "same file", WRONG_USAGE),
         ):
             with self.subTest(arguments=arguments):
                 self.assertIn(reason, self.interflect(*arguments, exit_code=exit_code).stderr)

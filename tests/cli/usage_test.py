@@ -127,6 +127,11 @@ class WrongUsage(CommandTest):
             (("report", "room.mgf", "-o", "r.txt"), "--output", ".html"),
             (("export", "room.mgf", "-o", "out.xyz"), "--output", ".glb"),
             (("make-scene", "maze", "-o", "out.obj"), "--output", ".mgf"),
+            (("render", "room.mgf", "-o", "out.exr", "--show", "mesh"), "--show", ".png"),
+            (("compare", "a.exr", "b.exr", "--difference", "out.exr"), "--difference", ".png"),
+            (("compare", "a.exr", "b.exr", "--difference", "a.exr"), "--difference", "same file"),
+            (("solve", "room.mgf", "-o", "out.h5", "--stats", "room.mgf"), "--stats", "same file"),
+            (("solve", "room.mgf", "-o", "out.h5", "--stats", "out.h5"), "--stats", "same file"),
         ):
             self.assert_wrong(arguments, option, expected)
 
@@ -137,6 +142,13 @@ class WrongUsage(CommandTest):
             ((*RENDER, "--display-luminance", "90"), "--display-luminance"),
             ((*RENDER, "--shading", "path", "--rays", "1k"), "--rays"),
             ((*RENDER, "--shading", "smooth", "--denoise"), "--denoise"),
+            ((*RENDER, "--samples", "1"), "--samples"),
+            ((*RENDER, "--until", "5%", "--samples", "64", "--max-samples", "8"), "--max-samples"),
+            ((*RENDER, "--max-samples", "8"), "--max-samples"),
+            (("probe", "room.mgf", "--point", "1,1,1", "--until", "5%", "--max-samples", "8"), "--max-samples"),
+            ((*RENDER, "--dim", "desk=1"), "--dim"),
+            (("probe", "room.mgf", "--point", "1,1,1", "--dim", "desk=1"), "--dim"),
+            (("export", "room.mgf", "-o", "out.glb", "--dim", "desk=1"), "--dim"),
             (("probe", "room.mgf"), "--grid"),
             (("probe", "room.mgf", "--point", "1,1,1", "--direction", "1,0,0"), "--direction"),
             (("probe", "room.mgf", "--point", "1,1,1", "--quantity", "vertical"), "--direction"),

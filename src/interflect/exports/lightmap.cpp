@@ -1,6 +1,7 @@
 #include "interflect/exports/lightmap.h"
 
 #include <ImathBoxAlgo.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/exports/lightmap_atlas.h"
 #include "interflect/exports/shown_patches.h"
 #include "interflect/geometry/box_tree.h"
@@ -17,6 +19,8 @@
 #include "interflect/light_groups.h"
 #include "interflect/measure.h"
 #include "interflect/render/element_vertices.h"
+#include "interflect/render/gauge.h"
+#include "interflect/render/path_picture.h"
 #include "interflect/render/smooth_field.h"
 
 namespace interflect::inline detail {
@@ -152,6 +156,7 @@ class IrradianceSource {
     std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
         constexpr float distance = 0.05f;  // [texels]
         std::vector<MeasuringPoint> points;
+        points.reserve(places.size());
         for (const TexelPlace& place : places) {
             const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
             const V3f x = geometry.point(inset(geometry, place.at, distance * texel));
@@ -161,10 +166,15 @@ class IrradianceSource {
         path.samples = options_.lightmap->samples;
         path.max_samples = std::max(path.max_samples, path.samples);
         path.seed = options_.lightmap->seed;
+        const std::vector<MeasuredIrradiance> measured =
+            measure_irradiance(scene_, &solution_, *ray_caster_, points, path, options_.monitor);
+        const auto lit = std::count_if(measured.begin(), measured.end(),
+                                       [](const MeasuredIrradiance& m) { return m.is_measured(); });
+        if (static_cast<std::size_t>(lit) < measured.size())
+            throw Stopped(fmt::format("stopped when {} of {} texels of the lightmap had light", lit, measured.size()));
         std::vector<Rgb> values;
-        for (const MeasuredIrradiance& measured :
-             measure_irradiance(scene_, &solution_, *ray_caster_, points, path, options_.monitor))
-            values.push_back(measured.sum());
+        values.reserve(measured.size());
+        for (const MeasuredIrradiance& m : measured) values.push_back(m.sum());
         return values;
     }
 
@@ -203,7 +213,10 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
 /// Texels of all charts, which are evaluated together.
 class LightmapTexels {
   public:
-    explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}
+    LightmapTexels(const LightmapOptions& options, std::size_t texels) : options_(options) {
+        places_.reserve(texels);
+        targets_.reserve(texels);
+    }
 
     void add(const LightmapChart& chart) {
         const std::vector<TexelPlace> places = places_of(chart, options_.gutter);
@@ -243,6 +256,17 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
+/// Monitor of part `part` of `count` equal parts. Refers to `whole`.
+PathMonitor part_of(const PathMonitor& whole, std::size_t part, std::size_t count) {
+    PathMonitor monitor = whole;
+    if (whole.on_progress)
+        monitor.on_progress = [&whole, part, count](PathProgress progress) {
+            progress.fraction = (static_cast<double>(part) + progress.fraction) / static_cast<double>(count);
+            whole.on_progress(progress);
+        };
+    return monitor;
+}
+
 /// Evaluates each light group with all other sources dark. The total is the sum of the groups, so that gathered
 /// lightmaps agree including their noise.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
@@ -256,10 +280,38 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         Solution share = solution;
         share.irradiance = std::move(share.groups[g]);
         share.groups.clear();
+        ExportOptions of_group = options;
+        of_group.monitor = part_of(options.monitor, g, groups.size());
         lightmap.groups.push_back(lightmap.images);  // dark so far
-        texels.evaluate(alone, IrradianceSource(alone, share, options), lightmap.groups.back());
+        texels.evaluate(alone, IrradianceSource(alone, share, of_group), lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
+}
+
+double texels_of(const LightmapChart& chart, int gutter) {
+    return static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
+}
+
+/// @param texels            Of all images.
+/// @param texels_of_charts  Of all charts with their gutters.
+/// @param groups            Of the solution.
+void require_memory(double texels, double texels_of_charts, const LightmapOptions& options, std::size_t groups) {
+    // Per texel of an image: the image, a copy to encode, and the encoded bytes.
+    constexpr double image_bytes = sizeof(Rgb) + sizeof(Rgb) + 16, group_bytes = sizeof(Rgb) + sizeof(Rgb);
+    // Per texel of a chart: its place and its light.
+    constexpr double texel_bytes = 2 * sizeof(TexelPlace) + 16 + sizeof(Rgb),
+                     gathered_bytes =
+                         path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
+    const bool gathers = options.shading == LightmapShading::gather;
+    const double bytes = texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
+                         texels_of_charts * (texel_bytes + (gathers ? gathered_bytes : 0));
+    if (bytes > static_cast<double>(options.max_bytes))
+        throw InputError(
+            fmt::format("lightmap: {:.3g} million texels need {:.0f} MiB of memory, the limit (max_bytes) is {} MiB: "
+                        "expected fewer "
+                        "than {:g} texels_per_metre{}",
+                        texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
+                        gathers ? ", or light that is not gathered" : ""));
 }
 
 }  // namespace
@@ -278,12 +330,13 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     lightmap.charts = make_charts(scene, shown_patches(scene, solution.irradiance), chosen, options.warnings);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
     lightmap.index_in_chart.assign(scene.patches.size(), none);
-    double texels = 0;
-    for (const Imath::V2i& size : pack_charts(lightmap.charts, chosen.gutter, chosen.max_size)) {
-        lightmap.images.emplace_back(size.x, size.y);
-        texels += static_cast<double>(size.x) * size.y;
-    }
-    LightmapTexels evaluated(chosen);
+    const std::vector<Imath::V2i> sizes = pack_charts(lightmap.charts, chosen.gutter, chosen.max_size);
+    double texels = 0, texels_of_charts = 0;
+    for (const Imath::V2i& size : sizes) texels += static_cast<double>(size.x) * size.y;
+    for (const LightmapChart& chart : lightmap.charts) texels_of_charts += texels_of(chart, chosen.gutter);
+    require_memory(texels, texels_of_charts, chosen, solution.groups.size());
+    for (const Imath::V2i& size : sizes) lightmap.images.emplace_back(size.x, size.y);
+    LightmapTexels evaluated(chosen, static_cast<std::size_t>(texels_of_charts));
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
         const FlatPatches& patches = lightmap.charts[i].patches;
         for (std::uint32_t k = 0; k < patches.size(); ++k) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<const char*, 9> harmonics{"Y00", "Y1-1", "Y10", "Y11", "Y2-2", "Y2-1", "Y20", "Y21", "Y22"};
 
 ProbeGrid measured(const Scene& scene, const Solution& solution, const ExportOptions& options) {
-    return irradiance_probes(scene, solution, RayCaster(scene), options.probes);
+    return irradiance_probes(scene, solution, RayCaster(scene), options.probes, options.monitor);
 }
 
 /// All but the coefficients.

@@ -42,6 +42,8 @@ Solver Solver::open(const std::filesystem::path& path) {
         Solver solver(std::move(solved.scene), solved.solution.options);
         solver.archive(state);
         return solver;
+    } catch (const std::bad_alloc&) {
+        throw;  // it is no fault of the file
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
     }

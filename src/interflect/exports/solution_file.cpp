@@ -337,6 +337,8 @@ template <class Read>
 auto read_or_refuse(const std::filesystem::path& path, const char* fault, const Read& read) {
     try {
         return read();
+    } catch (const std::bad_alloc&) {
+        throw;  // it is no fault of the file
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
     }
@@ -352,6 +354,8 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
         require_valid(scene);
         require_valid(solution);
         description = describe(scene, solution, format_version);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& e) {
         throw std::runtime_error(fmt::format("the solution is not written: {}", e.what()));
     }

@@ -105,25 +105,32 @@ class SceneReader {
         if (pose.skin != none) pose.joints = joints_of(pose.skin);
         const std::vector<std::uint32_t>& primitives = meshes_.meshes(mesh, pose);
         if (primitives.empty()) return;
+        std::uint64_t faces = 0;
+        for (const std::uint32_t primitive : primitives) faces += asset_.model.meshes[primitive].indices.size() / 3;
+        const std::vector<M44d> places = places_of(node, std::max<std::uint64_t>(faces, primitives.size()));
         // The joints place a skinned mesh in the world; its node does not.
-        for (const M44d& place : places_of(node)) {
-            require_room(*node.value, primitives.size());
+        for (const M44d& place : places)
             for (const std::uint32_t primitive : primitives)
                 asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object});
-        }
     }
 
-    void require_room(const GltfValue& node, std::uint64_t count) const {
-        if (asset_.model.instances.size() + count > asset_.options().max_patches)
-            throw TooManyPatches(asset_.path(), 0,
-                                 fmt::format("{}: its instances would give more than {} patches (max_patches)",
-                                             node.place(), asset_.options().max_patches));
+    /// A face gives one patch at least, as in scene_of().
+    void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
+        faces_ += static_cast<double>(copies) * static_cast<double>(faces);
+        if (faces_ > static_cast<double>(asset_.options().max_patches))
+            throw TooManyPatches(
+                asset_.path(), 0,
+                fmt::format("{}: its {} instances of {} faces would give more than {} patches (max_patches)",
+                            node.place(), copies, faces, asset_.options().max_patches));
     }
 
-    /// Where a node's mesh is: at the node, or at each of its instances (EXT_mesh_gpu_instancing).
-    std::vector<M44d> places_of(const GltfNode& node) {
+    /// Where a node's mesh of so many faces is: at the node, or at each of its instances (EXT_mesh_gpu_instancing).
+    std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
-        if (!extension.exists()) return {node.to_world};
+        if (!extension.exists()) {
+            require_room(*node.value, 1, faces);
+            return {node.to_world};
+        }
         const GltfValue attributes = extension.object("attributes");
         const auto open = [&](const char* key, const char* type) {
             const std::uint32_t accessor = attributes.index(key, accessors_.count());
@@ -134,9 +141,8 @@ class SceneReader {
         const std::uint64_t count = std::max({moves.count, turns.count, scales.count});
         for (const GltfElements& values : {moves, turns, scales})
             if (values.first && values.count != count) attributes.fail("its attributes differ in their counts");
-        require_room(*node.value, count);
+        require_room(*node.value, count, faces);
         std::vector<M44d> places;
-        places.reserve(count);
         const auto at = [](const GltfElements& values, std::uint64_t i, double otherwise) {
             if (!values.first) return Imath::V3d(otherwise);
             return Imath::V3d(values.number(i, 0), values.number(i, 1), values.number(i, 2));
@@ -144,8 +150,12 @@ class SceneReader {
         for (std::uint64_t i = 0; i < count; ++i) {
             std::array<double, 4> turn = {0, 0, 0, 1};
             for (int c = 0; turns.first && c < 4; ++c) turn[static_cast<std::size_t>(c)] = turns.number(i, c);
-            places.push_back(gltf_transform(at(scales, i, 1), turn, at(moves, i, 0), extension) * node.to_world);
+            const M44d place = gltf_transform(at(scales, i, 1), turn, at(moves, i, 0), extension) * node.to_world;
+            if (places.empty() || place != places.back()) places.push_back(place);
         }
+        if (places.size() < count)
+            asset_.warn("instances", "copies of a mesh that follow another one at the same place are left out",
+                        extension.place());
         return places;
     }
 
@@ -178,6 +188,7 @@ class SceneReader {
     GltfNodes nodes_;
     GltfLights lights_;
     std::vector<GltfValue> skins_;
+    double faces_ = 0;                                   // of all instances so far
     std::map<std::uint32_t, std::vector<M44d>> joints_;  // of the skins that are shown
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };

@@ -87,6 +87,8 @@ auto read_with(const fs::path& path, const Read& read) {
     if (!fs::is_regular_file(path)) throw InputError(path, 0, "is not a file, expected an image");
     try {
         return read(format, path);
+    } catch (const std::bad_alloc&) {
+        throw;  // it is no fault of the file
     } catch (const std::exception& fault) {
         throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
     }

@@ -1,10 +1,13 @@
 // PNG and JPEG: written through stb. stored_image.cpp reads them.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
+#include "interflect/error.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
 #include "interflect/image/stored_image.h"
@@ -19,6 +22,7 @@ namespace interflect::inline detail::codecs {
 namespace {
 
 constexpr int channels = 3;
+constexpr std::int64_t most_png_bytes = std::int64_t{1} << 30;  // of all rows: stb counts with int, and doubles arrays
 constexpr int jpeg_quality = 95;  // of 100: no blocks that the eye would see on smooth walls
 
 std::vector<std::uint8_t> srgb_bytes(const Image& image, std::span<const float> opacity = {}) {
@@ -47,6 +51,11 @@ void append(void* text, void* data, int size) {
 
 std::string encode_png(const Image& image, std::span<const float> opacity) {
     const int all_channels = opacity.empty() ? channels : channels + 1;
+    if ((std::int64_t{all_channels} * image.width + 1) * image.height > most_png_bytes)
+        throw InputError(
+            fmt::format("{} x {} pixels are too many for a PNG, which may have {} MiB before compression: "
+                        "expected fewer, or .exr or .hdr",
+                        image.width, image.height, most_png_bytes >> 20));
     std::string file;
     if (!stbi_write_png_to_func(append, &file, image.width, image.height, all_channels,
                                 srgb_bytes(image, opacity).data(), all_channels * image.width))

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -56,7 +57,8 @@ const Scene& valid(const Scene& scene) {
     return scene;
 }
 
-void throw_embree_error(void*, RTCError, const char* message) {
+void throw_embree_error(void*, RTCError error, const char* message) {
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     throw std::runtime_error(std::string("Embree: ") + message);
 }
 
@@ -80,6 +82,7 @@ void reject_backs(const RTCFilterFunctionNArguments* a) {
 
 RayCaster::Embree::Embree(CoincidentFaces coincident_faces)
     : device(rtcNewDevice(nullptr)), coincident(std::move(coincident_faces)) {
+    if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (!device) throw std::runtime_error("Embree cannot start a device");
     rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
     rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);

@@ -59,6 +59,9 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
                                                    const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
                                                    PathOptions options, const PathMonitor& monitor) {
     if (points.empty()) return {};
+    if (points.size() > std::numeric_limits<int>::max())
+        throw InputError(
+            fmt::format("{} measuring points: expected at most {}", points.size(), std::numeric_limits<int>::max()));
     std::vector<Gauge> gauges;
     gauges.reserve(points.size());
     for (const MeasuringPoint& point : points) gauges.push_back(gauge_of(point, gauges.size(), scene.origin));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <tuple>
@@ -146,7 +147,7 @@ class PathPicture {
         std::vector<BatchOfPaths> chunk;
         for (bool more = true; more;) {
             more = false;
-            for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
+            for (std::uint32_t i = 0; i < pixels_.size() && !stopped(); ++i) {
                 if (present[i] >= wanted[i]) continue;
                 chunk.push_back({i, present[i]++});
                 more = true;
@@ -176,8 +177,15 @@ class PathPicture {
         report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
     }
 
-    void report(double fraction) const {
-        if (monitor_.on_progress) monitor_.on_progress({counts_.rays, fraction, relative_error(pixels_)});
+    /// Computes the error, which visits all pixels, once there are as many new paths as pixels.
+    void report(double fraction) {
+        if (!monitor_.on_progress) return;
+        const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);
+        if (new_batches * s_.batch_size >= pixels_.size() || fraction == 1) {
+            error_ = relative_error(pixels_);
+            batches_of_error_ = batches_done_;
+        }
+        monitor_.on_progress({counts_.rays, fraction, error_});
     }
 
     const PathScene& s_;
@@ -186,6 +194,8 @@ class PathPicture {
     std::vector<PixelStatistics> pixels_;
     double foreseen_ = 0;  // batches in all
     std::int64_t batches_done_ = 0;
+    double error_ = std::numeric_limits<double>::infinity();  // after batches_of_error_ batches
+    std::int64_t batches_of_error_ = 0;
     RayCounts counts_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "interflect/elements/forest.h"
@@ -15,6 +16,10 @@ struct KnownIrradiance {
 };
 /// @throws InputError for sizes that disagree and a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
+
+/// Peak memory of trace_picture(), including its result [bytes]. Measured with pictures of 2048 x 2048 pixels and with
+/// a sphere of 1.4 million emitting patches.
+inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 250;
 
 /// Traces the paths of a picture, in rounds where there is a target: what trace_paths(), gather() and
 /// measure_illuminance() have in common.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "interflect/base/parallel.h"
@@ -26,6 +27,8 @@ namespace interflect {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
+/// Rays from probes between two reports of progress: a fraction of a second.
+constexpr std::size_t rays_per_report = std::size_t{1} << 20;
 /// What the convolution with the cosine makes of harmonics of each degree (Ramamoorthi and Hanrahan 2001, Eq. 8).
 constexpr std::array<float, 9> cosine_factors{pi,     2 * pi / 3, 2 * pi / 3, 2 * pi / 3, pi / 4,
                                               pi / 4, pi / 4,     pi / 4,     pi / 4};
@@ -67,6 +70,9 @@ class LightAround {
           nodes_(sphere_quadrature(static_cast<int>(std::ceil(std::sqrt(options.rays / 2.0))))),
           seed_(options.seed),
           far_(static_cast<float>(bounds_of(scene).size().length())) {}
+
+    /// From each probe.
+    std::size_t rays() const { return nodes_.size(); }
 
     IrradianceProbe probe(const V3f& x, std::uint64_t index) const {
         const Imath::M33f rotation = random_rotation(seed_, index);
@@ -206,17 +212,30 @@ Rgb IrradianceProbe::irradiance(const V3f& normal) const {
 }
 
 ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                            const ProbeOptions& options) {
+                            const ProbeOptions& options, const PathMonitor& monitor) {
     solution.forest->require_made_for(scene);
     ray_caster.require_made_for(scene);
     ProbeGrid grid = empty_grid(scene, options);
     const LightAround light(scene, solution, ray_caster, options);
     const auto columns = static_cast<std::size_t>(grid.count[0]), rows = static_cast<std::size_t>(grid.count[1]);
-    parallel_for_ranges(grid.probes.size(), 1, [&](std::size_t i, std::size_t) {
+    const auto stopped = [&] { return monitor.stop && *monitor.stop; };
+    const auto measure = [&](std::size_t i) {
+        if (stopped()) return;
         const std::size_t column = i % columns, row = i / columns % rows, level = i / columns / rows;
         const Imath::V3d number(static_cast<double>(column), static_cast<double>(row), static_cast<double>(level));
         grid.probes[i] = light.probe(V3f(grid.first - scene.origin + number * grid.step), i);
-    });
+    };
+    const std::size_t per_report = std::max<std::size_t>(1, rays_per_report / light.rays());
+    for (std::size_t begin = 0; begin < grid.probes.size(); begin += per_report) {
+        const std::size_t end = std::min(grid.probes.size(), begin + per_report);
+        parallel_for_ranges(end - begin, 1, [&](std::size_t i, std::size_t) { measure(begin + i); });
+        if (stopped())
+            throw Stopped(fmt::format("stopped at {} of {} probes, before all had light", begin, grid.probes.size()));
+        if (monitor.on_progress)
+            monitor.on_progress({static_cast<std::int64_t>(2 * end * light.rays()),
+                                 static_cast<double>(end) / static_cast<double>(grid.probes.size()),
+                                 std::numeric_limits<double>::quiet_NaN()});
+    }
     return grid;
 }
 
