@@ -30,9 +30,8 @@ std::uint32_t add_glass(Scene& scene, const Rgb& transmittance, const Rgb& refle
     return glass;
 }
 
-/// Two panes one behind the other across a room of 2 x 1 x 1 m, halfway along it. They reflect what they do not let
-/// through, so that light is the same everywhere, M / (1 - rho), as if they were not there. The walls end at the panes:
-/// hr has few lines of sight for a wall of which others see a part.
+/// A room of 2 x 1 x 1 m with two parallel panes across its middle. They absorb nothing, so that the irradiance is M /
+/// (1 - rho) everywhere. The walls are divided at the panes, because hr samples partial visibility with few lines.
 Scene divided_furnace() {
     Scene scene;
     const std::uint32_t wall = add_material(scene, {0.5f, 0.6f, 0.4f}, Rgb(30));

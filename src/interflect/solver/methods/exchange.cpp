@@ -116,7 +116,6 @@ FormFactors form_factors(const ElementForest& forest, const Quadrature& points, 
     return result;
 }
 
-/// Of each channel.
 Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
 Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
 
@@ -128,8 +127,8 @@ struct LinesOfSight {
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// Sets what the lines from the points of the smaller element transmit: their mean, each weighted by what goes
-    /// along it, and how much they differ.
+    /// Samples Exchange::transmittance and Exchange::variation along lines from the points of the smaller element, each
+    /// line weighted by the light that it carries unoccluded.
     void look(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
@@ -162,7 +161,7 @@ struct LinesOfSight {
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 
-    /// Of the panes before a point of an element, on a ray to it from a point of another; 0 if anything else is first.
+    /// Transmittance of the panes on a ray between points of two elements; 0 if another surface blocks the ray.
     Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
         const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};

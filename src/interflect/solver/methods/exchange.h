@@ -35,10 +35,10 @@ struct Exchange {
     /// How much that varies over a, and over b, unoccluded: the element's area times the difference between the form
     /// factors to the other element from those of its points that see most and least of it [m^2].
     float spread_over_a = 0, spread_over_b = 0;
-    /// The share of `area` that arrives, in [0, 1]; 0 or 1 where no line of sight was free, or all were. Behind panes
-    /// the lines count by what the panes transmit.
+    /// The share of `area` that arrives, in [0, 1]: the mean over lines of sight, 1 for a free line, 0 for a blocked
+    /// one, the transmittance of the panes for others.
     Rgb transmittance{0, 0, 0};
-    /// The largest difference between two lines of sight, in [0, 1]; 0 where all are free or go through the same panes.
+    /// The largest difference between two lines of sight, in [0, 1].
     float variation = 0;
 };
 

@@ -149,8 +149,8 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// Light goes on through the panes that the patch of a segment sees. The light of the other direction belongs to
-    /// the lines that come from the other side: a pane may have one side only.
+    /// Carries light on through the panes of a segment. Lines of the opposite direction carry the opposite light, since
+    /// a pane may have one side only.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -166,7 +166,7 @@ class LineSums {
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
             if (channel_sum(radiosity_[i]) > 0)
-                r.escaped_rays += escaped_rays_[i];  // not those of the dark outside of a room
+                r.escaped_rays += escaped_rays_[i];  // rays of dark walls, seen from outside, do not count
         }
         return r;
     }
@@ -174,8 +174,8 @@ class LineSums {
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param quanta  Of each channel; 2 where no line that comes from the other side carries the same, as where
-    /// nothing is in sight.
+    /// @param to      A patch, or none if the light escapes.
+    /// @param quanta  Factor for each channel: 2 if the lines of the opposite direction do not carry the same light.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& quanta) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(quanta) * quantum_;
         if (to == none) {
@@ -199,8 +199,8 @@ class LineSums {
 /// around the scene, whatever shines. A line crosses each patch with a probability in proportion to its area
 /// (Cauchy and Crofton), at an angle that is cosine-distributed there, and every pair of patches that see each other
 /// along it exchange light both ways. So a line's segments stand for all of the scene at once, but few of them meet
-/// what is small: where the light comes from small emitters the noise is large. Behind a pane the transmitted part of
-/// the light goes straight on.
+/// what is small: where the light comes from small emitters the noise is large.
+/// Panes transmit light along the lines.
 ///
 /// N lines through a sphere of radius R: with B_a 4 pi R^2 / (2 N) along each segment, an expected A_a F_ab B_a goes
 /// from a to b. A line costs 1 + 2 h rays, of which h = sum A / (4 pi R^2) is the expected number of patches that face

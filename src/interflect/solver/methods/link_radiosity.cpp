@@ -180,7 +180,7 @@ RgbD LinkedElements::gather_light() {
         irradiance = Rgb(received[e]);
         const RgbD power = received[e] * static_cast<double>(forest_.area(e));
         if (e < forest_.patch_count()) escaped -= power;
-        // What panes transmit arrives twice.
+        // Transmitted light arrives at the pane and behind it.
         if (forest_.is_leaf(e)) escaped += RgbD(state_.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
     light_change_ = change.value();

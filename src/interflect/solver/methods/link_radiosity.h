@@ -11,7 +11,7 @@
 
 namespace interflect::inline detail {
 
-/// As many as fit the memory of a common computer: 36 bytes each.
+/// 36 bytes each: they fit the memory of a common computer.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
 
 /// Two elements that exchange light.
@@ -19,7 +19,7 @@ struct Link {
     ElementPair ends;
     Exchange exchange;
 
-    /// What arrives of an exchange of 1 per unit of area [m^2].
+    /// Exchange with occlusion, A_a F_ab = A_b F_ba [m^2].
     RgbD area() const { return RgbD(exchange.transmittance) * static_cast<double>(exchange.area); }
     /// The same for importance, one number.
     double mean_area() const { return channel_sum(area()) / 3; }
@@ -42,8 +42,8 @@ struct RefinementCandidate;
 /// one bounce over all links and ends with push-pull; whenever light has settled the links are refined, so that no mesh
 /// is made for light that is yet to come.
 ///
-/// A link through panes carries light by what they transmit along its lines of sight; where these differ, the bound has
-/// as much of the whole exchange as they differ by.
+/// The transmittance of panes is a property of each link. If it varies by v between the lines of sight, the bound on
+/// the error includes the share v of the unoccluded exchange.
 ///
 /// With importance (Smits et al.), psi travels the same links backwards, so that sum v P = sum psi W holds on any mesh,
 /// and the error bound is weighted by psi_i / psi_max as in Eq. 15.

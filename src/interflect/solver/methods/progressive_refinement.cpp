@@ -19,8 +19,8 @@ namespace {
 /// A step shoots all patches of which at least this share of the largest is unshot.
 constexpr float share_of_largest = 0.5f;
 /// When less than this share of what was unshot at first is left, or a step would get fewer rays, the last step shoots
-/// the rest. No other iteration shoots what the final one leaves.
-constexpr double negligible_rest = 0.01, negligible_rest_of_run = 0.001;
+/// the rest.
+constexpr double negligible_rest = 0.01;
 constexpr std::int64_t fewest_rays_of_step = 16;
 /// Before a series of steps has told: all that is shot, over what is unshot at first.
 constexpr double assumed_shots = 2;
@@ -46,6 +46,10 @@ struct ShotBudget {
     /// to come is expected in proportion to the latter.
     std::int64_t share(double weight, double unshot) const {
         return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
+    }
+    /// The number of random walks that take the rays left: a walk shoots its power `expected` times.
+    std::int64_t walks() const {
+        return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
     }
     bool is_last(double weight, double unshot) const {
         const std::int64_t next = share(weight, unshot);
@@ -86,9 +90,10 @@ double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 /// same steps in dual order: those with the most unshot importance shoot it, at first what the views show.
 ///
 /// An iteration is a solution from darkness to where little is left to shoot; its error falls with the mean of many,
-/// Eq. 6. What its last step brought is unshot when it ends: the next iteration shoots it too, so that the mean of all
-/// lacks nothing but the last rest. A step is a batch of all patches of which at least half as much is unshot as of the
-/// first of them: order is kept to a factor of two, ties need no rule, and transport() traces long batches.
+/// Eq. 6. Random walks complete the last step of power: if rays are few, they carry most of the power.
+///
+/// A step is a batch of all patches of which at least half as much is unshot as of the first of them: order is kept to
+/// a factor of two, ties need no rule, and transport() traces long batches.
 ///
 /// Constant on patches: no refinement. Same seed, same bits, for any number of threads.
 class ProgressiveRefinement final : public IterationMethod {
@@ -116,7 +121,6 @@ class ProgressiveRefinement final : public IterationMethod {
     std::vector<float> unshot_importance_, fresh_importance_;  // the latter of all steps so far
     double first_importance_ = 0;                              // unshot before the first step
     std::int64_t importance_history_ = 0;                      // rays that the mean stands for
-    bool is_final_ = false;                                    // iteration of the run
     bool emits_ = true;                                        // the next step of power is the first
     std::vector<Rgb> unshot_;                                  // irradiance
     FreshEstimate fresh_;                                      // of all steps so far
@@ -184,8 +188,7 @@ void ProgressiveRefinement::begin_power(SolverState& state, std::int64_t rays) {
     emits_ = true;
     weights_ = importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     const std::size_t elements = state.forest->size();
-    unshot_.resize(elements, Rgb(0));
-    for (Rgb& h : unshot_) h *= static_cast<float>(static_cast<double>(power_rays_) / static_cast<double>(rays));
+    unshot_.assign(elements, Rgb(0));
     fresh_ = {std::vector<Rgb>(elements, Rgb(0)), std::vector<float>(elements, 0.0f), {}};
     power_rays_ = rays;
     escaped_ = RgbD(0, 0, 0);
@@ -209,12 +212,12 @@ bool ProgressiveRefinement::shoot_some_power(SolverState& state) {
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
     // What matters little to the views is power too, and counts where it has got to when it is shot.
-    const double rest = is_final_ ? negligible_rest_of_run : negligible_rest;
-    const bool is_last = power < rest * first_power_ || power_budget_.is_last(weight, unshot);
-    if (is_last) chosen = step.q, weight = unshot;
+    const bool is_last = power < negligible_rest * first_power_ || power_budget_.is_last(weight, unshot);
+    if (is_last) chosen = step.q, weight = unshot * power_budget_.expected;
     step.q = chosen;
-    step.rays = is_last ? power_budget_.left : power_budget_.share(weight, unshot);
-    const std::int64_t rays = step.rays;
+    const std::int64_t rays = is_last ? power_budget_.left : power_budget_.share(weight, unshot);
+    step.to_the_end = is_last;
+    step.rays = is_last ? power_budget_.walks() : rays;
     const Received received = run_step(state, std::move(step));
     state.power_rays += rays;
     state.quanta += received.quanta;
@@ -249,7 +252,6 @@ RgbD ProgressiveRefinement::iterate(SolverState& state, IterationPlan& plan) {
     }
     if (!power_budget_.is_under_way) {
         shoot_importance(state, for_importance_);
-        is_final_ = plan.is_final;
         if (plan.rays > for_importance_) begin_power(state, plan.rays - for_importance_);
     }
     if (power_budget_.is_under_way) shoot_power(state, plan);
@@ -274,7 +276,6 @@ void ProgressiveRefinement::archive(StateArchive& archive) {
     archive("pr/first_importance", first_importance_);
     archive("pr/importance_history", importance_history_);
     power_budget_.archive(archive, "pr/power_budget");
-    archive("pr/is_final", is_final_);
     archive("pr/emits", emits_);
     archive("pr/unshot", unshot_);
     archive("pr/irradiance", fresh_.irradiance);
