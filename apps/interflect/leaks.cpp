@@ -152,6 +152,7 @@ class WaysBack {
     std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, std::uint32_t patch) const {
         constexpr float rounding = 1e-4f, offsets = 8;
         const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
+        if (!(distance > 0)) return none;  // in a corner
         const Hit back = trace({place + offset * normal(patch), (start - place) / distance});
         const bool is_seen =
             back.patch == none || back.patch == source || back.distance >= distance * (1 - rounding) - offsets * offset;
