@@ -53,7 +53,7 @@ class Luminaires(CommandTest):
         error = self.interflect("info", "dark.mgf", "--luminaire", "bad.ies@1,1,2", exit_code=BAD_INPUT).stderr
         self.assertIn("bad.ies:5: vertical angles must ascend", error)
         error = self.interflect("solve", "dark.mgf", "-o", "lamp.ies", "--luminaire", "lamp.ies@1,1,2",
-                                exit_code=BAD_INPUT).stderr
+                                exit_code=WRONG_USAGE).stderr
         self.assertIn("lamp.ies", error)
         self.assertEqual(self.bytes("lamp.ies").decode(), LAMP)
 
