@@ -13,7 +13,7 @@ namespace interflect::command {
 /// Reports work of unknown length on stderr every few seconds: its name, its time so far and the memory in use.
 class LongWork {
   public:
-    /// @param what  Name of the work, such as "reading scene.obj".
+    /// @param what  The work: "reading scene.obj".
     explicit LongWork(std::string what);
     ~LongWork();
     LongWork(const LongWork&) = delete;

@@ -23,8 +23,8 @@ std::size_t free_memory();
 
 /// Refuses work before it allocates memory.
 /// @param bytes   Peak of the whole process.
-/// @param what    Name of the work, such as "a picture of 640 x 360 pixels".
-/// @param remedy  Sentence without its end, such as "a smaller --size needs less"; may be empty.
+/// @param what    The work: "a picture of 640 x 360 pixels".
+/// @param remedy  Advice: "a smaller --size needs less"; may be empty.
 /// @throws std::runtime_error with these three if `bytes` exceeds usable_memory().
 void require_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 

@@ -27,6 +27,7 @@
 #include "apps/interflect/view_check.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/error.h"
+#include "interflect/image/image_codecs.h"
 #include "interflect/image/legend.h"
 #include "interflect/image/pending_image.h"
 #include "interflect/image_files.h"
@@ -304,6 +305,11 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         refuse_path_options(command);
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
         throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
+    if (require_image_format(options.output) == ImageFormat::png &&
+        codecs::png_bytes(options.size.width, options.size.height) > codecs::most_png_bytes)
+        throw UsageError("--size",
+                         fmt::format("{} x {} pixels are too many for a PNG: expected fewer, or another format",
+                                     options.size.width, options.size.height));
     if (options.shown == Shown::mesh && !is_for_people(options))
         throw UsageError("--show", fmt::format("mesh is drawn to be looked at: expected an --output that ends in .png "
                                                "or .jpg, found '{}'",

@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import zlib
 from pathlib import Path
 
-from command import BAD_INPUT, VIEWS, CommandTest, room
+from command import BAD_INPUT, VIEWS, WRONG_USAGE, CommandTest, room
 
 AREA = 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1  # of room(): walls with two sides, and a lamp with one [m^2]
 FAR_VIEW = ("--eye", "3000000.3,-1999999.8,1.6", "--look-at", "3000001.2,-1999997,1")
@@ -140,14 +140,14 @@ class Meshes(Exported):
             self.assertIn(f"{layer}.G".encode(), self.bytes("probes.exr"))
 
     def test_refuses_what_it_cannot_write(self):
-        for arguments, words in (
-            (("room.h5", "-o", "room.stl"), ".ply"),
-            (("room.mgf", "-o", "room.ply"), "not a solution file"),
-            (("room.h5", "-o", "p.json", "--probe-spacing", "0"), "spacing"),
-            (("room.h5", "-o", "missing/room.ply"), "missing"),
+        for arguments, words, exit_code in (
+            (("room.h5", "-o", "room.stl"), ".ply", WRONG_USAGE),
+            (("room.mgf", "-o", "room.ply"), "not a solution file", BAD_INPUT),
+            (("room.h5", "-o", "p.json", "--probe-spacing", "0"), "spacing", WRONG_USAGE),
+            (("room.h5", "-o", "missing/room.ply"), "missing", BAD_INPUT),
         ):
             before = self.files()
-            result = self.interflect("export", *arguments, exit_code=BAD_INPUT)
+            result = self.interflect("export", *arguments, exit_code=exit_code)
             self.assertIn(words, result.stderr)
             self.assertEqual(self.files(), before)
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -15,6 +16,12 @@ namespace interflect::inline detail::codecs {
 
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
+
+/// Bytes of all rows of a PNG before compression, and their limit: stb counts them with int and doubles its arrays.
+constexpr std::int64_t png_bytes(int width, int height, int channels = 3) {
+    return (std::int64_t{channels} * width + 1) * height;
+}
+inline constexpr std::int64_t most_png_bytes = std::int64_t{1} << 30;
 
 /// @param opacity  Of each pixel, in [0, 1]; none: the file has no alpha.
 std::string encode_png(const Image& image, std::span<const float> opacity = {});

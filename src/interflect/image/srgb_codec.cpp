@@ -22,7 +22,6 @@ namespace interflect::inline detail::codecs {
 namespace {
 
 constexpr int channels = 3;
-constexpr std::int64_t most_png_bytes = std::int64_t{1} << 30;  // of all rows: stb counts with int, and doubles arrays
 constexpr int jpeg_quality = 95;  // of 100: no blocks that the eye would see on smooth walls
 
 std::vector<std::uint8_t> srgb_bytes(const Image& image, std::span<const float> opacity = {}) {
@@ -51,7 +50,7 @@ void append(void* text, void* data, int size) {
 
 std::string encode_png(const Image& image, std::span<const float> opacity) {
     const int all_channels = opacity.empty() ? channels : channels + 1;
-    if ((std::int64_t{all_channels} * image.width + 1) * image.height > most_png_bytes)
+    if (png_bytes(image.width, image.height, all_channels) > most_png_bytes)
         throw InputError(
             fmt::format("{} x {} pixels are too many for a PNG, which may have {} MiB before compression: "
                         "expected fewer, or .exr or .hdr",

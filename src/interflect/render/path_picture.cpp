@@ -177,7 +177,7 @@ class PathPicture {
         report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
     }
 
-    /// Computes the error, which visits all pixels, once there are as many new paths as pixels.
+    /// Computes the error after as many new paths as pixels: it visits all of them.
     void report(double fraction) {
         if (!monitor_.on_progress) return;
         const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);
