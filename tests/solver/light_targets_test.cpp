@@ -1,8 +1,8 @@
 // Light from outside that enters a room in a landscape of 1 km through a hole of 0.4 m: rays must be aimed at the hole,
 // and what they bring stays unbiased. The floor alone reflects, onto black walls: what it receives is known.
 //
-// Seen to fail when no targets are found (standard deviations of 80% and more), when rays along lines of a later box
-// are not left out.
+// Seen to fail when no targets are found (nothing arrives in most runs), when rays along lines of a later box
+// are not left out, when what they carry counts as escaped.
 
 #include "interflect/solver/light_targets.h"
 
@@ -80,7 +80,7 @@ std::vector<Source> sources() {
 }
 
 SolveOptions options_of(std::uint64_t seed) {
-    SolveOptions options{.method = find_method("ihsrr"), .limits = {.rays = 400'000}};
+    SolveOptions options{.method = find_method("ihsrr"), .limits = {.rays = 1'000'000}};
     options.views = {{View{"floor", {4.6f, 3.6f, 2.6f}, {1.5f, 1.5f, 0}, {0, 0, 1}, 60}}};
     options.experimental.points = PointSet::random;
     options.importance.camera_rays = 1 << 12;
@@ -98,7 +98,7 @@ double power_on_floor(const Solution& solution) {
 class SmallHole : public testing::TestWithParam<Source> {};
 
 TEST_P(SmallHole, LetsLightInWithoutBias) {
-    constexpr int runs = 10;
+    constexpr int runs = 8;
     const Scene scene = room_in_a_landscape(GetParam().luminaire);
     const RayCaster ray_caster(scene);
     std::vector<double> found;

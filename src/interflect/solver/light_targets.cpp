@@ -173,6 +173,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr double share_of_rest = 0.05;  // of all, that is worth a place of its own
     // Of lines that are spread evenly a quarter crosses half a box, of those that come together all do.
     constexpr double worthwhile_share = 0.4;
+    // Of the scene: what is wider the parts of the scene's own box tell apart.
+    constexpr float widest_target = 1.0f / 16;
     std::vector<Weighed> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
@@ -198,7 +200,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                 worthwhile = halves.size();
             inside = std::move(in_half);
         }
-        if (worthwhile == 0) break;
+        if (worthwhile == 0 || halves[worthwhile - 1].size().length() > widest_target * scene_box.size().length())
+            break;
         halves.resize(worthwhile);
         targets.insert(targets.end(), halves.begin(), halves.end());
         std::vector<Weighed> others;
@@ -254,17 +257,21 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 
 std::int64_t aim_outdoor_light(SolverState& state) {
     // Few importance leaves through a small window; so many rays take a moment, and are few of all.
-    constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 64;
+    constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
-    const std::int64_t rays =
-        std::max(state.schedule.start_rays() / 2, std::min(most_rays, state.options.limits.rays / all_over_rays));
-    if (rays == 0) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
-    if (!state.emission.has_sky() && suns == 0) return 0;
+    const std::int64_t sources = suns + (state.emission.has_sky() ? 1 : 0);
+    if (sources == 0) return 0;
+    const std::int64_t rays = std::min(most_rays, state.options.limits.rays / all_over_rays) / sources;
+    if (rays == 0) return 0;
     const std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
-    set_targets(state, find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box()));
-    if (!state.targets.empty()) state.part_importance = importance_of_parts(state.emission, lines);
-    return rays * ((state.emission.has_sky() ? 1 : 0) + suns);
+    std::vector<Imath::Box3f> targets =
+        find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box());
+    if (!targets.empty() || !state.targets.empty()) {
+        set_targets(state, std::move(targets));
+        state.part_importance = importance_of_parts(state.emission, lines);
+    }
+    return rays * sources;
 }
 
 }  // namespace interflect::inline detail
