@@ -278,7 +278,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
 /// Of what the arrays of a state are: to be raised whenever one of them changes.
-constexpr int state_version = 1;
+constexpr int state_version = 2;
 
 /// Writes the arrays of a state one after the other as one, and a list of them. @return Where they are in the file.
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {

@@ -90,7 +90,7 @@ DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<c
 
 /// Where the line of a ray is within a box: distances along it, before the ray's start negative.
 struct Crossing {
-    float begin, end;  // begin > end: nowhere
+    float begin, end;  // begin > end: the line misses the box
 };
 Crossing crossing(const Imath::Box3f& box, const Ray& ray) {
     Crossing within{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
@@ -291,8 +291,8 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// The ray as it comes from outside the scene, if its line is one of that box: if it crosses it, and no later one.
-/// Else a ray that meets nothing.
+/// Moves the start of a ray to the scene's box if its line belongs to this box: the line crosses it, but no later one.
+/// Otherwise returns a ray that misses the scene.
 Ray Emission::of_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);

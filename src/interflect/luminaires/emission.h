@@ -26,7 +26,7 @@ struct SkyComponent {
     float (*amount)(const Rgb& radiance);  ///< Of that colour.
 };
 
-/// Whether a ray, and what continues it backwards, crosses a box.
+/// Whether the whole line of a ray crosses a box.
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
 /// Rays from the luminaires of a scene. What a luminaire emits is divided into parts of equal power, by direction
@@ -41,11 +41,11 @@ class Emission {
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
     /// What a part emits [lm or W]. Of directional light and of a sky: what crosses the box around the scene, on which
-    /// its rays start, or one of the targets; rays along lines that are another box's meet nothing.
+    /// its rays start, or one of the targets; rays along the lines of another box miss the scene.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
-    /// Of all luminaires; of light from outside what crosses the box around the scene.
+    /// Sum over all luminaires; light from outside counts where it crosses the box around the scene.
     RgbD total_power() const { return power_of_boxes(0, 1); }
-    /// Of the power of all parts, what goes along lines that are another box's.
+    /// Power of the parts along the lines of other boxes.
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
     /// Index in Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
@@ -54,7 +54,7 @@ class Emission {
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
 
     bool has_sky() const;
-    /// Of directional light.
+    /// Number of directional lights.
     std::size_t sun_count() const { return suns_.size(); }
     /// In which light of a sun goes, for c and d uniform in (0, 1).
     V3f sun_direction(std::size_t sun, float c, float d) const;
@@ -66,9 +66,9 @@ class Emission {
     /// A part of light from outside that shoots along a line.
     struct PartAlong {
         std::size_t part;
-        double brightness;  ///< Channels together: a sky's radiance, or a sun's irradiance of what faces it.
+        double brightness;  ///< Sum of the channels: radiance of a sky, or irradiance of a surface that faces the sun.
     };
-    /// @param light  Any point of the line, and the way that light goes. @param sun  none: of skies.
+    /// @param light  Any point of the line, and the direction of the light. @param sun  Its number; none: parts of skies.
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
     /// Makes the rays of samples first_sample, first_sample + 1, ... of a part; all carry the same power.
@@ -101,7 +101,7 @@ class Emission {
         V3f corner, edge_u, edge_v;
         V3f direction, s, t;
         float sine;       // of that angle; 0: parallel; 1: diffuse
-        float part_area;  // of the scene's box: what the oracle is to see of a part, whatever the box
+        float part_area;  // on the scene's box, which the oracle sees also for targets
         bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t rays_at_once = 1024;
 constexpr std::uint64_t purpose = 0x61696d;  // no other stream of a run has this one
 
-/// What follows importance out of the scene.
+/// Follows importance out of the scene.
 struct LineFinder {
     const SolverState& state;
     const TransportStep& step;
@@ -30,8 +30,8 @@ struct LineFinder {
     const Panes& panes;
     std::uint64_t key;
 
-    /// Of rays that do not start at a luminaire, those that escape, through panes too.
-    /// @param importance  Of each. @param sun  That they look for; none: skies.
+    /// Appends the lines of the rays that escape, through panes too.
+    /// @param importance  The importance that each ray carries. @param sun  The target of the rays; none: skies.
     void keep_escaping(std::span<const Ray> rays, std::span<const double> importance, std::uint32_t sun,
                        std::vector<OutdoorLine>& lines) const {
         std::vector<Hit> hits(rays.size());
@@ -82,7 +82,7 @@ struct LineFinder {
     }
 };
 
-/// Every so manieth line, for all of them, where there are more than are needed.
+/// Thins the lines to a fixed number; the rest carry the importance of all.
 std::vector<OutdoorLine> some_of(const std::vector<OutdoorLine>& lines) {
     constexpr std::size_t enough = 1 << 14;
     const std::size_t stride = (lines.size() + enough - 1) / enough;
@@ -171,8 +171,10 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
     constexpr double share_of_rest = 0.05;  // of all, that is worth a place of its own
-    // Of lines that are spread evenly a quarter crosses half a box, of those that come together all do.
+    // A quarter of evenly spread lines crosses half a box; all lines of one window do.
     constexpr double worthwhile_share = 0.4;
+    // Relative to the scene. The parts of the scene's own box resolve larger boxes.
+    constexpr float widest_target = 1.0f / 16;
     std::vector<Weighed> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
@@ -198,7 +200,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                 worthwhile = halves.size();
             inside = std::move(in_half);
         }
-        if (worthwhile == 0) break;
+        if (worthwhile == 0 || halves[worthwhile - 1].size().length() > widest_target * scene_box.size().length())
+            break;
         halves.resize(worthwhile);
         targets.insert(targets.end(), halves.begin(), halves.end());
         std::vector<Weighed> others;
@@ -211,8 +214,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// What a line counts for where targets are looked for: light that arrives along it, as a share of the root of what its
-/// source brings. All lines of a sun are parallel: those of a dimmer sky must tell at which place they come together.
+/// Weights of the lines in the search for targets: the light along each, over the root of the light of its source. All
+/// lines of a sun are parallel, so the lines of the dimmer sky must show where on them the window is.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -228,8 +231,8 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// What the lines tell of the parts' importance, as if that were known from few of their rays. One line more is taken
-/// to be anywhere in each box.
+/// Estimates the importance of the parts from the lines, and counts it as a few rays of each part. One more line of mean
+/// weight is spread over each box, so that no part starts with zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
@@ -254,17 +257,21 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 
 std::int64_t aim_outdoor_light(SolverState& state) {
     // Few importance leaves through a small window; so many rays take a moment, and are few of all.
-    constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 64;
+    constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
-    const std::int64_t rays =
-        std::max(state.schedule.start_rays() / 2, std::min(most_rays, state.options.limits.rays / all_over_rays));
-    if (rays == 0) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
-    if (!state.emission.has_sky() && suns == 0) return 0;
+    const std::int64_t sources = suns + (state.emission.has_sky() ? 1 : 0);
+    if (sources == 0) return 0;
+    const std::int64_t rays = std::min(most_rays, state.options.limits.rays / all_over_rays) / sources;
+    if (rays == 0) return 0;
     const std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
-    set_targets(state, find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box()));
-    if (!state.targets.empty()) state.part_importance = importance_of_parts(state.emission, lines);
-    return rays * ((state.emission.has_sky() ? 1 : 0) + suns);
+    std::vector<Imath::Box3f> targets =
+        find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box());
+    if (!targets.empty() || !state.targets.empty()) {
+        set_targets(state, std::move(targets));
+        state.part_importance = importance_of_parts(state.emission, lines);
+    }
+    return rays * sources;
 }
 
 }  // namespace interflect::inline detail

@@ -12,8 +12,8 @@ namespace interflect::inline detail {
 
 /// Light from outside the scene that would reach a surface.
 struct OutdoorLine {
-    Ray light;          ///< Starts where importance does; the direction is that of light.
-    std::uint32_t sun;  ///< That it comes from; none: skies.
+    Ray light;          ///< From the surface point; the direction is the way of the light.
+    std::uint32_t sun;  ///< Its number; none: the light comes from skies.
     double importance;  ///< Times the brightness there: power that arrives, weighed by importance.
 };
 
@@ -26,9 +26,9 @@ inline constexpr int most_places = 4, most_targets = 80;
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Lets light from outside be shot where it matters to the views: follows importance out of the scene, finds targets
-/// (Emission) for what escapes, and what each of the luminaires' parts is worth. Nothing where no light is from
-/// outside, or no importance is followed. @return Rays that it has traced.
+/// Aims light from outside at the places that matter to the views: follows importance out of the scene, finds targets
+/// (Emission) for the rays that escape, and estimates the importance of the parts. Does so only where a run follows
+/// importance and has light from outside. @return The number of rays traced.
 std::int64_t aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::inline detail

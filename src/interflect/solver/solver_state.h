@@ -81,7 +81,7 @@ struct SolverState {
 /// The sources emit what those of another scene do, which must outlive the state: the same but for that.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Light from outside is shot at these from now on; what was known of the luminaires' parts is not any more.
+/// Replaces the targets of light from outside, and forgets the importance of the luminaires' parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
 /// Finds what the views of the options show; importance is not known then.

@@ -60,9 +60,8 @@ struct BoxImportance {
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// An exponent allows for rays of which few matter. Between boxes it would be wrong, for those of the smallest are the
-/// ones that matter: there parts go by their importance as it is, in the unit that the exponent makes of the importance
-/// of what most light comes from.
+/// The exponent allows for parts with a few valuable rays among many. Boxes already separate these, so importance
+/// differs between boxes with the exponent 1. The factor keeps the unit: it is 1 for a box of the typical importance.
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
