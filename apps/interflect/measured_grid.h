@@ -5,6 +5,7 @@
 
 #include "interflect/measure.h"
 #include "interflect/measuring_grid.h"
+#include "interflect/photometry.h"
 
 namespace interflect::command {
 
@@ -12,9 +13,11 @@ namespace interflect::command {
 struct MeasuredGrid {
     MeasuringGrid grid;
     std::vector<MeasuredIrradiance> measured;  ///< Of grid.points.
+    SolutionError solution_error;              ///< 0 without a solution.
 };
 
-/// Measures all grids with a progress bar. Ctrl-C ends it early with what there is.
+/// Measures all grids with a progress bar, and about 256 of their points by path tracing too, for the solution error.
+/// Ctrl-C ends it early with what there is.
 /// @param points  Of all grids, one after the other. @param solution  As in measure_irradiance().
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
