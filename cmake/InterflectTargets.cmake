@@ -13,6 +13,9 @@ add_library(interflect_options INTERFACE)
 target_compile_features(interflect_options INTERFACE cxx_std_20)
 # Without errno, and traps that nobody sets, square roots and choices become vector code.
 target_compile_options(interflect_options INTERFACE ${interflect_warnings} -fno-math-errno -fno-trapping-math)
+# The same expression rounds alike wherever it is compiled; fused multiply-adds would differ between copies of a loop, and
+# resumed runs from runs that never stopped.
+target_compile_options(interflect_options INTERFACE -ffp-contract=off)
 if(INTERFLECT_ARCH)
   target_compile_options(interflect_options INTERFACE -march=${INTERFLECT_ARCH})
 endif()

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <utility>
@@ -26,6 +27,41 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
     const Imath::V3d& x = points[first].position;
     spdlog::warn("{} of {} measuring points {}, such as ({:.6g}, {:.6g}, {:.6g}); measure at another height or place",
                  count, points.size(), what, x.x, x.y, x.z);
+}
+
+/// Points that are traced again for the error of the solution: all grids together, and at least of each grid.
+constexpr std::size_t most_compared = 256, least_of_grid = 8;
+
+/// Compares each grid with path tracing of points that are spread evenly over it, with the samples of the gathering.
+void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const std::vector<MeasuringPoint>& points,
+                        const std::vector<MeasuredIrradiance>& measured, PathOptions options,
+                        std::vector<MeasuredGrid>& grids) {
+    options.until = 0;
+    ++options.seed;
+    const std::size_t most_of_grid = std::max(least_of_grid, most_compared / grids.size());
+    std::vector<std::vector<std::size_t>> chosen(grids.size());
+    std::vector<MeasuringPoint> compared;
+    std::size_t first = 0;
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+        const std::size_t size = grids[g].grid.points.size(), count = std::min(size, most_of_grid);
+        for (std::size_t k = 0; k < count; ++k) {
+            chosen[g].push_back(k * size / count);
+            compared.push_back(points[first + chosen[g].back()]);
+        }
+        first += size;
+    }
+    std::vector<MeasuredIrradiance> traced;
+    with_path_progress([&](const PathMonitor& monitor) {
+        traced = measure_irradiance(scene, nullptr, ray_caster, compared, options, monitor);
+    });
+    std::span<const MeasuredIrradiance> gathered = measured, rest = traced;
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+        const std::size_t size = grids[g].grid.points.size();
+        grids[g].solution_error =
+            estimate_solution_error(gathered.first(size), chosen[g], rest.first(chosen[g].size()));
+        gathered = gathered.subspan(size);
+        rest = rest.subspan(chosen[g].size());
+    }
 }
 
 }  // namespace
@@ -52,9 +88,11 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
     });
     warn_of_misplaced_points(scene, ray_caster, points, measured);
     std::vector<MeasuredGrid> result;
+    for (MeasuringGrid& grid : grids) result.push_back({.grid = std::move(grid)});
+    if (solution && !result.empty()) compare_with_paths(scene, ray_caster, points, measured, options, result);
     std::size_t next = 0, lost = 0;
-    for (MeasuringGrid& grid : grids) {
-        MeasuredGrid& of_grid = result.emplace_back();
+    for (MeasuredGrid& of_grid : result) {
+        MeasuringGrid& grid = of_grid.grid;
         const std::vector<Imath::V3d> positions = std::exchange(grid.points, {});
         const std::vector<std::uint32_t> cells = std::exchange(grid.cells, {});
         for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -68,7 +106,6 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
             if (!cells.empty()) grid.cells.push_back(cells[i]);
             of_grid.measured.push_back(e);
         }
-        of_grid.grid = std::move(grid);
     }
     if (lost > 0 && lost == points.size()) throw Stopped("stopped before any point was measured");
     if (lost > 0) spdlog::warn("{} of {} points were not measured before the end", lost, points.size());

@@ -129,14 +129,15 @@ std::vector<MeasuredGrid> measure(const Scene& scene, const Solution* solution, 
 }
 
 void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
-    CsvFile file(output, "x [m],y [m],z [m],E [lx],standard error [lx],direct [lx],indirect [lx],area");
+    CsvFile file(output,
+                 "x [m],y [m],z [m],E [lx],standard error [lx],solution error [lx],direct [lx],indirect [lx],area");
     for (const MeasuredGrid& g : grids)
         for (std::size_t i = 0; i < g.measured.size(); ++i) {
             const MeasuredIrradiance& e = g.measured[i];
             const Imath::V3d& p = g.grid.points[i];
-            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{:.6g},{:.6g},{}", p.x, p.y, p.z,
-                                      e.illuminance(), e.illuminance_error(), luminance(e.direct),
-                                      luminance(e.indirect), csv_field(g.grid.name)));
+            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{:.3g},{:.6g},{:.6g},{}", p.x, p.y, p.z,
+                                      e.illuminance(), e.illuminance_error(), g.solution_error.at(e),
+                                      luminance(e.direct), luminance(e.indirect), csv_field(g.grid.name)));
         }
     file.commit();
 }
@@ -148,8 +149,11 @@ void print_text(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeA
     if (g.missing > 0)
         print_line("  interrupted       {} of {} points were not measured", g.missing, g.missing + g.measured.size());
     if (g.measured.empty()) return;
-    print_line("  mean              {:.4g} lx, standard error {:.2g} lx", s.mean, s.mean_error);
-    print_line("  minimum           {:.4g} lx, standard error {:.2g} lx", s.min, s.min_error);
+    constexpr const char* errors = "standard error {:.2g} lx of sampling, {:.2g} lx of the solution";
+    print_line("  mean              {:.4g} lx, {}", s.mean,
+               fmt::format(fmt::runtime(errors), s.mean_error, s.mean_solution_error));
+    print_line("  minimum           {:.4g} lx, {}", s.min,
+               fmt::format(fmt::runtime(errors), s.min_error, s.min_solution_error));
     print_line("  maximum           {:.4g} lx", s.max);
     print_line("  Emin/Emean (U0)   {:.3f}", s.uniformity());
     print_line("  Emin/Emax         {:.3f}", s.diversity());
@@ -169,6 +173,7 @@ Json to_json(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArgu
               {"spacing", {g.grid.column_spacing, g.grid.row_spacing}},
               {"mean", s.mean},
               {"standard_error", s.mean_error},
+              {"solution_error", s.mean_solution_error},
               {"min", s.min},
               {"max", s.max},
               {"uniformity", s.uniformity()},
@@ -181,7 +186,7 @@ void print_summaries(const Scene& scene, const std::vector<MeasuredGrid>& grids,
     const std::optional<double> exterior = exterior_of(scene, options.exterior);
     Json areas = Json::array();
     for (const MeasuredGrid& g : grids) {
-        const IlluminanceSummary summary = summarise(g.measured);
+        const IlluminanceSummary summary = summarise(g.measured, g.solution_error);
         if (options.json)
             areas.push_back(to_json(g, summary, options, exterior));
         else

@@ -104,10 +104,10 @@ std::string results(const ReportContent& content) {
     std::string rows;
     std::vector<std::string> heads = {
         "Measuring area",       "Points",        "Spacing [m]",   "E<sub>mean</sub> [lx]", "E<sub>min</sub> [lx]",
-        "E<sub>max</sub> [lx]", "U<sub>0</sub>", "U<sub>d</sub>", "Std. error [lx]"};
+        "E<sub>max</sub> [lx]", "U<sub>0</sub>", "U<sub>d</sub>", "Std. error [lx]",       "Solution’s [lx]"};
     if (content.exterior) heads.push_back("Daylight factor");
     for (const MeasuredGrid& area : content.areas) {
-        const IlluminanceSummary s = summarise(area.measured);
+        const IlluminanceSummary s = summarise(area.measured, area.solution_error);
         const MeasuringGrid& grid = area.grid;
         std::string spacing = "–";
         if (grid.columns > 0) spacing = fmt::format("{:.2f} × {:.2f}", grid.column_spacing, grid.row_spacing);
@@ -119,7 +119,8 @@ std::string results(const ReportContent& content) {
                                           number(s.max),
                                           fmt::format("{:.2f}", s.uniformity()),
                                           fmt::format("{:.2f}", s.diversity()),
-                                          fmt::format("{:.2g}", s.mean_error)};
+                                          fmt::format("{:.2g}", s.mean_error),
+                                          fmt::format("{:.2g}", s.mean_solution_error)};
         if (content.exterior) cells.push_back(percent(s.mean / *content.exterior));
         rows += row(cells);
     }
@@ -128,7 +129,7 @@ std::string results(const ReportContent& content) {
                "<p class=\"soft\">U<sub>0</sub> = E<sub>min</sub>/E<sub>mean</sub>, U<sub>d</sub> = "
                "E<sub>min</sub>/E<sub>max</sub>. Grids by EN 12464-1, p = 0.2 · 5<sup>log<sub>10</sub> d</sup> "
                "m unless told otherwise. The standard error is that of the mean, from sampling at the "
-               "points.{}</p>\n",
+               "points; the error of the solution comes on top of it.{}</p>\n",
                content.exterior
                    ? fmt::format(" Daylight factors are relative to {} lx outside.", number(*content.exterior))
                    : "");
@@ -246,7 +247,8 @@ std::string method(const ReportContent& content, const SolvedScene& solved) {
     text += fmt::format(
         "){}. Illuminance at points is gathered from this solution: direct light is sampled from the "
         "sources, indirect light along {} directions a point; the standard errors told are those of "
-        "this sampling. Pictures: {} directions a pixel, filtered. Surfaces are taken as diffuse, "
+        "this sampling. The errors of the solution are estimated by path tracing at up to 256 points. Pictures: {} "
+        "directions a pixel, filtered. Surfaces are taken as diffuse, "
         "light passes straight through thin glass, and light that mirrors reflect is not counted. "
         "Maintenance factors are those of the scene.</p>\n",
         solution.interrupted ? ", interrupted" : "", content.samples, content.picture_samples);

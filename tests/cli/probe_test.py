@@ -11,7 +11,9 @@ import unittest
 from command import BAD_INPUT, COMMAND, INTERRUPTED, WRONG_USAGE, CommandTest, room, vertices
 
 BLACK = "m black =\n\trd 0\n"
-HEADER = ["x [m]", "y [m]", "z [m]", "E [lx]", "standard error [lx]", "direct [lx]", "indirect [lx]", "area"]
+HEADER = [
+    "x [m]", "y [m]", "z [m]", "E [lx]", "standard error [lx]", "solution error [lx]", "direct [lx]", "indirect [lx]", "area"
+]  # fmt: skip
 
 
 def floor(x=6, y=5, light="v lamp =\n\tp 2 2 2.5\nlight point lamp 1000\n"):
@@ -45,10 +47,10 @@ class Illuminance(ProbeTest):
     def test_under_a_point_light_is_that_of_the_inverse_square_and_cosine(self):
         rows, (area,) = self.probe(*self.path, "--grid", "floor")
         self.assertEqual((area["columns"], area["rows"], area["points"], len(rows)), (9, 8, 72, 72))
-        for x, y, z, e, error, direct, indirect, name in rows:
+        for x, y, z, e, error, of_solution, direct, indirect, name in rows:
             r = math.dist((x, y, z), (2, 2, 2.5))
             self.assertAlmostEqual(e, 1000 * 2.5 / r**3, delta=1e-3 * e)
-            self.assertEqual((direct, indirect, name), (e, 0, "floor"))
+            self.assertEqual((of_solution, direct, indirect, name), (0, e, 0, "floor"))
         values = [row[3] for row in rows]
         self.assertAlmostEqual(area["mean"], sum(values) / 72, delta=1e-3)
         self.assertAlmostEqual(area["uniformity"], min(values) / area["mean"], delta=1e-5)
@@ -85,10 +87,24 @@ class Illuminance(ProbeTest):
             with self.subTest(source):
                 rows, areas = self.probe(*source, "--plane", "1", "--point", "1,1,2", "--samples", "4096")
                 self.assertEqual([area["name"] for area in areas], ["z = 1 m", "points"])
-                for *_, e, error, direct, indirect, _ in rows:
+                for *_, e, error, _, direct, indirect, _ in rows:
                     self.assertAlmostEqual(e, 200, delta=5 * error + 2)
                     self.assertLess(error, 3)
                     self.assertAlmostEqual(direct, 100, delta=5 * error + 2)
+
+    def test_states_the_error_of_the_solution(self):
+        """A solution of few rays is far off, by more than sampling explains. Path tracing has no such error."""
+        self.write("room.mgf", room())
+        places = ("--plane", "0.75", "--samples", "1024")
+        rows, (area,) = self.probe("room.mgf", "--method", "srr", "--rays", "20k", "--mesh-size", "0.5", *places)
+        _, (true,) = self.probe("room.mgf", "--shading", "path", *places)
+        difference = abs(area["mean"] - true["mean"])
+        self.assertGreater(difference, 4 * math.hypot(area["standard_error"], true["standard_error"]))
+        self.assertLess(difference, 3 * area["solution_error"])
+        self.assertLess(area["solution_error"], 2 * difference)
+        self.assertEqual(true["solution_error"], 0)
+        for *_, of_solution, _, indirect, _ in rows:
+            self.assertAlmostEqual(of_solution / indirect, rows[0][5] / rows[0][7], delta=1e-2 * of_solution / indirect)
 
     def test_has_the_same_bits_on_any_number_of_threads(self):
         self.write("box.mgf", furnace())

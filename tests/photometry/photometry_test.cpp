@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -41,6 +43,40 @@ TEST(Summary, WeighsColours) {
     const std::vector<MeasuredIrradiance> green{{Rgb(0, 10, 0), Rgb(0), Rgb(0, 1, 0), 0}};
     EXPECT_NEAR(summarise(green).mean, 7.152, 1e-4);
     EXPECT_NEAR(summarise(green).mean_error, 0.7152, 1e-5);
+}
+
+/// By hand: a tenth of the indirect light is missing everywhere.
+TEST(SolutionError, IsTheDifferenceFromPathTracing) {
+    const std::vector<MeasuredIrradiance> gathered{grey(100, 50, 0), grey(10, 100, 0), grey(0, 30, 0)};
+    const std::vector<MeasuredIrradiance> traced{grey(100, 55, 0), grey(10, 110, 0), grey(0, 33, 0)};
+    const SolutionError e = estimate_solution_error(gathered, std::array<std::size_t, 3>{0, 1, 2}, traced);
+    EXPECT_NEAR(e.mean, 6, 1e-4);
+    EXPECT_NEAR(e.relative, 0.1, 1e-5);
+    EXPECT_NEAR(e.at(gathered[1]), 10, 1e-3);
+    const IlluminanceSummary s = summarise(gathered, e);
+    EXPECT_NEAR(s.mean_solution_error, 6, 1e-4);
+    EXPECT_NEAR(s.min_solution_error, 3, 1e-4);
+
+    // One point stands for all three, whose own errors are independent of it.
+    const SolutionError of_one = estimate_solution_error(gathered, std::array<std::size_t, 1>{1}, {&traced[1], 1});
+    EXPECT_NEAR(of_one.mean, std::sqrt(100 + 100 * 2.0 / 3), 1e-3);
+}
+
+/// Equal values show an error below the resolution of the comparison, 5 lx a point.
+TEST(SolutionError, IsAtLeastHalfTheResolution) {
+    const std::vector<MeasuredIrradiance> gathered(4, grey(100, 50, 3)), traced(4, grey(100, 50, 4));
+    const SolutionError e = estimate_solution_error(gathered, std::array<std::size_t, 4>{0, 1, 2, 3}, traced);
+    EXPECT_NEAR(e.mean, std::sqrt(4 * 25 / 2.0) / 4, 1e-5);
+    EXPECT_NEAR(e.relative, std::sqrt(std::sqrt(4 * 625 / 2.0) / (4 * 2500)), 1e-6);
+}
+
+TEST(SolutionError, NeedsPointsThatWereMeasuredAndReflectedLight) {
+    const std::array<std::size_t, 1> first{0};
+    const std::vector<MeasuredIrradiance> lit{grey(100, 50, 3)}, direct{grey(100, 0, 3)},
+        lost{grey(0, 0, std::numeric_limits<float>::infinity())};
+    EXPECT_TRUE(std::isnan(estimate_solution_error(lit, first, lost).mean));
+    EXPECT_TRUE(std::isnan(estimate_solution_error(lost, first, lit).relative));
+    EXPECT_EQ(estimate_solution_error(direct, first, direct).mean, 0);
 }
 
 TEST(ExteriorIlluminance, IsThatOfTheUniformSkyWithoutTheSun) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace interflect {
@@ -27,7 +28,7 @@ double horizontal_illuminance(const EnvironmentMap& map) {
 
 }  // namespace
 
-IlluminanceSummary summarise(std::span<const MeasuredIrradiance> measured) {
+IlluminanceSummary summarise(std::span<const MeasuredIrradiance> measured, const SolutionError& solution_error) {
     IlluminanceSummary summary{.points = measured.size()};
     if (measured.empty()) return summary;
     double sum = 0, squared_error = 0;
@@ -44,7 +45,34 @@ IlluminanceSummary summarise(std::span<const MeasuredIrradiance> measured) {
     summary.mean_error = std::sqrt(squared_error) / count;
     summary.min = static_cast<double>(darkest->illuminance());
     summary.min_error = static_cast<double>(darkest->illuminance_error());
+    summary.mean_solution_error = solution_error.mean;
+    summary.min_solution_error = solution_error.at(*darkest);
     return summary;
+}
+
+SolutionError estimate_solution_error(std::span<const MeasuredIrradiance> gathered, std::span<const std::size_t> chosen,
+                                      std::span<const MeasuredIrradiance> traced) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    double count = 0, differences = 0, squares = 0, variances = 0, squared_variances = 0, indirect = 0;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const MeasuredIrradiance &a = gathered[chosen[i]], &b = traced[i];
+        if (!a.is_measured() || !b.is_measured()) continue;
+        const auto difference = static_cast<double>(b.illuminance() - a.illuminance());
+        const double variance = std::pow(static_cast<double>(a.illuminance_error()), 2) +
+                                std::pow(static_cast<double>(b.illuminance_error()), 2);
+        ++count;
+        differences += difference;
+        squares += difference * difference;
+        variances += variance;
+        squared_variances += variance * variance;
+        indirect += std::pow(static_cast<double>(luminance(a.indirect)), 2);
+    }
+    if (!(count > 0)) return {unknown, unknown};
+    if (!(indirect > 0)) return {};
+    const double of_points = std::max(squares - variances, std::sqrt(squared_variances / 2));
+    const double of_mean = std::max(differences * differences, variances / 2);
+    const double not_chosen = 1 - count / static_cast<double>(gathered.size());
+    return {std::sqrt(of_mean + not_chosen * of_points) / count, std::sqrt(of_points / indirect)};
 }
 
 std::optional<double> exterior_illuminance(const Scene& scene) {
