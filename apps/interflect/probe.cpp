@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -135,11 +136,18 @@ void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
         for (std::size_t i = 0; i < g.measured.size(); ++i) {
             const MeasuredIrradiance& e = g.measured[i];
             const Imath::V3d& p = g.grid.points[i];
-            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{:.3g},{:.6g},{:.6g},{}", p.x, p.y, p.z,
-                                      e.illuminance(), e.illuminance_error(), g.solution_error.at(e),
+            const double of_solution = g.solution_error.at(e);  // unknown after an interruption
+            file.add_line(fmt::format("{:.10g},{:.10g},{:.10g},{:.6g},{:.3g},{},{:.6g},{:.6g},{}", p.x, p.y, p.z,
+                                      e.illuminance(), e.illuminance_error(),
+                                      std::isfinite(of_solution) ? fmt::format("{:.3g}", of_solution) : "",
                                       luminance(e.direct), luminance(e.indirect), csv_field(g.grid.name)));
         }
     file.commit();
+}
+
+std::string text_of_errors(double of_sampling, double of_solution) {
+    return fmt::format("standard error {:.2g} lx of sampling, {} of the solution", of_sampling,
+                       std::isfinite(of_solution) ? fmt::format("{:.2g} lx", of_solution) : "unknown");
 }
 
 void print_text(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArguments& options,
@@ -149,11 +157,8 @@ void print_text(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeA
     if (g.missing > 0)
         print_line("  interrupted       {} of {} points were not measured", g.missing, g.missing + g.measured.size());
     if (g.measured.empty()) return;
-    constexpr const char* errors = "standard error {:.2g} lx of sampling, {:.2g} lx of the solution";
-    print_line("  mean              {:.4g} lx, {}", s.mean,
-               fmt::format(fmt::runtime(errors), s.mean_error, s.mean_solution_error));
-    print_line("  minimum           {:.4g} lx, {}", s.min,
-               fmt::format(fmt::runtime(errors), s.min_error, s.min_solution_error));
+    print_line("  mean              {:.4g} lx, {}", s.mean, text_of_errors(s.mean_error, s.mean_solution_error));
+    print_line("  minimum           {:.4g} lx, {}", s.min, text_of_errors(s.min_error, s.min_solution_error));
     print_line("  maximum           {:.4g} lx", s.max);
     print_line("  Emin/Emean (U0)   {:.3f}", s.uniformity());
     print_line("  Emin/Emax         {:.3f}", s.diversity());
@@ -173,11 +178,11 @@ Json to_json(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArgu
               {"spacing", {g.grid.column_spacing, g.grid.row_spacing}},
               {"mean", s.mean},
               {"standard_error", s.mean_error},
-              {"solution_error", s.mean_solution_error},
               {"min", s.min},
               {"max", s.max},
               {"uniformity", s.uniformity()},
               {"diversity", s.diversity()}};
+    if (std::isfinite(s.mean_solution_error)) json["solution_error"] = s.mean_solution_error;
     if (exterior) json["daylight_factor"] = s.mean / *exterior;
     return json;
 }

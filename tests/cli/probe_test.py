@@ -224,6 +224,20 @@ class Faults(ProbeTest):
         self.assertRegex(output, r"mean +(19\d\.\d|20\d\.\d|200)")
         self.assertEqual(len((self.folder / "out.csv").read_text().splitlines()), 2)
 
+    def test_an_interruption_leaves_the_error_of_the_solution_unknown(self):
+        self.write("floor.mgf", furnace())
+        process = subprocess.Popen(
+            [COMMAND, "probe", "floor.mgf", "--rays", "20k", "--point", "1,1,1", "--samples", "16000000", "--json", "-o", "out.csv"],
+            cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        next(line for line in process.stderr if "elements" in line)  # gathering follows
+        self.assertIn("rays", process.stderr.readline())
+        process.send_signal(signal.SIGINT)
+        output, messages = process.communicate(timeout=20)
+        self.assertEqual(process.returncode, INTERRUPTED, messages)
+        self.assertNotIn("solution_error", json.loads(output)["areas"][0])
+        self.assertEqual((self.folder / "out.csv").read_text().splitlines()[1].split(",")[5], "")
+
 
 if __name__ == "__main__":
     unittest.main()
