@@ -28,11 +28,11 @@ class Resume(CommandTest):
         process.wait()
         return process.returncode
 
-    def kill_and_resume(self, whole, options, step):
+    def kill_and_resume(self, whole, options, step, run=RUN):
         """Kills the run again and again, each time a little later, until one ends by itself."""
         (self.folder / "run.h5").unlink(missing_ok=True)
         kills = 0
-        arguments = (*RUN, *options, "-o", "killed.h5", *OFTEN)
+        arguments = (*run, *options, "-o", "killed.h5", *OFTEN)
         while True:
             code = self.start_and_end(
                 *arguments, signal_number=signal.SIGKILL, seconds=0.1 + step * kills
@@ -52,6 +52,13 @@ class Resume(CommandTest):
                 whole = self.bytes("whole.h5")
                 self.kill_and_resume(whole, options, step=0.07)
                 self.assertEqual([f.name for f in self.folder.glob("*.part*")], [])
+
+    def test_light_from_outside_is_aimed_at_the_same_places(self):
+        far = "v a =\n\tp 300 300 0\nv b =\n\tp 301 300 0\nv c =\n\tp 300 301 0\nm paint\nf a b c\n"
+        self.write("open.mgf", room().replace("f v2 v3 v7 v6\n", "") + far)
+        run, options = ("solve", "open.mgf", "--rays", "1M"), (*VIEW, "--sky", "clear", "--sun", "20,35")
+        self.interflect(*run, *options, "-o", "whole.h5")
+        self.kill_and_resume(self.bytes("whole.h5"), options, step=0.07, run=run)
 
     def test_goes_on_to_other_limits_and_keeps_the_previous_checkpoint(self):
         self.interflect(*RUN, "-o", "a.h5", "--checkpoint", "run.h5")
