@@ -161,7 +161,7 @@ class Bench:
         with tempfile.TemporaryDirectory() as folder:
             solution, stats = f"{folder}/solved.h5", Path(folder) / "stats"
             said = program.run(self.command, ["solve", str(path), *options.split(), "-o", solution, "--stats", str(stats)]).messages
-            pictures = [self.picture(solution, scene, shading) for shading in ("smooth --samples 8", "flat --samples 16", "gather --no-mirrors --samples 8")]
+            pictures = [self.picture(solution, scene, shading) for shading in ("smooth --samples 8", "flat --samples 16", "gather --no-mirrors --samples 2")]
             header, last = program.read_stats(stats)
         smooth, flat, gathered = (luminance(p) for p in pictures)
         error, noise, among = reference.pixel_error(flat)
