@@ -83,6 +83,11 @@ struct Scene {
     /// glTF); (0, 0) is the lower left corner. Empty where no patch has any. All corners of a patch have some, or none
     /// has: then they are NaN.
     std::vector<V2f> lightmap_coordinates;
+    /// Unit normal of the smooth surface at every vertex, as the file has it (glTF NORMAL, OBJ vn, PLY nx ny nz, MGF
+    /// n); (0, 0, 0) at vertices without one. Empty if no vertex has one. The sign is arbitrary: both sides of a face
+    /// share vertices. Rays meet the flat patches; normals decide where shading is smooth and how it varies within a
+    /// patch.
+    std::vector<V3f> normals;
     std::vector<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous there; see cut_at_contacts().
     std::vector<Material> materials;

@@ -351,5 +351,49 @@ TEST(Contacts, RandomBoxes) {
     }
 }
 
+/// `rows` strips of 4 m x `width`, each of two triangles.
+Scene floor_of_slivers(int rows, float width) {
+    Scene scene;
+    scene.objects = {""};
+    add_material(scene, Rgb(0.5f), Rgb(0));
+    for (int k = 0; k <= rows; ++k)
+        for (const float x : {0.0f, 4.0f}) scene.vertices.emplace_back(x, width * static_cast<float>(k), 0.0f);
+    for (std::uint32_t k = 0; k < 2 * static_cast<std::uint32_t>(rows); k += 2) {
+        scene.patches.resize(scene.patches.size() + 2);
+        scene.patches.end()[-2].vertices = {k, k + 1, k + 3, none};
+        scene.patches.end()[-1].vertices = {k, k + 3, k + 2, none};
+    }
+    return scene;
+}
+
+double longest_extent(const Scene& scene) {
+    double longest = 0;
+    for (const Patch& patch : scene.patches) {
+        const V3f& a = scene.vertices[patch.vertices[0]];
+        for (const std::uint32_t v : patch.vertices)
+            if (v != none) longest = std::max(longest, static_cast<double>((scene.vertices[v] - a).length()));
+    }
+    return longest;
+}
+
+/// A floor 1.3 m wide of slivers 1.3 cm wide: pieces of 1.3 m / 16 at most. Quartering alone would leave elements long.
+TEST(Contacts, SliversOfAFloorAreCutAcross) {
+    const Scene scene = floor_of_slivers(100, 0.013f), cut = cut_at_contacts(scene);
+    expect_same_surfaces(scene, cut);
+    EXPECT_LT(longest_extent(cut), 1.3 / 16 + 0.02);
+    EXPECT_LT(cut.patches.size(), 100 * scene.patches.size());
+    EXPECT_EQ(cut.contacts.size(), 0u);
+}
+
+TEST(Contacts, StripsThatAreSurfacesByThemselvesStayWhole) {
+    const Scene scene = floor_of_slivers(1, 0.013f);
+    EXPECT_EQ(cut_at_contacts(scene).patches.size(), scene.patches.size());
+}
+
+TEST(Contacts, CompactFacesStayWhole) {
+    const Scene scene = floor_of_slivers(4, 0.5f);
+    EXPECT_EQ(cut_at_contacts(scene).patches.size(), scene.patches.size());
+}
+
 }  // namespace
 }  // namespace interflect

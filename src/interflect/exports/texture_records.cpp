@@ -13,6 +13,7 @@ constexpr const char *reflectance_texture = "reflectance_texture", *exitance_tex
                      *transmittance_texture = "transmittance_texture";
 constexpr const char* coordinates_dataset = "/scene/texture_coordinates";
 constexpr const char* lightmap_coordinates_dataset = "/scene/lightmap_coordinates";
+constexpr const char* normals_dataset = "/scene/normals";
 
 std::string texels_dataset(std::size_t texture) { return "/scene/textures/" + std::to_string(texture); }
 
@@ -80,6 +81,8 @@ std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene) {
     };
     write_coordinates(coordinates_dataset, scene.texture_coordinates);
     write_coordinates(lightmap_coordinates_dataset, scene.lightmap_coordinates);
+    if (!scene.normals.empty())
+        ranges.push_back(file.write(normals_dataset, numbers_of(scene.normals), sizeof(V3f) / sizeof(float)));
     return ranges;
 }
 
@@ -97,6 +100,7 @@ void read_textures(const Hdf5Reader& file, Scene& scene) {
     if (file.has(coordinates_dataset)) scene.texture_coordinates = read_vectors<V2f>(file, coordinates_dataset);
     if (file.has(lightmap_coordinates_dataset))
         scene.lightmap_coordinates = read_vectors<V2f>(file, lightmap_coordinates_dataset);
+    if (file.has(normals_dataset)) scene.normals = read_vectors<V3f>(file, normals_dataset);
 }
 
 }  // namespace interflect::inline detail

@@ -17,6 +17,7 @@ using Imath::V3d;
 
 constexpr int float_component = 5126;
 constexpr const char* lightmap_set = "TEXCOORD_1";  // by which programs that bake lightmaps lay them out
+constexpr const char* normal_set = "NORMAL";
 /// How far a lightmap coordinate may lie outside of [0, 1]: rounding.
 constexpr double lightmap_tolerance = 1e-4;
 enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
@@ -72,7 +73,7 @@ struct GltfMeshes::Vertices {
         double weight;
     };
     GltfElements positions;
-    std::optional<GltfElements> coordinates, lightmap_coordinates;
+    std::optional<GltfElements> coordinates, lightmap_coordinates, normals;
     DracoMesh draco;
     std::vector<Target> targets;
     GltfElements joint_indices, joint_weights;
@@ -135,6 +136,7 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
         return true;
     };
     const bool has_coordinates = is_wanted(texture_set), has_lightmap = is_wanted(lightmap_set);
+    const bool has_normals = is_wanted(normal_set);
     const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
     const GltfElements indices =
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
@@ -147,7 +149,8 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
     };
     vertices.positions = decoded(0);
     if (has_coordinates) vertices.coordinates = decoded(1);
-    if (has_lightmap) vertices.lightmap_coordinates = decoded(wanted.size() - 1);
+    if (has_lightmap) vertices.lightmap_coordinates = decoded(has_coordinates ? 2 : 1);
+    if (has_normals) vertices.normals = decoded(wanted.size() - 1);
 }
 
 void GltfMeshes::open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices) {
@@ -182,12 +185,15 @@ GltfMeshes::Vertices GltfMeshes::vertices_of(const GltfValue& primitive) {
         if (!texture_set.empty() && attributes.has(texture_set.c_str()))
             vertices.coordinates = attribute(primitive, texture_set.c_str(), "VEC2");
         if (attributes.has(lightmap_set)) vertices.lightmap_coordinates = attribute(primitive, lightmap_set, "VEC2");
+        if (attributes.has(normal_set)) vertices.normals = attribute(primitive, normal_set, "VEC3");
     }
     if (vertices.positions.components != 3) attributes.fail("POSITION has not three components");
     for (const std::optional<GltfElements>& set : {vertices.coordinates, vertices.lightmap_coordinates})
         if (set && (set->count != vertices.positions.count || set->components != 2))
             attributes.fail(
                 fmt::format("{} texture coordinates for {} vertices", set->count, vertices.positions.count));
+    if (const auto& n = vertices.normals; n && (n->count != vertices.positions.count || n->components != 3))
+        attributes.fail(fmt::format("{} normals for {} vertices", n->count, vertices.positions.count));
     return vertices;
 }
 
@@ -246,6 +252,8 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
     mesh.positions.reserve(used.size());
     for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
+    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // deformed ones are not computed
+        for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) mesh.texture_coordinates.reserve(used.size());
     for (const std::uint32_t v : surface.mapping ? used : std::vector<std::uint32_t>()) {

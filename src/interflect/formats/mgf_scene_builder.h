@@ -33,8 +33,11 @@ class MgfSceneBuilder {
     /// A place in the world [m], relative to the scene's origin.
     V3f position(const Imath::V3d& world) const { return faces_.position(world); }
     /// Index of the vertex at `world` [m] with these texture coordinates, if it has some.
-    std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate) {
-        return weld_.vertex(position(world), {.texture = texture_coordinate, .lightmap = {}});
+    /// @param normal  In the world, of any length; zero for none.
+    std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate,
+                         const Imath::V3d& normal = Imath::V3d(0)) {
+        return weld_.vertex(position(world),
+                            {.texture = texture_coordinate, .lightmap = {}, .normal = welded_normal(normal)});
     }
     /// What is emitted in a colour, in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);

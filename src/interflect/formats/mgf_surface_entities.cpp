@@ -37,7 +37,9 @@ void MgfReader::add_loop(MgfWords names) {
         if (materials_.current().is_textured() && !vertex.has_texture_coordinate)
             throw MgfFault(fmt::format("vertex '{}' needs texture coordinates (uv): the material has a texture", name));
         outline_.push_back(vertex.point * to_world);
-        loop.push_back(scene_.vertex(outline_.back(), vertex.coordinate()));
+        V3d normal;  // MGF scales all axes alike
+        to_world.multDirMatrix(vertex.normal, normal);
+        loop.push_back(scene_.vertex(outline_.back(), vertex.coordinate(), normal));
     }
     if (loops_.size() == 1) scene_.place_face(outline_);
     // A mirror image turns the other way round.

@@ -18,6 +18,7 @@ struct Mesh {
     std::vector<Imath::V3d> positions;      ///< Of the vertices.
     std::vector<V2f> texture_coordinates;   ///< One for each vertex, as Scene has them, or empty.
     std::vector<V2f> lightmap_coordinates;  ///< Likewise; in [0, 1].
+    std::vector<Imath::V3d> normals;        ///< One for each vertex, of any length; (0, 0, 0) for none. Or empty.
     std::vector<std::uint32_t> indices;     ///< Of the corners of all faces, counter-clockwise seen from the front.
     std::vector<std::uint32_t> face_sizes;  ///< How many corners each face has, at least 3; empty: triangles alone.
     std::uint32_t material = 0;             ///< Index into Model::materials.

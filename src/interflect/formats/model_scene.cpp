@@ -40,6 +40,8 @@ std::string mesh_fault(const Mesh& mesh, const Model& model, const ReadOptions& 
     if (!mesh.lightmap_coordinates.empty() && mesh.lightmap_coordinates.size() != mesh.positions.size())
         return fmt::format("it has {} lightmap coordinates for {} vertices", mesh.lightmap_coordinates.size(),
                            mesh.positions.size());
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+        return fmt::format("it has {} normals for {} vertices", mesh.normals.size(), mesh.positions.size());
     if (model.materials[mesh.material].is_textured() && mesh.texture_coordinates.empty())
         return fmt::format("its material '{}' has a texture, but it has no texture coordinates",
                            model.materials[mesh.material].name);
@@ -129,6 +131,13 @@ class InstanceAdder {
         return result;
     }
 
+    /// Normals transform by the cofactors of the linear part, up to their length and sign.
+    static V3f to_world_normal(const V3d& n, const MeshInstance& instance) {
+        const Imath::M44d& m = instance.to_world;
+        const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
+        return welded_normal(n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y));
+    }
+
     void place(const Mesh& mesh, const MeshInstance& instance, std::span<const std::uint32_t> corners) {
         outline_.clear();
         for (const std::uint32_t v : corners) outline_.push_back(to_world(mesh.positions[v], instance));
@@ -144,6 +153,7 @@ class InstanceAdder {
             VertexCoordinates coordinates;
             if (is_textured) coordinates.texture = mesh.texture_coordinates[v];
             if (has_layout) coordinates.lightmap = mesh.lightmap_coordinates[v];
+            if (!mesh.normals.empty()) coordinates.normal = to_world_normal(mesh.normals[v], instance);
             vertices.push_back(weld_.vertex(faces_.position(to_world(mesh.positions[v], instance)), coordinates));
         }
         return vertices;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <stdexcept>
 
 #include "interflect/error.h"
@@ -22,16 +23,29 @@ double coordinate_value(std::string_view word) {
     return *value;
 }
 
-/// The index from 0 that a number from 1, or one from -1 backwards, stands for.
-std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
+std::optional<std::int64_t> whole_number(std::string_view text) {
     std::int64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number == 0)
-        throw std::invalid_argument(fmt::format("expected the number of a {}, not '{}'", of, text));
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return number;
+}
+
+/// Converts a number from 1, or from -1 backwards, to an index from 0. @return  none if there is no such item.
+std::uint32_t index_of(std::int64_t number, std::size_t count) {
     const std::int64_t index = number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
-    if (index < 0 || index >= static_cast<std::int64_t>(count))
-        throw std::invalid_argument(fmt::format("there is no {} {}: {} precede this line", of, number, count));
-    return static_cast<std::uint32_t>(index);
+    const bool exists = number != 0 && index >= 0 && index < static_cast<std::int64_t>(count);
+    return exists ? static_cast<std::uint32_t>(index) : none;
+}
+
+/// The index from 0 that a number from 1, or one from -1 backwards, stands for.
+std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
+    const std::optional<std::int64_t> number = whole_number(text);
+    if (!number || *number == 0)
+        throw std::invalid_argument(fmt::format("expected the number of a {}, not '{}'", of, text));
+    const std::uint32_t index = index_of(*number, count);
+    if (index == none)
+        throw std::invalid_argument(fmt::format("there is no {} {}: {} precede this line", of, *number, count));
+    return index;
 }
 
 }  // namespace
@@ -67,6 +81,8 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
         vertex(words);
     } else if (key == "vt") {
         coordinate(words);
+    } else if (key == "vn") {
+        normal(words);
     } else if (key == "f") {
         face(words.subspan(1), where);
     } else if (key == "o") {
@@ -78,7 +94,7 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
         material_ = materials_.find(name(), where);
     } else if (key == "mtllib") {
         libraries(line, words, where);
-    } else if (key != "vn" && key != "s" && key != "vp") {
+    } else if (key != "s" && key != "vp") {
         constexpr std::string_view known = "l p";  // lines and points, which have no area
         model_.warnings.add("unsupported-entity",
                             known.find(key) != known.npos ? "lines and points are left out"
@@ -101,6 +117,23 @@ void ObjReader::coordinate(Words words) {
     coordinates_.emplace_back(static_cast<float>(coordinate_value(words[1])), static_cast<float>(v));
 }
 
+/// A normal that is not three finite numbers counts as missing: only shading needs it.
+void ObjReader::normal(Words words) {
+    if (normals_.size() >= none) throw std::invalid_argument("there are more normals than 32 bits can count");
+    Imath::V3d n(0);
+    if (words.size() >= 4)
+        for (int k = 0; k < 3; ++k) n[k] = parse_number(words[static_cast<std::size_t>(k) + 1]).value_or(0);
+    normals_.push_back(n);
+}
+
+std::uint32_t ObjReader::normal_index(std::string_view text, const Location& where) {
+    const std::uint32_t index = index_of(whole_number(text).value_or(0), normals_.size());
+    if (index == none)
+        model_.warnings.add("missing-normals", "a face refers to a normal that does not exist: it is ignored",
+                            where.text());
+    return index;
+}
+
 void ObjReader::face(Words words, const Location& where) {
     if (words.size() < 3 || words.size() > options_.max_face_vertices)
         throw std::invalid_argument(
@@ -114,6 +147,7 @@ void ObjReader::face(Words words, const Location& where) {
 /// Index in the present mesh of a corner such as "3", "3/1", "3//2" or "-1/-1/-1".
 std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
     const std::size_t slash = word.find('/');
+    const std::size_t second_slash = slash == word.npos ? word.npos : word.find('/', slash + 1);
     const std::uint32_t position = resolved(word.substr(0, slash), positions_.size(), "vertex");
     std::uint32_t coordinate = none;
     Mesh& target = model_.meshes[mesh_];
@@ -123,10 +157,18 @@ std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
         const std::string_view text = rest.substr(0, rest.find('/'));
         if (!text.empty()) coordinate = resolved(text, coordinates_.size(), "texture coordinate");
     }
+    const std::string_view normal_text = second_slash == word.npos ? "" : word.substr(second_slash + 1);
+    const std::uint32_t normal = normal_text.empty() ? none : normal_index(normal_text, where);
     Use& use = uses_[position];
-    if (use.mesh == mesh_ && use.coordinate == coordinate) return use.index;
-    use = {mesh_, static_cast<std::uint32_t>(target.positions.size()), coordinate};
+    if (use.mesh == mesh_ && use.coordinate == coordinate && use.normal == normal) return use.index;
+    use = {mesh_, static_cast<std::uint32_t>(target.positions.size()), coordinate, normal};
     target.positions.push_back(positions_[position]);
+    if (normal != none) {
+        target.normals.resize(use.index, Imath::V3d(0));
+        target.normals.push_back(normals_[normal]);
+    } else if (!target.normals.empty()) {
+        target.normals.emplace_back(0);
+    }
     if (is_textured) {
         if (coordinate == none)
             model_.warnings.add("missing-coordinates",

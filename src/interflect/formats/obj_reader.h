@@ -28,11 +28,13 @@ class ObjReader {
   private:
     /// Where in the mesh that was last given this vertex it is, and with which texture coordinates.
     struct Use {
-        std::uint32_t mesh = none, index = 0, coordinate = none;
+        std::uint32_t mesh = none, index = 0, coordinate = none, normal = none;
     };
     void read_line(const LineReader& line, std::span<const std::string_view> words, const Location& where);
     void vertex(std::span<const std::string_view> words);
     void coordinate(std::span<const std::string_view> words);
+    void normal(std::span<const std::string_view> words);
+    std::uint32_t normal_index(std::string_view text, const Location& where);
     void face(std::span<const std::string_view> words, const Location& where);
     void libraries(const LineReader& line, std::span<const std::string_view> words, const Location& where);
     std::uint32_t corner(std::string_view word, const Location& where);
@@ -44,6 +46,7 @@ class ObjReader {
     ObjMaterials materials_;
     std::vector<Imath::V3d> positions_;
     std::vector<V2f> coordinates_;
+    std::vector<Imath::V3d> normals_;
     std::vector<Use> uses_;  // of each position
     std::string object_, group_;
     std::uint32_t material_ = 0;

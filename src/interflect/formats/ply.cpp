@@ -80,13 +80,14 @@ class PlyReader {
     void read_vertices(const PlyElement& element) {
         if (!mesh_.positions.empty()) throw std::invalid_argument("there are two elements 'vertex'");
         if (element.count >= none) throw std::invalid_argument("there are more vertices than 32 bits can count");
-        std::array<std::optional<std::size_t>, 3> place, tint;
+        std::array<std::optional<std::size_t>, 3> place, tint, normal;
         for (std::size_t c = 0; c < 3; ++c) {
             place[c] = element.find(std::array{"x", "y", "z"}[c]);
             tint[c] = element.find(std::array{"red", "green", "blue"}[c]);
+            normal[c] = element.find(std::array{"nx", "ny", "nz"}[c]);
             if (!place[c]) throw std::invalid_argument("a vertex needs the properties x, y and z");
         }
-        const bool has_colour = tint[0] && tint[1] && tint[2];
+        const bool has_colour = tint[0] && tint[1] && tint[2], has_normal = normal[0] && normal[1] && normal[2];
         mesh_.positions.reserve(element.count);
         std::vector<double> row(element.properties.size());
         for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -99,6 +100,7 @@ class PlyReader {
             const Imath::V3d x(row[*place[0]], row[*place[1]], row[*place[2]]);
             if (!std::isfinite(x.x + x.y + x.z)) throw std::invalid_argument(fmt::format("vertex {} is not finite", i));
             mesh_.positions.push_back(x);
+            if (has_normal) mesh_.normals.emplace_back(row[*normal[0]], row[*normal[1]], row[*normal[2]]);
             if (has_colour) add_colour({row[*tint[0]], row[*tint[1]], row[*tint[2]]});
         }
         has_vertices_ = true;

@@ -200,6 +200,8 @@ class MgfWriter {
             }
             if (!scene_.texture_coordinates.empty())
                 put("\tuv {} {}\n", scene_.texture_coordinates[v].x, scene_.texture_coordinates[v].y);
+            if (!scene_.normals.empty() && scene_.normals[v] != V3f(0))
+                put("\tn {} {} {}\n", scene_.normals[v].x, scene_.normals[v].y, scene_.normals[v].z);
             vertex_written_[v] = true;
         }
         put("f");

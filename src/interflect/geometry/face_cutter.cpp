@@ -193,6 +193,33 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
                            between(3, 2, i / parts)});
 }
 
+/// Cuts a long polygon across, perpendicular to its longest edge, into parts of equal length.
+/// @return  The polygon alone if it is short or no sliver.
+std::vector<PlanarPolygon> slices_of(const PlanarPolygon& polygon, double longest) {
+    constexpr double most_parts = 64, sliver_aspect = 16;
+    PlanarSegment edge{polygon[0].position, polygon[0].position};
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const PlanarSegment next{polygon[i].position, polygon[(i + 1) % polygon.size()].position};
+        if (next.length() > edge.length()) edge = next;
+    }
+    const double length = edge.length(), width = doubled_area(polygon) / 2 / length;
+    if (!(length > longest) || length < sliver_aspect * width) return {polygon};
+    const double parts = std::min(most_parts, std::ceil(length / longest));
+    const V2d along = (edge.b - edge.a) / parts, across(-along.y, along.x);
+    const double rounding = length * std::numeric_limits<float>::epsilon();
+    std::vector<PlanarPolygon> slices;
+    PlanarPolygon rest = polygon;
+    for (double i = 1; i < parts; ++i) {
+        const V2d at = edge.a + along * i;
+        Halves halves = halves_of(rest, Line({at, at + across}), rounding);
+        if (!halves.proper) continue;
+        slices.push_back(std::move(halves.left));
+        rest = std::move(halves.right);
+    }
+    slices.push_back(std::move(rest));
+    return slices;
+}
+
 }  // namespace
 
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment) {
@@ -252,6 +279,11 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
 }
 
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
+    if (const std::vector<PlanarPolygon> slices = slices_of(polygon, shape.longest_sliver); slices.size() > 1) {
+        for (const PlanarPolygon& slice : slices)
+            divide_into_patches(slice, {shape.largest_aspect, shape.least_width}, patches);
+        return;
+    }
     const std::size_t n = polygon.size();
     if (n == 3) patches.push_back(polygon);
     if (n == 4) divide_across(polygon, shape, patches);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "interflect/geometry/planar_polygon.h"
@@ -28,12 +29,15 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
 
 /// Limits of the shape of pieces.
 struct PieceShape {
-    double largest_aspect = 4;  ///< Length over width of a quadrilateral.
-    double least_width = 0;     ///< Narrower ones may have any length [m].
+    /// Length over width of a quadrilateral.
+    double largest_aspect = std::numeric_limits<double>::infinity();
+    double least_width = 0;  ///< Narrower ones may have any length [m].
+    /// Longer pieces are first cut across, whatever their width, where they are slivers [m].
+    double longest_sliver = std::numeric_limits<double>::infinity();
 };
 
 /// Divides a convex polygon into triangles and quadrilaterals by diagonals that leave compact parts, and long
-/// quadrilaterals across, into 16 at most: the quadtree's elements have the shape of their patch.
+/// quadrilaterals across, into 16 at most, slivers into 64: the quadtree's elements have the shape of their patch.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
 }  // namespace interflect::inline detail

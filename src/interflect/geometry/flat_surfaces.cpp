@@ -43,7 +43,7 @@ bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[pat
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
     std::iota(joined.begin(), joined.end(), 0u);
-    if (scene.texture_coordinates.empty() && scene.lightmap_coordinates.empty()) return joined;
+    if (scene.texture_coordinates.empty() && scene.lightmap_coordinates.empty() && scene.normals.empty()) return joined;
     Scene positions;
     VertexWeld weld(positions);
     for (std::size_t i = 0; i < joined.size(); ++i) joined[i] = weld.vertex(scene.vertices[i]);

@@ -74,6 +74,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
     split.vertices.clear();
     split.texture_coordinates.clear();
     split.lightmap_coordinates.clear();
+    split.normals.clear();
     split.patches.clear();
     split.patches.reserve(static_cast<std::size_t>(count));
     VertexWeld weld(split);

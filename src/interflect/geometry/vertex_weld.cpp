@@ -19,6 +19,8 @@ std::uint64_t hash(const V3f& x, const VertexCoordinates& coordinates) {
     std::uint64_t result = mix(bits(x.x) | bits(x.y) << 32, bits(x.z));
     if (texture != V2f(0)) result = mix(result, bits(texture));
     if (coordinates.lightmap) result = mix(result, bits(*coordinates.lightmap));
+    const V3f& n = coordinates.normal;
+    if (n != V3f(0)) result = mix(result, mix(bits(n.x) | bits(n.y) << 32, bits(n.z)));
     return result;
 }
 

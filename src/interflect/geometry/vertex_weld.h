@@ -8,9 +8,9 @@
 
 namespace interflect::inline detail {
 
-/// Gives one vertex to each distinct position with its coordinates in textures and lightmaps: what meets in a point
-/// shares a vertex there. Numbers are compared as they are, in single precision; -0 counts as 0. Holds at most 16 bytes
-/// a vertex: a hash table with linear probing, of indices into the vertices.
+/// Gives one vertex to each distinct position with its attributes: faces that meet in a point share a vertex there.
+/// Numbers are compared as they are, in single precision; -0 counts as 0. Holds at most 16 bytes a vertex: a hash table
+/// with linear probing, of indices into the vertices.
 class VertexWeld {
   public:
     /// @param scene  New vertices go at the end; those that others add are not found.

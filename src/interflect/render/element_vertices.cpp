@@ -87,6 +87,7 @@ class VertexBuilder {
         }
     }
 
+    const SmoothSurfaces& surfaces() const { return surfaces_; }
     std::vector<Corners> release_corners() { return std::move(corners_); }
 
   private:
@@ -280,11 +281,14 @@ ElementVertices::ElementVertices(const Scene& scene, const ElementForest& forest
     VertexBuilder builder(scene, forest, options);
     count_ = builder.count();
     builder.find_hanging_vertices(hanging_, couplings_);
+    normals_ = SmoothNormals(scene, builder.surfaces());
     corners_ = builder.release_corners();
 }
 
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
-                               std::span<const Rgb> values) {
+                               std::span<const Rgb> irradiance) {
+    std::vector<Rgb> values(irradiance.begin(), irradiance.end());
+    vertices.normals().apply(forest, values);
     std::vector<RgbD> sum(vertices.count(), RgbD(0, 0, 0));
     std::vector<double> weight(vertices.count(), 0.0);
     for (std::uint32_t e = 0; e < forest.size(); ++e) {

@@ -7,6 +7,7 @@
 
 #include "interflect/colour.h"
 #include "interflect/elements/forest.h"
+#include "interflect/render/smooth_normals.h"
 #include "interflect/render/smooth_surfaces.h"
 #include "interflect/scene.h"
 
@@ -46,21 +47,24 @@ class ElementVertices {
     const std::vector<Hanging>& hanging() const { return hanging_; }
     /// In no order: each counts what the leaves around its ends have, without couplings.
     const std::vector<Coupling>& couplings() const { return couplings_; }
+    const SmoothNormals& normals() const { return normals_; }
 
   private:
     std::vector<std::array<std::uint32_t, 4>> corners_;
     std::vector<Hanging> hanging_;
     std::vector<Coupling> couplings_;
+    SmoothNormals normals_;
     std::uint32_t count_ = 0;
 };
 
-/// One value a vertex from one an element, of which only those of leaves count. At most vertices: the mean over the
-/// leaves that have the vertex as a corner, weighted by their angles there. An angle does not change when a face is cut
-/// into triangles (Thuermer and Wuethrich 1998), so the result does not depend on how a face was tessellated.
-/// At a hanging vertex: the interpolated value of its edge's ends, so that the leaves on both sides of the edge agree
-/// along all of it. Across a seam leaves of about equal size whose vertices lie apart differ by what linear
-/// interpolation leaves out: by the square of their size.
+/// Irradiance at vertices from that of elements, of which only leaves count. On curved surfaces it varies within
+/// patches as their normals do (SmoothNormals). At most vertices: the mean over the leaves that have the vertex as a
+/// corner, weighted by their angles there. An angle does not change when a face is cut into triangles (Thuermer and
+/// Wuethrich 1998), so the result does not depend on how a face was tessellated. At a hanging vertex: the interpolated
+/// value of its edge's ends, so that the leaves on both sides of the edge agree along all of it. Across a seam leaves
+/// of about equal size whose vertices lie apart differ by what linear interpolation leaves out: by the square of their
+/// size.
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
-                               std::span<const Rgb> values);
+                               std::span<const Rgb> irradiance);
 
 }  // namespace interflect::inline detail

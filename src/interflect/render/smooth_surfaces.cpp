@@ -126,13 +126,51 @@ std::vector<PatchEdge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Unit normals towards the lit side.
-std::vector<V3f> patch_normals(const Scene& scene) {
-    std::vector<V3f> normals;
-    normals.reserve(scene.patches.size());
-    for (const Patch& patch : scene.patches) normals.push_back(PatchGeometry(scene, patch).normal());
-    return normals;
-}
+/// Decides whether patches continue each other.
+class CreaseTest {
+  public:
+    CreaseTest(const Scene& scene, float crease_angle)
+        : scene_(scene), normals_(patch_normals(scene)), least_cosine_(cosine_of(crease_angle)) {}
+
+    /// By material and the angle between the patches.
+    bool is_smooth(std::uint32_t p, std::uint32_t q) const {
+        return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= least_cosine_;
+    }
+    /// The same at a common edge. Normals of the scene decide if both patches have them at both ends.
+    bool is_smooth(const PatchEdge& a, const PatchEdge& b) const {
+        const Comparison start = compare_normals(a.start, b.end), end = compare_normals(a.end, b.start);
+        if (start == Comparison::unknown || end == Comparison::unknown) return is_smooth(a.patch(), b.patch());
+        return start == Comparison::equal && end == Comparison::equal && has_one_material(a.patch(), b.patch()) &&
+               normals_[a.patch()].dot(normals_[b.patch()]) >= least_cosine_of_smooth_;
+    }
+
+  private:
+    enum class Comparison { unknown, equal, different };
+
+    static float cosine_of(float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180); }
+    bool has_one_material(std::uint32_t p, std::uint32_t q) const {
+        return scene_.patches[p].material == scene_.patches[q].material;
+    }
+    /// The normal at a corner, towards its patch's lit side; zero if there is none.
+    V3f normal_at(std::uint32_t corner) const {
+        if (scene_.normals.empty()) return V3f(0);
+        const V3f n = scene_.normals[scene_.patches[corner / 4].vertices[corner % 4]];
+        return n.dot(normals_[corner / 4]) < 0 ? -n : n;
+    }
+    Comparison compare_normals(std::uint32_t corner, std::uint32_t other) const {
+        const V3f n = normal_at(corner), m = normal_at(other);
+        if (n == V3f(0) || m == V3f(0)) return Comparison::unknown;
+        return n.dot(m) >= cosine_of_equal_ ? Comparison::equal : Comparison::different;
+    }
+
+    const Scene& scene_;
+    const std::vector<V3f> normals_;  // of patches
+    const float least_cosine_;
+    // Readers round normals by 0.2 degrees.
+    const float cosine_of_equal_ = cosine_of(1);
+    // Some programs average normals across the corners of rooms and boxes. Light is not smooth there.
+    const float least_cosine_of_smooth_ = cosine_of(60);
+};
 
 /// Numbers the sets of corners, or of edges, that patches have.
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
@@ -316,12 +354,15 @@ class SeamFinder {
 
 }  // namespace
 
+std::vector<V3f> patch_normals(const Scene& scene) {
+    std::vector<V3f> normals;
+    normals.reserve(scene.patches.size());
+    for (const Patch& patch : scene.patches) normals.push_back(PatchGeometry(scene, patch).normal());
+    return normals;
+}
+
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options) {
-    const float least_cosine = std::cos(options.crease_angle * std::numbers::pi_v<float> / 180);
-    const std::vector<V3f> normals = patch_normals(scene);
-    const auto smooth = [&](std::uint32_t p, std::uint32_t q) {
-        return scene.patches[p].material == scene.patches[q].material && normals[p].dot(normals[q]) >= least_cosine;
-    };
+    const CreaseTest creases(scene, options.crease_angle);
     const ContactTree contacts(scene);
     const auto has_contact = [&](const PatchEdge& e) {
         const Patch& patch = scene.patches[e.patch()];
@@ -346,7 +387,7 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
         if (may_continue)
             for (auto a = first; a != last; ++a)
                 for (auto b = a + 1; b != last; ++b)
-                    if (a->upwards != b->upwards && smooth(a->patch(), b->patch())) join(*a, *b);
+                    if (a->upwards != b->upwards && creases.is_smooth(*a, *b)) join(*a, *b);
         first = last;
     }
 
@@ -359,7 +400,9 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
             const auto corners = static_cast<std::uint32_t>(scene.patches[corner / 4].vertex_count());
             return corner - corner % 4 + (corner % 4 + 1) % corners;
         };
-        seams = SeamFinder(scene, std::move(open), contacts).seams(smooth);
+        seams = SeamFinder(scene, std::move(open), contacts).seams([&](std::uint32_t p, std::uint32_t q) {
+            return creases.is_smooth(p, q);
+        });
         for (const auto& [edge, from, to] : seams) {
             if (from[0] == 0 && to[1] == 1) joined_corners.unite(edge[0], next_corner(edge[1]));
             if (to[0] == 1 && from[1] == 0) joined_corners.unite(next_corner(edge[0]), edge[1]);

@@ -28,11 +28,15 @@ struct SmoothSurfaces {
     std::vector<Seam> seams;
 };
 
+/// Unit normals of all patches, towards their lit sides.
+std::vector<V3f> patch_normals(const Scene& scene);
+
 /// Two patches continue each other across an edge that they share where they are of equal material, there is no crease
-/// between them, and they are of one orientation (the edge runs opposite ways in the two patches' vertex orders), so
-/// that fronts continue onto fronts and backs onto backs: the edge is one for both. Two corners at the same point are
-/// one where a chain of patches leads from one to the other, each continuing the last across an edge at that point.
-/// Vertices are the same where their positions are equal to rounding (2^-20 of the scene's largest coordinate).
+/// between them (normals of the scene that differ, else an angle above SmoothingOptions::crease_angle), and they are of
+/// one orientation (the edge runs opposite ways in the two patches' vertex orders), so that fronts continue onto fronts
+/// and backs onto backs: the edge is one for both. Two corners at the same point are one where a chain of patches leads
+/// from one to the other, each continuing the last across an edge at that point. Vertices are the same where their
+/// positions are equal to rounding (2^-20 of the scene's largest coordinate).
 ///
 /// Patches of a surface that was cut (Patch::surface) also continue each other, and what they border on, across parts
 /// of edges: those are seams. No patch continues another across a contact (Scene::contacts). Elsewhere a vertex of one

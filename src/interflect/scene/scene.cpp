@@ -135,6 +135,21 @@ void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
     }
 }
 
+void check_normals(const Scene& scene, Faults& faults) {
+    if (scene.normals.empty()) return;
+    faults.check(scene.normals.size() == scene.vertices.size(), [&] {
+        return fmt::format("there are {} vertices and {} normals", scene.vertices.size(), scene.normals.size());
+    });
+    constexpr float tolerance = 1e-3f;  // of the length
+    for (std::size_t i = 0; i < scene.normals.size(); ++i) {
+        const V3f& n = scene.normals[i];
+        faults.check(n == V3f(0) || std::abs(n.length() - 1) <= tolerance, [&] {
+            return fmt::format("vertex {} has the normal ({}, {}, {}); expected length 1, or 0 for none", i, n.x, n.y,
+                               n.z);
+        });
+    }
+}
+
 /// @param patch  Has vertices of the scene.
 bool has_some_lightmap_coordinates_only(const Scene& scene, const Patch& patch) {
     if (scene.lightmap_coordinates.size() != scene.vertices.size()) return false;
@@ -188,6 +203,7 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     check_points(scene, faults);
     check_textures(scene, faults);
     check_lightmap_coordinates(scene, faults);
+    check_normals(scene, faults);
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     faults.add(sky_count_fault(scene), the_scene);
     check_materials(scene, faults);

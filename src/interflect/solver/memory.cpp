@@ -18,6 +18,7 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
         need.scene += texture.texels.size() * per_texel;
     }
     need.scene += (scene.texture_coordinates.size() + scene.lightmap_coordinates.size()) * sizeof(V2f);
+    need.scene += scene.normals.size() * sizeof(V3f);
     if (!scene.texture_coordinates.empty()) need.per_element += sizeof(MeanSurface) + 1;
     need.ray_tracer = ray_caster.memory();
     need.patches = scene.patches.size() * sizeof(PatchGeometry);

@@ -1,0 +1,164 @@
+#include "interflect/render/smooth_normals.h"
+
+#include <ImathMatrix.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace interflect::inline detail {
+
+namespace {
+
+/// A patch is curved if the normal at a corner differs from its own by more than this cosine: 0.5 degrees, above the
+/// rounding of normals in readers (0.2 degrees).
+constexpr float cosine_of_flat = 0.99996f;
+/// Regularises fits in directions in which the surface is not curved; the bias in the others is 0.1%.
+constexpr double relative_ridge = 1e-3;
+
+std::uint32_t corner_count(const Patch& patch) { return static_cast<std::uint32_t>(patch.vertex_count()); }
+
+/// Normals at the corners of patches, one for each group of corners: the mean of the scene's normals, or of the
+/// patches'.
+std::vector<V3f> normals_of_groups(const Scene& scene, const SmoothSurfaces::Groups& corners,
+                                   const std::vector<V3f>& patch_normals) {
+    std::vector<V3f> authored(corners.count, V3f(0)), geometric(corners.count, V3f(0));
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const Patch& patch = scene.patches[p];
+        const std::uint32_t count = corner_count(patch);
+        for (std::uint32_t c = 0; c < count; ++c) {
+            const std::uint32_t group = corners.group[4 * p + c];
+            const V3f& x = scene.vertices[patch.vertices[c]];
+            const V3f next = (scene.vertices[patch.vertices[(c + 1) % count]] - x).normalized();
+            const V3f last = (scene.vertices[patch.vertices[(c + count - 1) % count]] - x).normalized();
+            geometric[group] += patch_normals[p] * std::acos(std::clamp(next.dot(last), -1.0f, 1.0f));
+            if (scene.normals.empty()) continue;
+            const V3f n = scene.normals[patch.vertices[c]];
+            authored[group] += n.dot(patch_normals[p]) < 0 ? -n : n;
+        }
+    }
+    for (std::uint32_t g = 0; g < corners.count; ++g)
+        geometric[g] = (authored[g] == V3f(0) ? geometric[g] : authored[g]).normalized();
+    return geometric;
+}
+
+/// Mean irradiance of the leaves along an edge of an element, which starts at corner c in the order of the vertices.
+Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, std::uint32_t e, std::uint32_t c,
+                    bool is_triangle) {
+    if (forest.is_leaf(e)) return irradiance[e];
+    // Children have the orientation of their parent: its edge c consists of the edges c of the children at both ends.
+    constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
+    const std::uint32_t next = (c + 1) % (is_triangle ? 3 : 4);
+    const auto half = [&](std::uint32_t corner) {
+        const std::uint32_t child = forest.first_child(e) + (is_triangle ? corner : child_at_corner[corner]);
+        return mean_along_edge(forest, irradiance, child, c, is_triangle);
+    };
+    return 0.5f * (half(c) + half(next));
+}
+
+}  // namespace
+
+V3f SmoothNormals::CurvedPatch::normal_at(bool is_triangle, Parameters p) const {
+    if (is_triangle) return normals[0] * (1 - p.u - p.v) + normals[1] * p.u + normals[2] * p.v;
+    return (normals[0] * (1 - p.u) + normals[1] * p.u) * (1 - p.v) + (normals[3] * (1 - p.u) + normals[2] * p.u) * p.v;
+}
+
+V3f SmoothNormals::CurvedPatch::mean_normal(bool is_triangle) const {
+    const V3f sum = normals[0] + normals[1] + normals[2];
+    return is_triangle ? sum / 3 : (sum + normals[3]) / 4;
+}
+
+SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces) {
+    const std::vector<V3f> own = patch_normals(scene);
+    const std::vector<V3f> normals = normals_of_groups(scene, surfaces.corners, own);
+    std::vector<std::array<std::uint32_t, 2>> members(surfaces.edges.count,
+                                                      {none, none});  // edges, as 4 patch + corner
+    for (std::uint32_t e = 0; e < surfaces.edges.group.size(); ++e) {
+        if (surfaces.edges.group[e] == none) continue;
+        auto& [first, second] = members[surfaces.edges.group[e]];
+        (first == none ? first : second) = e;
+    }
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        CurvedPatch curved{.patch = p, .normals = {}};
+        bool is_flat = true;
+        const std::uint32_t count = corner_count(scene.patches[p]);
+        for (std::uint32_t c = 0; c < count; ++c) {
+            curved.normals[c] = normals[surfaces.corners.group[4 * p + c]];
+            is_flat &= curved.normals[c].dot(own[p]) > cosine_of_flat;
+        }
+        if (is_flat) continue;
+        curved.first_neighbour = static_cast<std::uint32_t>(neighbours_.size());
+        for (std::uint32_t c = 0; c < count; ++c) {
+            const auto [first, second] = members[surfaces.edges.group[4 * p + c]];
+            const std::uint32_t other = first == 4 * p + c ? second : first;
+            if (second != none) neighbours_.push_back({other / 4, c, other % 4});
+        }
+        curved.last_neighbour = static_cast<std::uint32_t>(neighbours_.size());
+        curved_.push_back(curved);
+    }
+}
+
+SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std::span<const Rgb> irradiance,
+                                                const CurvedPatch& curved) const {
+    const auto along = [&](std::uint32_t patch, std::uint32_t edge) {
+        return mean_along_edge(forest, irradiance, patch, edge, forest.geometry(patch).is_triangle());
+    };
+    Imath::M33d squares(0, 0, 0, 0, 0, 0, 0, 0, 0);
+    Gradient products{};
+    for (const Neighbour& n : neighbours(curved)) {
+        const Imath::V3d turn(forest.geometry(n.patch).normal() - forest.geometry(curved.patch).normal());
+        const Rgb step = along(n.patch, n.other_edge) - along(curved.patch, n.edge);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) squares[i][j] += turn[i] * turn[j];
+        for (std::size_t c = 0; c < 3; ++c) products[c] += turn * static_cast<double>(step[static_cast<int>(c)]);
+    }
+    const double trace = squares[0][0] + squares[1][1] + squares[2][2];
+    if (!(trace > 0)) return {};
+    for (int i = 0; i < 3; ++i) squares[i][i] += relative_ridge * trace;
+    const Imath::M33d inverse = squares.inverse();
+    for (Imath::V3d& g : products) g = g * inverse;
+    return products;
+}
+
+void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const {
+    std::vector<Gradient> gradients(curved_.size());
+    constexpr std::size_t patches_at_once = 256;
+    parallel_for_ranges(curved_.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) gradients[i] = gradient(forest, irradiance, curved_[i]);
+    });
+    const auto change_below = [&](std::uint32_t patch, const auto& change) {
+        std::vector<std::uint32_t> elements{patch};
+        while (!elements.empty()) {
+            const std::uint32_t e = elements.back();
+            elements.pop_back();
+            if (forest.is_leaf(e)) {
+                change(e);
+                continue;
+            }
+            for (std::uint32_t k = 0; k < 4; ++k) elements.push_back(forest.first_child(e) + k);
+        }
+    };
+    parallel_for_ranges(curved_.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const CurvedPatch& curved = curved_[i];
+            const bool is_triangle = forest.geometry(curved.patch).is_triangle();
+            const V3f mean = curved.mean_normal(is_triangle);
+            change_below(curved.patch, [&](std::uint32_t leaf) {
+                const Imath::V3d turn(curved.normal_at(is_triangle, forest.cell(leaf).centre(is_triangle)) - mean);
+                for (int c = 0; c < 3; ++c) {
+                    const double change = gradients[i][static_cast<std::size_t>(c)].dot(turn);
+                    irradiance[leaf][c] = std::max(0.0f, irradiance[leaf][c] + static_cast<float>(change));
+                }
+            });
+        }
+    });
+}
+
+V3f SmoothNormals::at(const ElementForest& forest, std::uint32_t patch, Parameters p) const {
+    const auto curved = std::lower_bound(curved_.begin(), curved_.end(), patch,
+                                         [](const CurvedPatch& c, std::uint32_t x) { return c.patch < x; });
+    if (curved == curved_.end() || curved->patch != patch) return forest.geometry(patch).normal();
+    return curved->normal_at(forest.geometry(patch).is_triangle(), p).normalized();
+}
+
+}  // namespace interflect::inline detail
