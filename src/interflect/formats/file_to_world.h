@@ -6,7 +6,8 @@
 
 namespace interflect::inline detail {
 
-/// From a file's coordinates to the world: metres, turned as options.up_axis has it. Of row vectors, p * M.
+/// Returns the matrix from file coordinates to world coordinates: scales to metres and rotates options.up_axis to z.
+/// For row vectors, p * M.
 Imath::M44d file_to_world(const ReadOptions& options);
 
 }  // namespace interflect::inline detail

@@ -21,7 +21,7 @@ namespace {
 
 using Imath::M44d;
 
-/// What is read, or said to be ignored where it is met.
+/// Extensions that are read, or that cause a warning at the place of use.
 constexpr std::string_view known_extensions[] = {
     "EXT_lights_ies",
     "EXT_mesh_gpu_instancing",
@@ -108,13 +108,13 @@ class SceneReader {
         std::uint64_t faces = 0;
         for (const std::uint32_t primitive : primitives) faces += asset_.model.meshes[primitive].indices.size() / 3;
         const std::vector<M44d> places = places_of(node, std::max<std::uint64_t>(faces, primitives.size()));
-        // The joints place a skinned mesh in the world; its node does not.
+        // Joints place a skinned mesh in the world; its node does not.
         for (const M44d& place : places)
             for (const std::uint32_t primitive : primitives)
                 asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object});
     }
 
-    /// A face gives one patch at least, as in scene_of().
+    /// Each face produces at least one patch, as in scene_of().
     void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
         faces_ += static_cast<double>(copies) * static_cast<double>(faces);
         if (faces_ > static_cast<double>(asset_.options().max_patches))
@@ -124,7 +124,8 @@ class SceneReader {
                             node.place(), copies, faces, asset_.options().max_patches));
     }
 
-    /// Where a node's mesh of so many faces is: at the node, or at each of its instances (EXT_mesh_gpu_instancing).
+    /// Returns the transforms of a node's mesh: one for the node, or one per instance (EXT_mesh_gpu_instancing).
+    /// @param faces  Face count of the mesh.
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {
@@ -159,7 +160,7 @@ class SceneReader {
         return places;
     }
 
-    /// From a skinned mesh to the world, for each joint.
+    /// Returns the matrix from the skinned mesh to the world for each joint.
     const std::vector<M44d>& joints_of(std::uint32_t index) {
         const auto [entry, is_new] = joints_.try_emplace(index);
         std::vector<M44d>& result = entry->second;
@@ -188,8 +189,8 @@ class SceneReader {
     GltfNodes nodes_;
     GltfLights lights_;
     std::vector<GltfValue> skins_;
-    double faces_ = 0;                                   // of all instances so far
-    std::map<std::uint32_t, std::vector<M44d>> joints_;  // of the skins that are shown
+    double faces_ = 0;                                   // face count of all instances so far
+    std::map<std::uint32_t, std::vector<M44d>> joints_;  // joint matrices of each used skin
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };
 

@@ -11,16 +11,16 @@
 
 namespace interflect::inline detail {
 
-/// The two parts of a GLB file, or a .gltf file, which is all JSON.
+/// JSON and binary part of a GLB file. A .gltf file is all JSON.
 struct GltfParts {
     std::string_view json, binary;
     bool is_binary = false;  ///< Whether the file is a GLB with a binary chunk.
 };
 
-/// @throws GltfFault for a GLB that is cut short or of another version.
+/// Splits a file into its parts. @throws GltfFault  if a GLB is truncated or of another version.
 GltfParts gltf_parts(std::string_view bytes);
 
-/// What the readers of a glTF file's parts share: its JSON, the files that it names, the model that it fills.
+/// Shared state of the readers of a glTF file: its JSON, the files it refers to, and the model to fill.
 class GltfAsset {
   public:
     GltfAsset(const std::filesystem::path& path, const ReadOptions& options, const nlohmann::json& json);
@@ -31,10 +31,10 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
-    /// The bytes that a URI stands for: data, or a file in the folder of this one.
+    /// Returns the bytes of a URI: embedded data, or a file in the folder of the glTF file.
     /// @param user  Named in errors.
     std::string read_uri(const std::string& uri, const GltfValue& user);
-    /// Counts memory that the file asks for. @throws GltfFault where that is more than options.max_model_bytes.
+    /// Adds to the memory used by the file. @throws GltfFault  if the total exceeds options.max_model_bytes.
     void take_bytes(std::uint64_t count, const GltfValue& user);
 
     Model model;

@@ -10,7 +10,7 @@
 
 namespace interflect::inline detail {
 
-/// The buffers of a glTF file and the views of them, each read and decompressed when it is first asked for.
+/// Buffers and buffer views of a glTF file, each read and decompressed on first use.
 class GltfBuffers {
   public:
     struct View {
@@ -18,7 +18,7 @@ class GltfBuffers {
         std::size_t stride = 0;  ///< 0: elements are packed.
     };
 
-    /// @param parts  Outlive this.
+    /// @param parts  Must outlive this object.
     GltfBuffers(GltfAsset& asset, const GltfParts& parts);
 
     std::size_t view_count() const { return views_.size(); }

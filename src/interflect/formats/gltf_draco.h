@@ -8,7 +8,7 @@
 
 namespace interflect::inline detail {
 
-/// The values of one attribute, those of a vertex side by side.
+/// Values of one attribute, interleaved by vertex.
 struct DracoAttribute {
     int components = 0;
     std::vector<float> values;
@@ -16,15 +16,16 @@ struct DracoAttribute {
 
 struct DracoMesh {
     std::uint64_t vertex_count = 0;
-    std::vector<std::uint32_t> indices;      ///< Of triangles.
-    std::vector<DracoAttribute> attributes;  ///< As many as were asked for, in that order.
+    std::vector<std::uint32_t> indices;      ///< Triangle vertices.
+    std::vector<DracoAttribute> attributes;  ///< In the requested order.
 };
 
-/// Decodes what KHR_draco_mesh_compression compresses.
-/// @param attributes        Unique identifiers of those that are wanted.
-/// @param most_triangles, most_vertices  As the file's accessors tell; more are refused before memory is taken.
-/// @param extension         Named in errors.
-/// @throws GltfFault where the bytes are damaged.
+/// Decodes a mesh compressed with KHR_draco_mesh_compression.
+/// @param attributes  Unique identifiers of the requested attributes.
+/// @param most_triangles, most_vertices  Counts in the file's accessors; larger meshes are refused before memory is
+///                                       allocated.
+/// @param extension  Named in errors.
+/// @throws GltfFault  if the bytes are damaged.
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
 

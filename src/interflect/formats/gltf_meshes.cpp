@@ -16,8 +16,8 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
-constexpr const char* lightmap_set = "TEXCOORD_1";  // by which programs that bake lightmaps lay them out
-/// How far a lightmap coordinate may lie outside of [0, 1]: rounding.
+constexpr const char* lightmap_set = "TEXCOORD_1";  // used by programs that bake lightmaps
+/// Rounding tolerance of lightmap coordinates outside [0, 1].
 constexpr double lightmap_tolerance = 1e-4;
 enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
@@ -33,7 +33,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// The triangles of a strip or a fan, but for those that use a vertex twice, by which strips turn and leap.
+/// Converts a strip or fan to triangles. Drops degenerate triangles, which strips use to turn and to jump.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Which vertices are used, ascending; the indices become places in that list.
+/// Returns the used vertices in ascending order. Replaces the indices by positions in that list.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {
@@ -65,7 +65,7 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uin
 
 }  // namespace
 
-/// Where a primitive's vertices are.
+/// Vertex data of a primitive.
 struct GltfMeshes::Vertices {
     struct Target {
         GltfElements offsets;
@@ -118,7 +118,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// The texture coordinates that its material's textures use: "TEXCOORD_0"; empty where it has none.
+/// Returns the texture coordinate set of the material's textures ("TEXCOORD_0"), or an empty string.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
@@ -263,7 +263,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     asset_.model.meshes.push_back(std::move(mesh));
 }
 
-/// Leaves a mesh without lightmap coordinates where some of them are no place in a lightmap.
+/// Clears the lightmap coordinates of the mesh if one of them is outside [0, 1].
 void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used,
                                            Mesh& mesh) {
     const auto is_in_range = [](double x) { return x >= -lightmap_tolerance && x <= 1 + lightmap_tolerance; };

@@ -7,9 +7,10 @@
 
 namespace interflect::inline detail {
 
-/// What a buffer view holds that is compressed by EXT_meshopt_compression.
-/// @param extension  The view's extension object. @param compressed  Its bytes.
-/// @throws GltfFault where they are damaged or the extension breaks its rules; GltfAsset::take_bytes() is asked first.
+/// Decompresses a buffer view compressed with EXT_meshopt_compression.
+/// @param extension  The view's extension object. @param compressed  Compressed bytes.
+/// @throws GltfFault  if the bytes are damaged or the extension is invalid; GltfAsset::take_bytes() checks memory
+///                    first.
 std::string decode_meshopt(const GltfValue& extension, std::string_view compressed, GltfAsset& asset);
 
 }  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 
 namespace interflect::inline detail {
 
-/// Parses JSON. @param path  Named in the error. @throws InputError with file and line, where the text is no JSON or
+/// Parses JSON. @param path  Named in errors. @throws InputError  with file and line if the text is not valid JSON or
 /// has a number beyond double precision.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& path);
 

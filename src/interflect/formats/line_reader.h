@@ -7,11 +7,11 @@
 
 namespace interflect::inline detail {
 
-/// Splits a text into lines of words. A backslash right before the end of a line joins the next line to it, and counts
-/// as white space. Words are views of the text; nothing is copied.
+/// Splits a text into lines of words. A backslash before a line end joins the next line and counts as white space.
+/// Words are views of the text.
 class LineReader {
   public:
-    /// A place between two lines, to come back to.
+    /// Position between two lines, for seek().
     struct Position {
         std::size_t offset = 0;
         std::int64_t line = 1;  ///< Number of the line that starts here, from 1.
@@ -19,17 +19,17 @@ class LineReader {
 
     explicit LineReader(std::string_view text) : text_(text) {}
 
-    /// Goes on to the next line that has a word. @return false at the end of the text.
+    /// Advances to the next line with at least one word. @return  false at the end of the text.
     bool next();
 
     std::span<const std::string_view> words() const { return words_; }  ///< Valid until the next call of next().
-    /// The text from the second word to the end of the last one as it stands: a name that may have spaces.
-    /// Empty where there is one word only.
+    /// Returns the unmodified text from the second word to the end of the last word: a name that may contain spaces.
+    /// Empty if the line has only one word.
     std::string_view rest() const {
         if (words_.size() < 2) return {};
         return {words_[1].data(), words_.back().data() + words_.back().size()};
     }
-    std::int64_t line() const { return line_; }     ///< Where the current line starts, from 1.
+    std::int64_t line() const { return line_; }     ///< Number of the current line's start, from 1.
     std::size_t length() const { return length_; }  ///< Characters, continuations included.
 
     Position position() const { return next_; }

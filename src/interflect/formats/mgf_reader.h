@@ -25,7 +25,7 @@
 
 namespace interflect::inline detail {
 
-/// A file in the middle of being read, with how much was open when it began: it can close no more than it opened.
+/// File being read. It cannot close transforms or objects that were open before it.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
@@ -33,24 +33,24 @@ struct OpenMgfFile {
     const OpenMgfFile* includer;
 };
 
-/// A transform that is open, `xf` or that of an include, and which copy of its array is being read.
+/// Open transform of `xf` or an include, with the current copy of its array.
 struct OpenMgfTransform {
     TransformSequence sequence;
-    Imath::M44d total;  // from the coordinates inside to the world
+    Imath::M44d total;  // from inner coordinates to the world
     Location opened;
-    std::vector<int> copy;  // indices of the copy being read; empty where the transform is no array
+    std::vector<int> copy;  // indices of the current copy; empty if not an array
     LineReader::Position body;
-    double copies_together = 1;  // product of the sizes of all arrays around, this one included
+    double copies_together = 1;  // product of the sizes of this array and all enclosing arrays
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
 
-/// Reads an MGF file, with the files that it includes, into a scene. Handlers of entities are in
-/// mgf_material_entities.cpp, mgf_surface_entities.cpp, mgf_light_entities.cpp and mgf_transform_entities.cpp, the rest
+/// Reads an MGF file and its includes into a scene. Entity handlers are in mgf_material_entities.cpp,
+/// mgf_surface_entities.cpp, mgf_light_entities.cpp, mgf_sky_entities.cpp and mgf_transform_entities.cpp; the rest is
 /// in mgf_reader.cpp.
 class MgfReader {
   public:
-    /// @param origin  What the scene is made relative to.
+    /// @param origin  Origin of the scene in the world.
     MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
     void read(const std::filesystem::path& path, std::string text);
     Imath::V3d suitable_origin() const { return scene_.suitable_origin(); }
@@ -58,12 +58,11 @@ class MgfReader {
 
   private:
     using Handler = void (MgfReader::*)(MgfWords);
-    /// What an entity defines, and so what bears its faults: where that is a colour or a material, only its use is
-    /// refused.
+    /// Kind of context that an entity defines. Errors in colours and materials are deferred until a face uses them.
     enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
-        std::size_t fewest, most;  // arguments
+        std::size_t fewest, most;  // argument counts
         const char* usage;
         Defines defines = Defines::other;
     };
@@ -80,7 +79,7 @@ class MgfReader {
     Location here() const { return {&file_->source.path, file_->lines.line(), {}, file_->includer != nullptr}; }
     void count_repeated(std::uint64_t words);
 
-    // Entities, as in the table.
+    // Entities, in the order of the table.
     void include(MgfWords words);
     void colour(MgfWords words) { colours_.enter(words); }
     void colour_xy(MgfWords words);
@@ -115,7 +114,7 @@ class MgfReader {
     void sky(MgfWords words);
     void environment(MgfWords words);
 
-    // What they share.
+    // Shared helpers.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
@@ -147,12 +146,12 @@ class MgfReader {
     ContextTable<MgfMaterial> materials_;
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenMgfTransform> transforms_;
-    std::vector<std::vector<std::uint32_t>> loops_;  // of the face being read
-    std::vector<Imath::V3d> outline_;                // its first loop, in the world
-    // Messages for all of a kind, with the first one's particulars.
+    std::vector<std::vector<std::uint32_t>> loops_;  // of the current face
+    std::vector<Imath::V3d> outline_;                // first loop of the current face, in the world
+    // One message per kind, with the details of the first occurrence.
     std::string unknown_entity_, unused_fault_;
     std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;   // by path
-    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // likewise
+    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // by path
     MgfSceneBuilder scene_;
     MgfObjects objects_;
 };
