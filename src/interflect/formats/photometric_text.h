@@ -11,35 +11,35 @@
 
 namespace interflect::inline detail {
 
-/// The text of a file with measured light, without the byte order mark and the end mark (0x1a) that some have.
-/// @throws InputError as read_text_file() does, and beyond options.max_photometric_bytes.
+/// Reads a photometric file without its byte order mark and MS-DOS end mark (0x1a).
+/// @throws InputError  as read_text_file(), and beyond options.max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads such a text line by line or word by word. Lines end with LF, CR or both. What is wrong is an InputError with
-/// the file and the line of what was read last.
+/// Reads photometric text by line or by word. Lines end with LF, CR or both. Errors are InputErrors with the file and
+/// the line read last.
 class PhotometricText {
   public:
-    /// @param separators  That stand between words beside white space.
+    /// @param separators  Word separators besides white space.
     PhotometricText(std::string_view text, const std::filesystem::path& path, std::string_view separators)
         : text_(text), path_(path), separators_(separators) {}
 
-    /// The next line without white space at its ends; nothing at the end of the text.
+    /// Returns the next line, trimmed; nullopt at the end.
     std::optional<std::string_view> line();
-    /// The next word of this or a later line; nothing at the end of the text.
+    /// Returns the next word of this or a later line; nullopt at the end.
     std::optional<std::string_view> word();
 
-    /// The next word, a number. @param what  "the lamp's flux", for the error.
+    /// Reads a number. @param what  For errors: "the lamp's flux".
     double number(const std::string& what);
-    /// One that is whole, and from `least` to `most`.
+    /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);
     std::vector<double> numbers(std::size_t count, const std::string& what);
-    /// Where decimal commas are allowed: whether there were any.
+    /// Returns whether a decimal comma occurred.
     bool had_decimal_comma() const { return had_decimal_comma_; }
 
-    /// @param word  Stands for a number where no separator is a comma, and may have a decimal one.
+    /// Parses a number, which may have a decimal comma unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
-    std::string where() const;  ///< "file:line" of what was read last.
+    std::string where() const;  ///< "file:line" of the last read.
     [[noreturn]] void refuse(const std::string& message) const;
 
   private:

@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// The words of a command, quotes removed; nothing where it needs a shell.
+/// Splits a command into words without quotes. Returns nullopt if it needs a shell.
 std::optional<std::vector<std::string>> shell_words(std::string_view command) {
     constexpr std::string_view special = "|&;<>()$`\\*?[]{}#~!\n";
     std::vector<std::string> words;
@@ -30,7 +30,7 @@ std::optional<std::vector<std::string>> shell_words(std::string_view command) {
     return words;
 }
 
-/// The numbers that a transform of xform takes; nothing where `option` is none.
+/// Returns the number of arguments of a transform option, or nullopt for other options.
 std::optional<std::size_t> number_count(std::string_view option) {
     if (option == "-t") return 3;
     if (option == "-mx" || option == "-my" || option == "-mz") return 0;
@@ -69,7 +69,7 @@ std::optional<RadXform> parse_xform(std::string_view command) {
     while (end < arguments.size() && arguments[end].starts_with('-')) {
         const auto numbers = number_count(arguments[end]);
         if (!numbers) {
-            if (arguments[end] == "-f" || arguments[end] == "-") return std::nullopt;  // more files of arguments, stdin
+            if (arguments[end] == "-f" || arguments[end] == "-") return std::nullopt;  // argument files, stdin
             throw std::invalid_argument(fmt::format("'{}' is no option of xform", arguments[end]));
         }
         end += 1 + *numbers;

@@ -9,23 +9,21 @@
 
 namespace interflect::inline detail {
 
-/// What the command `xform [-n name] [-m modifier] [-I] [transform] file ...` of a Radiance scene asks for. Commands
-/// are never run.
+/// Arguments of the command `xform [-n name] [-m modifier] [-I] [transform] file ...`. The command itself is never run.
 struct RadXform {
-    std::string name;             ///< That goes before the names of surfaces; may be empty.
-    std::string modifier;         ///< That all surfaces get; empty: their own.
-    bool inverts = false;         ///< Whether fronts become backs.
-    TransformSequence transform;  ///< With arrays.
+    std::string name;      ///< Prefix of surface names; may be empty.
+    std::string modifier;  ///< Replaces the modifier of all surfaces unless empty.
+    bool inverts = false;  ///< Whether front and back are swapped.
+    TransformSequence transform;
     std::vector<std::string> files;
 
-    /// What goes before the names in a copy: "name.0.2", or "a0.2" without a name; `name` where there is no array.
+    /// Returns the name prefix of a copy: "name.0.2", or "a0.2" without a name; `name` if there is no array.
     std::string prefix(const std::vector<int>& copy) const;
 };
 
 /// @param command  Without the `!`.
-/// @return  Nothing for another command than xform, and where it asks for more of a shell than quotes: pipes,
-/// variables.
-/// @throws std::invalid_argument  where xform itself would refuse it.
+/// @return  nullopt for commands other than xform and for shell syntax beyond quotes, such as pipes and variables.
+/// @throws std::invalid_argument  if xform itself would reject the command.
 std::optional<RadXform> parse_xform(std::string_view command);
 
 }  // namespace interflect::inline detail

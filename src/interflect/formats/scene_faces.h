@@ -13,38 +13,38 @@
 
 namespace interflect::inline detail {
 
-/// A file asks for more patches than ReadOptions::max_patches.
+/// The file requests more patches than ReadOptions::max_patches.
 struct PatchLimit : std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-/// Adds the faces of a file to a scene, which is relative to an origin, and keeps account of those that are left out.
-/// Functions throw std::invalid_argument, with a sentence, where the file asks for what cannot be.
+/// Adds the faces of a file to a scene relative to an origin, and records omitted faces. Throws std::invalid_argument
+/// with a sentence for impossible requests.
 class SceneFaces {
   public:
-    /// @param scene  Has its name and its origin.
+    /// @param scene  Must have its name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// @throws PatchLimit  where `patches` more would pass the limit, to which faces left out count as well.
+    /// @throws PatchLimit  if `patches` more would exceed the limit. Omitted faces count as well.
     void require_room(double patches) const;
-    /// A place in the world [m], relative to the scene's origin.
+    /// Converts a world position [m] to one relative to the scene's origin.
     V3f position(const Imath::V3d& world) const;
-    /// Tells where the outline of the face that is added next lies in the world, before rounding.
+    /// Sets the world position of the next face's outline, before rounding.
     void place(std::span<const Imath::V3d> outline);
-    /// Adds a face as add_polygon() does; one without area is left out.
+    /// Adds a face like add_polygon(); omits a face without area.
     void add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
              bool two_sided, const Location& where);
-    /// Counts a face that is left out. @param message  Says what kind of face.
+    /// Records an omitted face. @param message  Describes the kind of face.
     void leave_out(const std::string& message, const Location& where);
 
-    /// The origin that suits the faces placed so far.
+    /// Returns the best origin for the faces placed so far.
     Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
-    /// @throws InputError where the whole has no face, or lost one that is as large as others to rounding, since it is
-    /// too far from them, or is too small, too dark or too bright to be computed.
+    /// @throws InputError  if the scene has no face, lost a large distant face to rounding, or is too small, too dark
+    ///                     or too bright to compute.
     void require_usable() const;
 
   private:
-    /// A face of which rounding leaves nothing.
+    /// Face lost to rounding.
     struct LostFace {
         double width = 0;  // across its longest extent [m]
         Imath::V3d centre{0, 0, 0};
@@ -61,8 +61,8 @@ class SceneFaces {
     Scene& scene_;
     std::uint64_t max_patches_;
     FaceSample sample_;
-    LostFace placed_;  // the face that is added next; width 0 where its shape has no area even before rounding
-    LostFace lost_;    // the largest of them
+    LostFace placed_;  // the next face; width 0 if it has no area even before rounding
+    LostFace lost_;    // the widest lost face
     LeftOut first_left_out_;
     std::uint64_t left_out_ = 0;
 };

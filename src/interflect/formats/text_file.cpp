@@ -16,7 +16,7 @@ namespace {
 
 bool is_binary(char c) {
     const auto byte = static_cast<unsigned char>(c);
-    // Bitwise, so that the compiler can look at many bytes at once.
+    // Bitwise operators allow vectorisation.
     return (byte < '\t') | ((byte > '\r') & (byte < ' ')) | (byte == 0x7f);
 }
 
@@ -42,7 +42,7 @@ void require_regular_file(const fs::path& path) {
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     std::error_code error;
-    const auto resolved = [&](const fs::path& given) {  // a relative path of which nothing exists would stay relative
+    const auto resolved = [&](const fs::path& given) {  // a relative path would stay relative if it did not exist
         const fs::path whole = fs::absolute(given, error);
         return error ? fs::path() : fs::weakly_canonical(whole, error);
     };

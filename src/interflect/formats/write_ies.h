@@ -7,9 +7,9 @@
 
 namespace interflect::inline detail {
 
-/// Writes measured light after IES LM-63-2002, as type C, or types A and B where it does not go all around or has the
-/// pole of type B. read_ies() gives back the same intensities, at an azimuth of 0 to a float's rounding.
-/// @throws std::runtime_error where the file cannot be written.
+/// Writes a photometric web in IES LM-63-2002 as type C; as type A if it does not go all around, and as type B if it
+/// has the pole of type B. read_ies() restores the intensities exactly, except at azimuth 0 (float rounding).
+/// @throws std::runtime_error  if writing fails.
 void write_ies(const PhotometricWeb& web, std::ostream& out);
 void write_ies(const PhotometricWeb& web, const std::filesystem::path& path);
 
