@@ -6,7 +6,7 @@
 
 namespace interflect::inline detail {
 
-/// Decodes base64 text (RFC 4648), padded or not. Returns nullopt if the text is invalid.
+/// Decodes base64 (RFC 4648), padded or not; nullopt if invalid.
 std::optional<std::string> decode_base64(std::string_view text);
 
 }  // namespace interflect::inline detail

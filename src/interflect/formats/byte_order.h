@@ -8,7 +8,7 @@
 
 namespace interflect::inline detail {
 
-/// Reads a number from the start of `bytes`. @param bytes  At least sizeof(Number) bytes.
+/// Reads a number from the first sizeof(Number) bytes.
 template <class Number>
 Number number_of(std::string_view bytes, std::endian order) {
     std::array<char, sizeof(Number)> raw;

@@ -11,13 +11,12 @@ namespace {
 
 using Imath::V3d;
 
-/// Point of a profile that is revolved about an axis.
 struct ProfilePoint {
-    double radius = 0;  ///< Distance from the axis, >= 0; exactly 0 at a pole.
-    double height = 0;  ///< Position along the axis.
+    double radius = 0;  ///< Distance from the axis; 0 at a pole.
+    double height = 0;  ///< Along the axis.
 };
 
-/// Radii below this fraction of the largest radius are rounding errors of zero and form a pole.
+/// Radii below this fraction of the largest are rounding errors and count as poles.
 constexpr double pole = 1e-12;
 
 V3d perpendicular(const V3d& axis) {
@@ -32,8 +31,8 @@ void reverse_faces(PolygonMesh& mesh) {
     for (auto& face : mesh.faces) std::reverse(face.begin(), face.end());
 }
 
-/// Revolves a profile about `axis` (unit length). With the axis up and the radius to the right, the front is to the
-/// right of the profile's direction of travel. A profile that climbs therefore faces outwards.
+/// Revolves a profile about `axis` (unit length). An ascending profile faces outwards: with the axis up and the radius
+/// to the right, the front is to the right of the direction of travel.
 PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3d& centre, const V3d& axis,
                     int divisions) {
     const auto around = static_cast<std::uint32_t>(4 * divisions);

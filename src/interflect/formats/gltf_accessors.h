@@ -9,31 +9,31 @@
 
 namespace interflect::inline detail {
 
-/// Elements of one accessor in memory, bounds-checked.
+/// Bounds-checked elements of an accessor.
 struct GltfElements {
     const char* first = nullptr;
-    std::size_t stride = 0;  ///< Bytes between consecutive elements; 0: all elements are identical.
+    std::size_t stride = 0;  ///< In bytes; 0: all elements are identical.
     std::uint64_t count = 0;
-    int component_type = 0;   ///< glTF enum value, for example 5126 for float.
-    int components = 1;       ///< Number of components per element.
+    int component_type = 0;   ///< glTF enum value; 5126 is float.
+    int components = 1;       ///< Per element.
     bool normalized = false;  ///< Integers are fractions of their largest value.
 
-    /// Returns a component after normalisation. @param element, component  In range.
+    /// Returns a component after normalisation. Arguments must be in range.
     double number(std::uint64_t element, int component) const;
-    /// Returns an element of an unsigned type without normalisation.
+    /// Returns an element of unsigned type without normalisation.
     std::uint32_t whole_number(std::uint64_t element) const;
 };
 
-/// Accessors of a glTF file, including sparse accessors, accessors without data (zeros) and all component types.
+/// Accessors of a glTF file, of all component types. Sparse accessors and those without data (zeros) are supported.
 class GltfAccessors {
   public:
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
 
     std::size_t count() const { return accessors_.size(); }
-    /// @param index  Below count(). @param types  Accepted types: "VEC3", "VEC3 VEC4". @param user  Named in errors.
-    /// @return  Elements, valid while this object lives. @throws GltfFault  if elements lie outside their buffer.
+    /// @param types  Accepted types, such as "VEC3 VEC4". @param user  Named in errors.
+    /// @return  Valid while this object lives. @throws GltfFault  if elements lie outside their buffer.
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& user);
-    /// Returns elements that must be indices: unsigned scalars, not normalized.
+    /// Returns indices: unsigned scalars, not normalized.
     GltfElements indices(std::uint32_t index, const GltfValue& user);
 
   private:
@@ -43,7 +43,7 @@ class GltfAccessors {
     GltfAsset& asset_;
     GltfBuffers& buffers_;
     std::vector<GltfValue> accessors_;
-    std::map<std::uint32_t, std::string> sparse_;  // packed elements of sparse accessors
+    std::map<std::uint32_t, std::string> sparse_;  // packed
 };
 
 }  // namespace interflect::inline detail

@@ -23,7 +23,7 @@ std::uint32_t word(std::string_view bytes, std::size_t offset) {
     return value;
 }
 
-/// Removes a chunk of the given type from the front. Returns nullopt if the next chunk has another type.
+/// Removes the first chunk if it has the given type.
 std::optional<std::string_view> take_chunk(std::string_view& bytes, std::uint32_t type) {
     constexpr std::size_t header = 8;
     if (bytes.empty()) return std::nullopt;

@@ -11,16 +11,16 @@
 
 namespace interflect::inline detail {
 
-/// JSON and binary part of a GLB file. A .gltf file is all JSON.
+/// Parts of a GLB file. A .gltf file is all JSON.
 struct GltfParts {
     std::string_view json, binary;
-    bool is_binary = false;  ///< Whether the file is a GLB with a binary chunk.
+    bool is_binary = false;  ///< GLB with a binary chunk.
 };
 
-/// Splits a file into its parts. @throws GltfFault  if a GLB is truncated or of another version.
+/// @throws GltfFault  for a truncated GLB or another version.
 GltfParts gltf_parts(std::string_view bytes);
 
-/// Shared state of the readers of a glTF file: its JSON, the files it refers to, and the model to fill.
+/// Data shared by the glTF readers: JSON, referenced files, and the resulting model.
 class GltfAsset {
   public:
     GltfAsset(const std::filesystem::path& path, const ReadOptions& options, const nlohmann::json& json);
@@ -31,10 +31,9 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
-    /// Returns the bytes of a URI: embedded data, or a file in the folder of the glTF file.
-    /// @param user  Named in errors.
+    /// Returns the bytes of a data URI or of a file in the scene's folder. @param user  Named in errors.
     std::string read_uri(const std::string& uri, const GltfValue& user);
-    /// Adds to the memory used by the file. @throws GltfFault  if the total exceeds options.max_model_bytes.
+    /// Counts memory. @throws GltfFault  if the total exceeds options.max_model_bytes.
     void take_bytes(std::uint64_t count, const GltfValue& user);
 
     Model model;

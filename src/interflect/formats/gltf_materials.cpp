@@ -15,7 +15,7 @@ namespace {
 
 constexpr auto most_reflected = static_cast<float>(largest_reflectance);
 
-/// Reflectance of primitives without a material. glTF's default material is a metal, without diffuse reflection.
+/// For primitives without a material. glTF's own default is a metal without diffuse reflection.
 constexpr float default_reflectance = 0.5f;
 
 GltfMapping mapping_of(const GltfValue& use) {
@@ -35,7 +35,6 @@ GltfMapping mapping_of(const GltfValue& use) {
 
 }  // namespace
 
-/// Properties of a glTF material.
 struct GltfMaterials::Parts {
     Rgb base{1, 1, 1};
     GltfTextureUse base_texture;
@@ -45,12 +44,12 @@ struct GltfMaterials::Parts {
     GltfTextureUse emissive_texture;
     float transmission = 0;  ///< Mean over the texture.
     GltfTextureUse coverage_texture;
-    float coverage = 1;  ///< Covered fraction of the area; the rest is open. With a texture, a factor of its alpha.
+    float coverage = 1;  ///< Covered fraction of the area. With a texture, a factor of its alpha.
     float cutoff = 0;    ///< As in GltfCoverage.
     std::optional<GltfMapping> mapping;
 
     GltfCoverage coverage_from_texture() const { return {coverage_texture.image, coverage, cutoff}; }
-    /// Returns the covered fraction if it is uniform. Otherwise returns 1, because the textures contain it.
+    /// Returns the covered fraction if uniform, else 1, since the textures contain it.
     float even_coverage() const { return coverage_texture.image == none ? coverage : 1; }
 };
 
@@ -125,7 +124,7 @@ void GltfMaterials::apply_alpha(const GltfValue& owner, Parts& parts, GltfSurfac
     }
 }
 
-/// Chooses the single mapping of the vertices. Textures with another mapping are replaced by their means.
+/// Chooses one mapping for the vertices. Textures with other mappings are replaced by their means.
 void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool textured) {
     GltfTextureUse* const uses[] = {&parts.coverage_texture, &parts.emissive_texture, &parts.base_texture,
                                     &parts.metallic_texture};
@@ -189,7 +188,7 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
         asset_.warn("transmission-texture", "what goes through a surface has the mean of its base colour's texture",
                     owner.place());
     constexpr float above_rounding = 1 - 0x1p-20f;
-    const Rgb through = base * (parts.transmission * (1 - metallic));  // transmittance of covered parts
+    const Rgb through = base * (parts.transmission * (1 - metallic));  // of covered parts
     if (coverage.image != none) {
         material.transmittance = Rgb(1);
         material.transmittance_texture =

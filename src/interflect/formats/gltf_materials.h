@@ -9,45 +9,44 @@
 
 namespace interflect::inline detail {
 
-/// Texture coordinate set and transform of a texture.
+/// Texture coordinate set and transform.
 struct GltfMapping {
     std::uint64_t set = 0;                                ///< TEXCOORD_set
     double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;  ///< (u, v) becomes (xx u + xy v + x, yx u + yy v + y).
 
     bool operator==(const GltfMapping&) const = default;
-    /// Returns texture coordinates as in Scene, with v upwards.
+    /// Returns coordinates as in Scene, v upwards.
     V2f apply(double u, double v) const {
         return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
     }
 };
 
-/// Material as used by a primitive.
+/// Material of a primitive.
 struct GltfSurface {
     std::uint32_t material = 0;          ///< Index into Model::materials.
-    std::optional<GltfMapping> mapping;  ///< Mapping of its textures, if any.
-    bool repeats = true;                 ///< Whether its textures repeat beyond [0, 1].
+    std::optional<GltfMapping> mapping;  ///< Of its textures.
+    bool repeats = true;                 ///< Whether textures repeat beyond [0, 1].
     bool double_sided = false;
-    bool is_invisible = false;  ///< The alpha mask hides it entirely.
+    bool is_invisible = false;  ///< Hidden by its alpha mask.
 };
 
-/// Reference from a material to a texture.
 struct GltfTextureUse {
-    std::uint32_t image = none;  ///< none: no texture.
+    std::uint32_t image = none;  ///< none if there is no texture
     GltfMapping mapping;
     bool repeats = true;
 };
 
-/// Materials of a glTF file, each converted on first use.
+/// Materials of a glTF file, converted on first use.
 class GltfMaterials {
   public:
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index     Below count(), or none for the default material.
+    /// @param index     none: the default material.
     /// @param textured  If false, textures are replaced by their means.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
-    /// Warns about the share of omitted reflection. Call it after all materials are made.
+    /// Warns about omitted reflection. Call it after all materials are made.
     void warn_of_lost();
 
   private:
@@ -68,7 +67,7 @@ class GltfMaterials {
     std::vector<GltfValue> materials_;
     std::map<std::pair<std::uint32_t, bool>, GltfSurface> surfaces_;
     double lost_ = 0, all_ = 0;
-    std::vector<std::string> losing_;  // places of the materials with omitted reflection
+    std::vector<std::string> losing_;  // places of materials with omitted reflection
 };
 
 }  // namespace interflect::inline detail

@@ -16,8 +16,8 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
-constexpr const char* lightmap_set = "TEXCOORD_1";  // used by programs that bake lightmaps
-/// Rounding tolerance of lightmap coordinates outside [0, 1].
+constexpr const char* lightmap_set = "TEXCOORD_1";  // set by lightmap bakers
+/// Accepted rounding beyond [0, 1].
 constexpr double lightmap_tolerance = 1e-4;
 enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
@@ -33,7 +33,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// Converts a strip or fan to triangles. Drops degenerate triangles, which strips use to turn and to jump.
+/// Converts a strip or fan to triangles, without the degenerate ones by which strips turn or jump.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Returns the used vertices in ascending order. Replaces the indices by positions in that list.
+/// Returns the used vertices, ascending, and makes `indices` refer to them.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {
@@ -65,7 +65,6 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uin
 
 }  // namespace
 
-/// Vertex data of a primitive.
 struct GltfMeshes::Vertices {
     struct Target {
         GltfElements offsets;
@@ -118,7 +117,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// Returns the texture coordinate set of the material's textures ("TEXCOORD_0"), or an empty string.
+/// Returns the coordinate set of the material's textures ("TEXCOORD_0"); empty if untextured.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
@@ -263,7 +262,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     asset_.model.meshes.push_back(std::move(mesh));
 }
 
-/// Clears the lightmap coordinates of the mesh if one of them is outside [0, 1].
+/// Clears the coordinates if any is outside [0, 1].
 void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used,
                                            Mesh& mesh) {
     const auto is_in_range = [](double x) { return x >= -lightmap_tolerance && x <= 1 + lightmap_tolerance; };

@@ -13,20 +13,20 @@
 
 namespace interflect::inline detail {
 
-/// Deformation of a mesh before placement.
+/// Deformation of a mesh.
 struct GltfPose {
-    std::vector<double> weights;          ///< Weights of the morph targets; empty: the weights of the mesh.
-    std::uint32_t skin = none;            ///< Index of the skin; part of the cache key.
-    std::span<const Imath::M44d> joints;  ///< Matrices of the skin's joints, from the mesh to the world.
+    std::vector<double> weights;          ///< Of the morph targets; empty: the mesh's own.
+    std::uint32_t skin = none;            ///< Part of the cache key.
+    std::span<const Imath::M44d> joints;  ///< From the mesh to the world.
 };
 
-/// Meshes of a glTF file, each read once per pose on first use.
+/// Meshes of a glTF file, read once per pose.
 class GltfMeshes {
   public:
     GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
 
     std::size_t count() const { return meshes_.size(); }
-    /// Returns indices into Model::meshes, one per primitive with faces. @param index  Below count().
+    /// Returns indices into Model::meshes, one per primitive with faces.
     const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
 
   private:

@@ -17,7 +17,7 @@ using Imath::V3d;
 
 V3d vector_of(const std::array<double, 3>& values) { return {values[0], values[1], values[2]}; }
 
-/// glTF stores columns. They become the rows of a matrix for row vectors.
+/// glTF stores columns, which become rows for row vectors.
 M44d local_transform(const GltfValue& node) {
     if (node.has("matrix")) {
         const auto m = node.numbers<16>("matrix", {});
@@ -59,7 +59,7 @@ GltfNodes::GltfNodes(GltfAsset& asset)
     if (reached < values_.size()) throw GltfFault("nodes: some are their own ancestors");
 }
 
-/// Calls `visit` for each node below `roots`, depth first. Not recursive, because the file sets the nesting depth.
+/// Visits the nodes below `roots` depth first. Not recursive, since files may nest arbitrarily deep.
 template <class Visit>
 void GltfNodes::traverse(const std::vector<std::uint32_t>& roots, const Visit& visit) const {
     std::vector<std::uint32_t> waiting(roots.rbegin(), roots.rend());

@@ -8,24 +8,21 @@
 
 namespace interflect::inline detail {
 
-/// Node of the scene with its transform.
 struct GltfNode {
     const GltfValue* value = nullptr;
     Imath::M44d to_world;
-    std::string name;    ///< Own name; may be empty.
-    std::string dotted;  ///< Name with the names of its ancestors: "room.desk.leg".
+    std::string name;    ///< May be empty.
+    std::string dotted;  ///< With the names of its ancestors: "room.desk.leg".
 };
 
-/// Nodes of a glTF file with their transforms to the world.
 class GltfNodes {
   public:
-    /// @throws GltfFault  if a node is its own ancestor or has two parents, or if a transform is invalid.
+    /// @throws GltfFault  for cycles, for a node with two parents, and for invalid transforms.
     explicit GltfNodes(GltfAsset& asset);
 
     std::size_t count() const { return values_.size(); }
     const Imath::M44d& to_world(std::uint32_t node) const { return to_world_[node]; }
-    /// Returns the nodes of the file's scene, or of its first scene if none is chosen. Without scenes, returns all
-    /// nodes. Parents come first.
+    /// Returns the nodes of the file's scene, or of its first scene; without scenes, all. Parents come first.
     std::vector<GltfNode> in_scene() const;
 
   private:
@@ -40,8 +37,7 @@ class GltfNodes {
     std::vector<Imath::M44d> to_world_;
 };
 
-/// Composes scale, rotation by the quaternion (x, y, z, w) and translation, in this order. @throws GltfFault  for a
-/// quaternion of length 0.
+/// Applies scale, then the quaternion (x, y, z, w), then translation. @throws GltfFault  for a quaternion of length 0.
 Imath::M44d gltf_transform(const Imath::V3d& scale, const std::array<double, 4>& rotation,
                            const Imath::V3d& translation, const GltfValue& owner);
 

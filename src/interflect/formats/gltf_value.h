@@ -12,16 +12,16 @@
 
 namespace interflect::inline detail {
 
-/// Error in a glTF file. The message has the place in the file but not the file name.
+/// Message with the place in the file but without the file name.
 struct GltfFault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// JSON value with its place in the file, for messages: "meshes[3] 'chair'.primitives[0]". An absent value acts as an
-/// empty object. Getters check types; all errors are GltfFaults with place and key.
+/// JSON value with its place: "meshes[3] 'chair'.primitives[0]". An absent value acts as an empty object. Getters check
+/// types; errors are GltfFaults with place and key.
 class GltfValue {
   public:
-    /// Largest accepted integer. Sums and products by small factors then fit 64 bits.
+    /// Larger integers are rejected to avoid overflow.
     static constexpr std::uint64_t largest_integer = std::uint64_t{1} << 40;
 
     /// @param json  Must outlive this object; null: absent.
@@ -34,22 +34,22 @@ class GltfValue {
 
     GltfValue object(const char* key) const;
     GltfValue extension(const char* name) const { return object("extensions").object(name); }
-    /// Returns the objects of an array, or an empty list if it is absent.
+    /// Returns an array of objects; empty if absent.
     std::vector<GltfValue> objects(const char* key) const;
 
     std::optional<std::uint64_t> find_integer(const char* key) const;
     std::uint64_t integer(const char* key) const;
     std::uint64_t integer(const char* key, std::uint64_t otherwise) const;
-    /// Returns an index below `count`, or `none` if it is absent.
+    /// Returns an index below `count`; `none` if absent.
     std::uint32_t index(const char* key, std::size_t count) const;
     std::uint32_t required_index(const char* key, std::size_t count) const;
     std::vector<std::uint32_t> indices(const char* key, std::size_t count) const;
 
     double number(const char* key, double otherwise) const;
     double number(const char* key) const;
-    /// Returns a non-negative number.
+    /// Non-negative.
     double amount(const char* key, double otherwise) const;
-    /// Returns an array of any length, or an empty one if it is absent.
+    /// Returns an array of any length; empty if absent.
     std::vector<double> numbers(const char* key) const;
     template <std::size_t size>
     std::array<double, size> numbers(const char* key, const std::array<double, size>& otherwise) const {
@@ -60,7 +60,7 @@ class GltfValue {
         for (std::size_t i = 0; i < size; ++i) result[i] = values[i];
         return result;
     }
-    /// Returns a linear Rec. 709 colour with non-negative channels.
+    /// Linear Rec. 709, non-negative.
     Rgb colour(const char* key, const Rgb& otherwise) const;
 
     std::string text(const char* key, const std::string& otherwise = "") const;
@@ -78,7 +78,7 @@ class GltfValue {
     std::string place_;
 };
 
-/// Returns "nodes[3] 'chair'"; truncates long names.
+/// Returns "nodes[3] 'chair'", with long names truncated.
 std::string gltf_place(const std::string& list, std::size_t index, const std::string& name);
 
 }  // namespace interflect::inline detail

@@ -9,14 +9,13 @@
 
 namespace interflect::inline detail {
 
-/// Reads a photometric file in the EULUMDAT format (Stockmar 1990), every symmetry. The file's intensities per 1000 lm
-/// are multiplied by its conversion factor and the flux of its first set of lamps. The height of the opening is its
-/// greatest height.
+/// Reads an EULUMDAT file (Stockmar 1990), with any symmetry. Intensities (per 1000 lm) are multiplied by the
+/// conversion factor and the flux of the first lamp set. The opening has the height of its highest side.
 ///
-/// Warnings, counted by kind: "ldt-decimal-comma", decimal commas; "ldt-lamps", more than one set of lamps; "ldt-tilt",
-/// a luminaire tilted during measurement; "ldt-angles", angles that end early; "ldt-negative", a negative intensity,
-/// read as 0; "ldt-trailing", words after the last intensity.
-/// @throws InputError  with file and line for any other deviation from the format, and beyond the limits of `options`.
+/// Warnings by kind: "ldt-decimal-comma"; "ldt-lamps", several lamp sets; "ldt-tilt", tilted during measurement;
+/// "ldt-angles", angles end early; "ldt-negative", negative intensity, read as 0; "ldt-trailing", words after the last
+/// intensity.
+/// @throws InputError  with file and line for other invalid input and beyond the limits of `options`.
 PhotometricWeb read_ldt(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 
 /// Reads from memory. @param path  Name for messages.

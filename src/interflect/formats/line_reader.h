@@ -7,30 +7,28 @@
 
 namespace interflect::inline detail {
 
-/// Splits a text into lines of words. A backslash before a line end joins the next line and counts as white space.
-/// Words are views of the text.
+/// Splits text into lines of words (views). A backslash before a line end joins the lines and counts as white space.
 class LineReader {
   public:
-    /// Position between two lines, for seek().
+    /// Position between two lines.
     struct Position {
         std::size_t offset = 0;
-        std::int64_t line = 1;  ///< Number of the line that starts here, from 1.
+        std::int64_t line = 1;  ///< From 1.
     };
 
     explicit LineReader(std::string_view text) : text_(text) {}
 
-    /// Advances to the next line with at least one word. @return  false at the end of the text.
+    /// Advances to the next line with words. @return  false at the end.
     bool next();
 
-    std::span<const std::string_view> words() const { return words_; }  ///< Valid until the next call of next().
-    /// Returns the unmodified text from the second word to the end of the last word: a name that may contain spaces.
-    /// Empty if the line has only one word.
+    std::span<const std::string_view> words() const { return words_; }  ///< Valid until next().
+    /// Returns the unmodified text from the second to the last word, such as a name with spaces; may be empty.
     std::string_view rest() const {
         if (words_.size() < 2) return {};
         return {words_[1].data(), words_.back().data() + words_.back().size()};
     }
-    std::int64_t line() const { return line_; }     ///< Number of the current line's start, from 1.
-    std::size_t length() const { return length_; }  ///< Characters, continuations included.
+    std::int64_t line() const { return line_; }     ///< From 1.
+    std::size_t length() const { return length_; }  ///< In characters, with continuations.
 
     Position position() const { return next_; }
     void seek(const Position& position) { next_ = position; }

@@ -7,14 +7,14 @@
 
 namespace interflect::inline detail {
 
-/// Returns whether a surface is smooth enough to show mirror images. @param roughness  Standard deviation of the
-/// microfacet slopes, as in MGF and Radiance.
+/// Returns whether a surface shows mirror images. @param roughness  Standard deviation of microfacet slopes, as in MGF
+/// and Radiance.
 inline bool is_mirror(double specular_reflectance, double roughness) {
     constexpr double roughest = 0.02;
     return specular_reflectance > 0 && roughness <= roughest;
 }
 
-/// Material of surfaces without one in the file.
+/// For surfaces without a material.
 inline Material default_material() {
     Material grey;
     grey.name = "default";
@@ -22,15 +22,14 @@ inline Material default_material() {
     return grey;
 }
 
-/// Clamps every channel to `largest_reflectance`. @return  Whether a channel was clamped.
+/// Clamps to `largest_reflectance`. @return  Whether it did.
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;
     for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], static_cast<float>(largest_reflectance));
     return reflectance != given;
 }
 
-/// Scales transmittance and specular reflectance so that the material conserves energy. @return  Whether it scaled
-/// them.
+/// Scales transmittance and specular reflectance to conserve energy. @return  Whether it did.
 inline bool limit_sum(Material& material) {
     const float straight = largest_channel(Rgb(material.transmittance + material.specular_reflectance));
     const float rest = 1 - largest_channel(material.reflectance);

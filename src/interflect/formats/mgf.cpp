@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 using Imath::V3d;
 
-/// Reads a scene relative to the world's origin. If the scene is far from it, reads again with an origin of its own.
+/// Reads relative to the world's origin, and again relative to a closer origin if the scene is far away.
 Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {
     V3d origin(0);
     {

@@ -8,22 +8,22 @@
 
 namespace interflect::inline detail {
 
-/// Words of a line of an MGF file, or its arguments.
+/// Words of a line, or its arguments.
 using MgfWords = std::span<const std::string_view>;
 
-/// Error in the current line. The reader adds file and line.
+/// Error in the current line, without its place.
 using MgfFault = std::invalid_argument;
 
-/// @throws MgfFault  if the word is not a finite number in single precision.
+/// @throws MgfFault  unless the word is a finite number in single precision.
 double number_argument(std::string_view word);
 
-/// @throws MgfFault  as number_argument(), and for a negative number.
+/// @throws MgfFault  also for a negative number.
 double non_negative_argument(std::string_view word);
 
-/// Returns the first three words as a vector. @throws MgfFault  as number_argument().
+/// Converts the first three words. @throws MgfFault
 Imath::V3d vector_argument(MgfWords words);
 
-/// Returns whether at least three of the words differ from each other.
+/// Returns whether three of the words differ from each other.
 bool has_three_distinct(MgfWords words);
 
 }  // namespace interflect::inline detail

@@ -10,18 +10,16 @@
 
 namespace interflect::inline detail {
 
-/// Errors in colours and materials. They count only if a face uses the colour or material, because real files define
-/// more than they use.
+/// Errors in colours and materials, reported only if a face uses them, since real files define more than they use.
 class MgfFaults {
   public:
-    /// Stores an error, once per line even if the line is read repeatedly. @return  its index, for a context to keep.
+    /// Stores one error per line. @return  Its index.
     std::uint32_t add(const Location& where, const std::string& message);
 
-    /// @throws InputError  with the file and line of the error, unless `fault` is none.
+    /// @throws InputError  unless `fault` is none.
     void refuse(std::uint32_t fault) const;
-    /// Refuses errors of the material and of the colours of its rd and ed.
+    /// Refuses errors of the material and of its rd and ed colours.
     void refuse_faults_of(const MgfMaterial& material) const;
-    /// Refuses the first error, if any.
     void refuse_first() const { refuse(faults_.empty() ? none : 0); }
 
   private:

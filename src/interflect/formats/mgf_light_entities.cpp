@@ -23,10 +23,10 @@ bool is_name(std::string_view word) { return std::isalpha(static_cast<unsigned c
 
 }  // namespace
 
-/// Returns the world direction of a light, given by the normal of a vertex.
+/// Converts a vertex normal to a light's world direction.
 V3f MgfReader::direction_of(std::string_view vertex) { return turned(normal_of(vertex)); }
 
-/// Transforms a direction to the world and normalises it.
+/// Transforms to a unit vector in the world.
 V3f MgfReader::turned(const V3d& direction) const {
     V3d result;
     total_transform().multDirMatrix(direction, result);
@@ -67,7 +67,7 @@ void MgfReader::light(MgfWords words) {
     scene_.add_light(std::move(luminaire), name);
 }
 
-/// Transforms move, rotate and mirror a luminaire. They do not change its flux or size.
+/// Transforms change neither flux nor size.
 void MgfReader::luminaire(MgfWords words) {
     const std::string_view file = words[0];
     words = words.subspan(1);
@@ -93,7 +93,7 @@ void MgfReader::luminaire(MgfWords words) {
     } while (next_index(copy, sequence.array_sizes()));
 }
 
-/// Returns the photometric web of a file, relative to the file that names it; read once.
+/// Files are relative to the including file and read once.
 std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_view name) {
     const std::filesystem::path path = file_->source.path.parent_path() / name;
     std::shared_ptr<const PhotometricWeb>& web = webs_[path.string()];

@@ -25,7 +25,7 @@
 
 namespace interflect::inline detail {
 
-/// File being read. It cannot close transforms or objects that were open before it.
+/// File being read. It cannot close transforms or objects opened outside it.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
@@ -33,24 +33,22 @@ struct OpenMgfFile {
     const OpenMgfFile* includer;
 };
 
-/// Open transform of `xf` or an include, with the current copy of its array.
+/// Open `xf` or include, and the current copy of its array.
 struct OpenMgfTransform {
     TransformSequence sequence;
-    Imath::M44d total;  // from inner coordinates to the world
+    Imath::M44d total;  // to the world
     Location opened;
-    std::vector<int> copy;  // indices of the current copy; empty if not an array
+    std::vector<int> copy;  // indices; empty if not an array
     LineReader::Position body;
-    double copies_together = 1;  // product of the sizes of this array and all enclosing arrays
+    double copies_together = 1;  // product of all enclosing array sizes, including this one
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
 
-/// Reads an MGF file and its includes into a scene. Entity handlers are in mgf_material_entities.cpp,
-/// mgf_surface_entities.cpp, mgf_light_entities.cpp, mgf_sky_entities.cpp and mgf_transform_entities.cpp; the rest is
-/// in mgf_reader.cpp.
+/// Reads an MGF file and its includes. Entity handlers are in mgf_*_entities.cpp.
 class MgfReader {
   public:
-    /// @param origin  Origin of the scene in the world.
+    /// @param origin  Of the scene, in the world.
     MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
     void read(const std::filesystem::path& path, std::string text);
     Imath::V3d suitable_origin() const { return scene_.suitable_origin(); }
@@ -58,7 +56,7 @@ class MgfReader {
 
   private:
     using Handler = void (MgfReader::*)(MgfWords);
-    /// Kind of context that an entity defines. Errors in colours and materials are deferred until a face uses them.
+    /// Kind of context that bears an entity's errors, which are deferred until a face uses it.
     enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
@@ -68,7 +66,6 @@ class MgfReader {
     };
     static const std::unordered_map<std::string_view, Entity>& entities();
 
-    // Files and lines.
     void read_file(const SourceFile& source, MgfWords transform);
     void read_lines();
     void read_line(MgfWords words);
@@ -114,7 +111,7 @@ class MgfReader {
     void sky(MgfWords words);
     void environment(MgfWords words);
 
-    // Shared helpers.
+    // Helpers.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
@@ -147,8 +144,8 @@ class MgfReader {
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenMgfTransform> transforms_;
     std::vector<std::vector<std::uint32_t>> loops_;  // of the current face
-    std::vector<Imath::V3d> outline_;                // first loop of the current face, in the world
-    // One message per kind, with the details of the first occurrence.
+    std::vector<Imath::V3d> outline_;                // first loop, in the world
+    // Messages with the details of the first occurrence.
     std::string unknown_entity_, unused_fault_;
     std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;   // by path
     std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // by path

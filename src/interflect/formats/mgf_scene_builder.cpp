@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t most_lights = 1 << 16;
 
-/// Key that is equal for materials with equal name and properties, even if the file defines them repeatedly.
+/// Equal for materials with the same name and properties.
 std::string identity(const Material& m) {
     std::string key = m.name;
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };

@@ -23,7 +23,6 @@ void MgfReader::texture_coordinate(MgfWords words) {
     vertices_.current().has_texture_coordinate = true;
 }
 
-/// Appends a loop of the current face.
 void MgfReader::add_loop(MgfWords names) {
     if (names.size() > options_.max_face_vertices)
         throw MgfFault(
@@ -44,7 +43,7 @@ void MgfReader::add_loop(MgfWords names) {
     if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
 
-/// Returns the index of the current material, for a face. @throws MgfFault  if the definition has an error.
+/// @throws MgfFault  if the material's definition is invalid.
 std::uint32_t MgfReader::usable_material() {
     MgfMaterial& material = materials_.current();
     faults_.refuse_faults_of(material);

@@ -12,32 +12,31 @@
 
 namespace interflect::inline detail {
 
-/// Polygons of one material in local coordinates, shown by any number of instances.
+/// Polygons of one material in local coordinates.
 struct Mesh {
-    std::string name;                       ///< For messages: "mesh 3 'chair', primitive 0".
-    std::vector<Imath::V3d> positions;      ///< Vertex positions.
-    std::vector<V2f> texture_coordinates;   ///< One per vertex, as in Scene, or empty.
-    std::vector<V2f> lightmap_coordinates;  ///< One per vertex in [0, 1], or empty.
-    std::vector<std::uint32_t> indices;     ///< Corners of all faces, counter-clockwise seen from the front.
-    std::vector<std::uint32_t> face_sizes;  ///< Number of corners per face, at least 3; empty: all triangles.
+    std::string name;  ///< For messages: "mesh 3 'chair', primitive 0".
+    std::vector<Imath::V3d> positions;
+    std::vector<V2f> texture_coordinates;   ///< Per vertex, as in Scene; or empty.
+    std::vector<V2f> lightmap_coordinates;  ///< Per vertex, in [0, 1]; or empty.
+    std::vector<std::uint32_t> indices;     ///< Counter-clockwise seen from the front.
+    std::vector<std::uint32_t> face_sizes;  ///< Corners per face, >= 3; empty: all triangles.
     std::uint32_t material = 0;             ///< Index into Model::materials.
-    bool back_emits = true;                 ///< Otherwise the backs only reflect and do not emit.
+    bool back_emits = true;                 ///< If false, backs reflect only.
 };
 
-/// Mesh placed in the world.
 struct MeshInstance {
     std::uint32_t mesh = 0;    ///< Index into Model::meshes.
-    Imath::M44d to_world;      ///< For row vectors, p * M as in Imath; to metres. Mirroring keeps the front side.
+    Imath::M44d to_world;      ///< For row vectors, p * M; to metres. Mirroring keeps the front.
     std::uint32_t object = 0;  ///< Index into Model::objects.
 };
 
-/// Light source that is not a surface, in world coordinates independent of the scene's origin.
+/// Light that is not a surface, independent of the scene's origin.
 struct PlacedLight {
-    Luminaire luminaire;           ///< Its position, if it has one, is (0, 0, 0).
+    Luminaire luminaire;           ///< At (0, 0, 0).
     Imath::V3d position{0, 0, 0};  ///< In the world [m].
 };
 
-/// Content of a mesh file (glTF, OBJ, PLY, STL, Radiance) as plain data; input of scene_of().
+/// Content of a glTF, OBJ, PLY, STL or Radiance file; input of scene_of().
 struct Model {
     std::filesystem::path file;
     std::vector<Mesh> meshes;
@@ -51,17 +50,15 @@ struct Model {
     Warnings warnings;
 };
 
-/// Converts a model to a scene. All faces are two-sided, because walls are opaque from both sides. Corners with equal
-/// positions and coordinates are welded. A pair of triangles becomes one patch if it forms a planar, convex
-/// quadrilateral on which texture and lightmap coordinates are each linear. Faces without area are omitted with a
-/// warning. Unused materials are kept.
+/// Converts a model to a scene. All faces are two-sided, since walls are opaque from both sides. Corners with equal
+/// positions and coordinates are welded. Two triangles become one patch if they form a planar, convex quadrilateral
+/// with linear texture and lightmap coordinates. Faces without area are omitted with a warning. Unused materials are
+/// kept.
 ///
-/// An object has one lightmap, shared by its meshes with lightmap coordinates; patches of its other meshes have NaN. If
-/// such meshes have several transforms (for example, copies of a mesh), they would overlap in the lightmap. Then the
-/// object's lightmap coordinates are ignored with a warning.
-/// @throws InputError  for an index out of range, a position not finite or too far away, a scene without faces, a scene
-///                     too small or too bright, and the faults of scene_faults(). Messages name the mesh.
-/// @throws TooManyPatches  for more than options.max_patches patches.
+/// Meshes with lightmap coordinates share the lightmap of their object; other patches have NaN. If their instances
+/// differ in transform, they would overlap, and the object's coordinates are ignored with a warning.
+/// @throws InputError  naming the mesh, for indices out of range, invalid or too distant positions, scenes without
+///                     faces, too small or too bright, and scene_faults(). @throws TooManyPatches
 Scene scene_of(Model&& model, const ReadOptions& options);
 
 }  // namespace interflect::inline detail

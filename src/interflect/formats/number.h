@@ -5,11 +5,11 @@
 
 namespace interflect::inline detail {
 
-/// Parses a decimal number that fills `text` and is finite in single precision. Otherwise returns nullopt, for example
-/// for nan, inf, 1e39, hexadecimal or trailing characters. Accepts a leading '+'. Independent of the locale.
+/// Parses a decimal number that fills `text` and is finite in single precision; otherwise nullopt (nan, inf, 1e39,
+/// hexadecimal, trailing characters). Accepts '+'. Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
-/// Parses an integer that fits an int, with the same rules.
+/// Parses an int, with the same rules.
 std::optional<int> parse_integer(std::string_view text);
 
 }  // namespace interflect::inline detail
