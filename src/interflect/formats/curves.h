@@ -19,20 +19,21 @@ struct PolygonMesh {
 // poles and planar quadrilaterals elsewhere. The front is outside; negative radii turn it inside. All functions throw
 // std::invalid_argument for arguments that MGF forbids.
 
-/// Sphere with poles on the z axis. @param radius  Not 0.
+/// Makes a sphere with poles on the z axis. @param radius  Not 0.
 PolygonMesh make_sphere(const Imath::V3d& centre, double radius, int divisions);
 
-/// Cone or cylinder without caps. @param radius1, radius2  Not both 0; same sign.
+/// Makes a cone or cylinder without caps. @param radius1, radius2  Not both 0, not of opposite sign.
 PolygonMesh make_cone(const Imath::V3d& end1, double radius1, const Imath::V3d& end2, double radius2, int divisions);
 
-/// Flat ring or disk facing `normal`. @param inner, outer  0 <= inner < outer.
+/// Makes a flat ring or disk facing `normal`. @param inner, outer  0 <= inner < outer.
 PolygonMesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
-/// Torus. @param inner, outer  Distances from the axis to the tube: same sign, |inner| < |outer|; inner may be 0.
+/// Makes a torus. @param inner, outer  Distances from the axis to the tube: same sign, |inner| < |outer|; inner may be
+/// 0.
 PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
-/// Closed prism that extends by `length` behind `outline`. If `length` is negative, it extends to the front and faces
-/// inwards. @param outline  At least three points that enclose an area.
+/// Makes a closed prism that extends by `length` behind `outline`. If `length` is negative, it extends to the front and
+/// faces inwards. @param outline  At least three points that enclose an area.
 PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
 }  // namespace interflect::inline detail

@@ -24,14 +24,14 @@ struct GltfMapping {
 /// Material of a primitive.
 struct GltfSurface {
     std::uint32_t material = 0;          ///< Index into Model::materials.
-    std::optional<GltfMapping> mapping;  ///< Of its textures.
+    std::optional<GltfMapping> mapping;  ///< Mapping of the textures.
     bool repeats = true;                 ///< Whether textures repeat beyond [0, 1].
     bool double_sided = false;
     bool is_invisible = false;  ///< Hidden by its alpha mask.
 };
 
 struct GltfTextureUse {
-    std::uint32_t image = none;  ///< none if there is no texture
+    std::uint32_t image = none;  ///< `none`: untextured
     GltfMapping mapping;
     bool repeats = true;
 };
@@ -42,7 +42,7 @@ class GltfMaterials {
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index     none: the default material.
+    /// @param index     Below count(), or `none` for the default material.
     /// @param textured  If false, textures are replaced by their means.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 

@@ -9,8 +9,8 @@
 namespace interflect::inline detail {
 
 /// Reads a Wavefront OBJ file with its material libraries; see docs/formats.md.
-/// @throws InputError  with file and line for invalid content, an exceeded limit of `options`, a file outside the
-///                     scene's folder, and the errors of scene_of(). @throws TooManyPatches
+/// @throws InputError  with file and line for invalid input, limits of `options`, and files outside the scene's folder;
+///                     also as scene_of(). @throws TooManyPatches
 Scene read_obj(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads from memory. @param path  Name for messages; other files are relative to its folder.

@@ -30,7 +30,6 @@ float mtl_number(std::string_view word) {
     return static_cast<float>(*value);
 }
 
-/// Parses "r g b", or "r" for a grey.
 Rgb mtl_colour(std::span<const std::string_view> words) {
     if (words.size() != 2 && words.size() != 4)
         throw std::invalid_argument(
@@ -44,14 +43,14 @@ Rgb mtl_colour(std::span<const std::string_view> words) {
 
 constexpr std::string_view map_of_colours = "map_Kd";
 
-/// Masks store their values in alpha, or as greys.
+/// Masks are stored in alpha, or as greys.
 bool has_transparency(const StoredImage& image) {
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
         if (image.value(i, 3) < 1) return true;
     return false;
 }
 
-/// Maximum number of words after an option of a texture map; those of -o, -s and -t are numbers.
+/// Maximum number of words after a texture option; those of -o, -s and -t are numbers.
 std::size_t option_words(std::string_view option) {
     if (option == "-mm") return 2;
     return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;

@@ -14,41 +14,39 @@
 
 namespace interflect::inline detail {
 
-/// Materials of OBJ files, from their libraries (.mtl).
+/// Materials from OBJ libraries (.mtl).
 class ObjMaterials {
   public:
-    /// @param model  Receives materials, textures, files and warnings. Its first material is the default one.
+    /// @param model  Receives the materials, the first being the default, and textures, files and warnings.
     ObjMaterials(Model& model, const ReadOptions& options);
 
-    /// Reads a library. @param where  Line that refers to it. @throws InputError, std::invalid_argument
+    /// @param where  Line that refers to the library. @throws InputError, std::invalid_argument
     void read(const std::filesystem::path& path, const Location& where);
     /// Reads from memory. @param path  Name for messages; textures are relative to its folder.
     void read_text(std::string_view text, const std::filesystem::path& path);
-    /// Returns the index in Model::materials. Unknown names give the default material and a warning.
+    /// Returns the index in Model::materials; the default one, with a warning, for unknown names.
     std::uint32_t find(const std::string& name, const Location& where);
 
   private:
-    /// Material as defined in a library.
     struct Definition {
         Rgb diffuse{0.5f, 0.5f, 0.5f}, emitted{0, 0, 0}, specular{0, 0, 0};
         float opacity = 1;
         bool has_dissolve = false;      // d, which overrides Tr
-        std::filesystem::path texture;  // for the diffuse reflectance
-        std::filesystem::path mask;     // for the opacity
+        std::filesystem::path texture;  // of the diffuse reflectance
+        std::filesystem::path mask;     // of the opacity
         Location where;
-        std::uint32_t material = none;  // index in Model::materials after first use
+        std::uint32_t material = none;  // in Model::materials, once used
     };
     void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
-    /// Returns the index in Model::textures, or none. Warns if the texture is unreadable.
+    /// Returns the index in Model::textures. Returns `none`, with a warning, if unreadable.
     std::uint32_t texture(const Definition& definition);
-    /// Reads the texture again; returns white if there is no readable one.
+    /// Reads the texture anew; white if unreadable.
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
-    /// Returns whether the texture exists in a readable format; otherwise warns. @param key  Its key in the library.
+    /// Checks file and format, with a warning. @param key  Key in the library.
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
-    /// Applies the mask as holes.
     void cut_out(const Definition& definition, Material& material);
     std::uint32_t add_texture(Texture texture);
     void warn(const std::string& kind, const std::string& message, const Location& where) {

@@ -22,7 +22,7 @@ double coordinate_value(std::string_view word) {
     return *value;
 }
 
-/// Converts a 1-based number, or a negative number that counts back from the end, to an index.
+/// Converts a 1-based or negative (backwards) number to an index.
 std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
     std::int64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -79,7 +79,7 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
     } else if (key == "mtllib") {
         libraries(line, words, where);
     } else if (key != "vn" && key != "s" && key != "vp") {
-        constexpr std::string_view known = "l p";  // lines and points
+        constexpr std::string_view known = "l p";
         model_.warnings.add("unsupported-entity",
                             known.find(key) != known.npos ? "lines and points are left out"
                                                           : fmt::format("'{}' is left out", key.substr(0, 20)),
@@ -111,7 +111,7 @@ void ObjReader::face(Words words, const Location& where) {
     target.face_sizes.push_back(static_cast<std::uint32_t>(words.size()));
 }
 
-/// Returns the index in the current mesh of a corner such as "3", "3/1", "3//2" or "-1/-1/-1".
+/// Returns the index in the current mesh for "3", "3/1", "3//2" or "-1/-1/-1".
 std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
     const std::size_t slash = word.find('/');
     const std::uint32_t position = resolved(word.substr(0, slash), positions_.size(), "vertex");

@@ -15,10 +15,8 @@
 
 namespace interflect::inline detail {
 
-/// Reads an OBJ file into a model: one mesh for each material of each object.
-///
-/// tinyobjloader is not used because it accepts indices out of range (with a warning only) or beyond 32 bits, reads
-/// invalid numbers as 0, and reads overflowing numbers as infinite.
+/// Reads an OBJ file into one mesh per object and material. tinyobjloader is not used because it accepts invalid
+/// indices and reads invalid numbers as 0 and overflowing ones as infinite.
 class ObjReader {
   public:
     ObjReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -26,7 +24,7 @@ class ObjReader {
     Model finish() { return std::move(model_); }
 
   private:
-    /// Latest use of a vertex: its mesh, its index there, and its texture coordinates.
+    /// Latest use of a position.
     struct Use {
         std::uint32_t mesh = none, index = 0, coordinate = none;
     };
@@ -47,7 +45,7 @@ class ObjReader {
     std::vector<Use> uses_;  // per position
     std::string object_, group_;
     std::uint32_t material_ = 0;
-    std::uint32_t mesh_ = none;  // mesh of the current object, group and material; none: to be looked up
+    std::uint32_t mesh_ = none;  // of the current object, group and material; `none`: not looked up yet
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };

@@ -5,26 +5,26 @@
 
 namespace interflect::inline detail {
 
-/// Half planes of a photometric web as listed in a file, to be completed by symmetry.
+/// Half planes of a photometric file, completed by symmetry.
 class PhotometricPlanes {
   public:
-    /// @param angles       Azimuth of each plane [degrees], ascending.
-    /// @param intensities  For each plane, one value per polar angle.
+    /// @param angles       Azimuths [degrees], ascending.
+    /// @param intensities  Plane by plane, one per polar angle.
     PhotometricPlanes(std::vector<float> angles, std::vector<float> intensities);
 
     std::size_t count() const { return angles_.size(); }
     float span() const { return angles_.back() - angles_.front(); }  ///< [degrees]
-    /// Mirrors all planes at the last or the first one.
+    /// Appends the mirror image at the last or first plane.
     void mirror_at_last();
     void mirror_at_first();
-    /// Repeats the first plane one turn later.
+    /// Repeats the first plane after a full turn.
     void close();
-    /// Reverses the direction of the azimuth.
+    /// Reverses the azimuth.
     void reverse();
 
     const std::vector<float>& angles() const { return angles_; }
     const std::vector<float>& intensities() const { return intensities_; }
-    /// Returns the intensities with polar angle and azimuth exchanged.
+    /// Returns the intensities with polar angle and azimuth swapped.
     std::vector<float> transposed() const;
 
   private:

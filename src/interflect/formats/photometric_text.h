@@ -11,35 +11,33 @@
 
 namespace interflect::inline detail {
 
-/// Reads a photometric file without its byte order mark and MS-DOS end mark (0x1a).
+/// Reads a file without byte order mark and MS-DOS end mark (0x1a).
 /// @throws InputError  as read_text_file(), and beyond options.max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads photometric text by line or by word. Lines end with LF, CR or both. Errors are InputErrors with the file and
-/// the line read last.
+/// Reads text by line (LF, CR or both) or by word. Errors are InputErrors with file and line.
 class PhotometricText {
   public:
-    /// @param separators  Word separators besides white space.
+    /// @param separators  Besides white space.
     PhotometricText(std::string_view text, const std::filesystem::path& path, std::string_view separators)
         : text_(text), path_(path), separators_(separators) {}
 
     /// Returns the next line, trimmed; nullopt at the end.
     std::optional<std::string_view> line();
-    /// Returns the next word of this or a later line; nullopt at the end.
+    /// Returns the next word, on any line; nullopt at the end.
     std::optional<std::string_view> word();
 
-    /// Reads a number. @param what  For errors: "the lamp's flux".
+    /// @param what  For errors: "the lamp's flux".
     double number(const std::string& what);
     /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);
     std::vector<double> numbers(std::size_t count, const std::string& what);
-    /// Returns whether a decimal comma occurred.
     bool had_decimal_comma() const { return had_decimal_comma_; }
 
-    /// Parses a number, which may have a decimal comma unless commas are separators.
+    /// Accepts a decimal comma, unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
-    std::string where() const;  ///< "file:line" of the last read.
+    std::string where() const;  ///< Last read position as "file:line".
     [[noreturn]] void refuse(const std::string& message) const;
 
   private:

@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Reads the elements of a file into a model with one mesh.
 class PlyReader {
   public:
     PlyReader(const PlyHeader& header, PlyValues& values, Model& model, const ReadOptions& options)
@@ -148,7 +147,7 @@ class PlyReader {
         }
     }
 
-    /// Returns a material with the single colour of all vertices (sRGB bytes), otherwise grey.
+    /// Uses the colour shared by all vertices (sRGB bytes), otherwise grey.
     Material material() {
         Material result = default_material();
         if (!colour_) return result;

@@ -8,10 +8,10 @@
 
 namespace interflect::inline detail {
 
-/// Reads the faces of a PLY file, ASCII or binary of either byte order. Reflectance is 0.5, or the colour shared by all
-/// vertices; see docs/formats.md.
-/// @throws InputError  for invalid or truncated content, an index out of range, an exceeded limit of `options`, and the
-///                     errors of scene_of(). @throws TooManyPatches
+/// Reads the faces of a PLY file, ASCII or binary of either byte order. The reflectance is 0.5, or the colour shared by
+/// all vertices; see docs/formats.md.
+/// @throws InputError  for invalid or truncated input and limits of `options`; also as scene_of().
+///                     @throws TooManyPatches
 Scene read_ply(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads from memory. @param path  Name for messages.

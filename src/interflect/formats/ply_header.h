@@ -9,21 +9,21 @@
 
 namespace interflect::inline detail {
 
-/// Single value per element, or list of values.
+/// Single value or list.
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> count_type;  ///< Type of the list length; set for lists only.
+    std::optional<PlyType> count_type;  ///< Type of a list's length.
 };
 
-/// Element type such as "vertex" or "face".
+/// Elements such as "vertex" or "face".
 struct PlyElement {
     std::string name;
     std::uint64_t count = 0;
     std::vector<PlyProperty> properties;
 
     std::optional<std::size_t> find(std::string_view wanted) const;
-    /// Minimum number of values and bytes per element. A list counts as its length alone.
+    /// Minimum per element; a list counts as its length alone.
     std::uint64_t fewest_values() const { return properties.size(); }
     std::uint64_t fewest_bytes() const;
 };
@@ -31,11 +31,10 @@ struct PlyElement {
 struct PlyHeader {
     PlyValues::Form form = PlyValues::Form::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;  ///< Size of the header [bytes].
+    std::size_t size = 0;  ///< In bytes.
 };
 
-/// @param line  Set to the line read last: the line of the error, or the last line of the header.
-/// @throws std::invalid_argument  with a sentence for an invalid header.
+/// @param line  Set to the line of the error or to the header's last line. @throws std::invalid_argument
 PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line);
 
 }  // namespace interflect::inline detail

@@ -8,10 +8,10 @@
 
 namespace interflect::inline detail {
 
-/// Reads a Radiance scene (.rad, .mat); docs/radiance.md lists the primitives. Lengths are as in the file. Radiance in
-/// W/(m^2 sr) becomes exitance in lm/m^2 at 179 lm/W. Reads only files in the scene's folder and runs no command.
-/// @throws InputError  with file and line for invalid content, an exceeded limit of `options`, a file outside the
-///                     scene's folder, and the errors of scene_of(). @throws TooManyPatches
+/// Reads a Radiance scene (.rad, .mat); see docs/radiance.md. Lengths are as in the file. Radiance in W/(m^2 sr)
+/// becomes exitance in lm/m^2 at 179 lm/W. Files must be in the scene's folder; no command is run.
+/// @throws InputError  with file and line for invalid input, limits of `options`, and files outside the scene's folder;
+///                     also as scene_of(). @throws TooManyPatches
 Scene read_rad(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads from memory. @param path  Name for messages; other files are relative to its folder.

@@ -13,43 +13,40 @@
 
 namespace interflect::inline detail {
 
-/// Radiance's luminous efficacy of white light [lm/W]; its radiances are in W/(m^2 sr).
+/// Radiance's luminous efficacy of white light [lm/W].
 inline constexpr double rad_efficacy = 179;
 
-/// Transmittance and reflectance of a glass pane at normal incidence, with all internal reflections.
-/// @param transmissivity  Fraction transmitted in one pass through the interior, in [0, 1]. @param index  Refractive
-///                        index, > 0.
+/// Glass pane at normal incidence, with all internal reflections.
+/// @param transmissivity  Transmittance of the interior in one pass, 0 to 1. @param index  Refractive index, > 0.
 struct GlassShares {
     double transmittance = 0, reflectance = 0;
 };
 GlassShares glass_shares(double transmissivity, double index);
 
-/// Modifiers of a Radiance scene and their materials. Only modifiers used by a surface are converted and produce errors
-/// and warnings.
+/// Modifiers of a scene and their materials. Unused modifiers cause no errors or warnings.
 class RadMaterials {
   public:
     /// @param model  Receives materials and warnings.
     explicit RadMaterials(Model& model) : model_(model) {}
 
     static bool is_modifier(std::string_view type);
-    /// Adds a modifier, which hides an earlier one with the same name. @throws std::invalid_argument
+    /// Hides an earlier modifier of the same name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
-    /// From now on, undefined modifiers become diffuse grey with a warning, because an ignored command may define them.
+    /// Makes undefined modifiers diffuse grey with a warning, since an ignored command may define them.
     void allow_missing() { may_miss_ = true; }
 
-    /// Returns the index of a modifier; none for `void`. @throws std::invalid_argument  if it is undefined.
+    /// Returns `none` for "void". @throws std::invalid_argument  if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// Returns the index in Model::materials for a surface with this modifier; none if it is invisible.
-    /// @throws InputError  with the place of the faulty modifier.
+    /// Returns the index in Model::materials; `none` if invisible. @throws InputError  with the modifier's place.
     std::uint32_t material(std::uint32_t modifier);
 
   private:
     struct Modifier {
         RadPrimitive primitive;
         Location where;
-        std::uint32_t base = none;      // modifier that it modifies
-        std::uint32_t material = none;  // index in Model::materials after first use
+        std::uint32_t base = none;      // modified by this one
+        std::uint32_t material = none;  // in Model::materials, once used
     };
     enum class Role { material, pattern, mixture, nothing };
     struct Type {
@@ -76,7 +73,7 @@ class RadMaterials {
     bool may_miss_ = false;
     std::deque<std::string> missing_names_;  // referenced by views
     std::vector<Modifier> modifiers_;
-    std::unordered_map<std::string_view, std::uint32_t> index_;  // latest modifier of each name
+    std::unordered_map<std::string_view, std::uint32_t> index_;  // latest of each name
 };
 
 }  // namespace interflect::inline detail

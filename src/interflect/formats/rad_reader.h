@@ -17,8 +17,8 @@
 
 namespace interflect::inline detail {
 
-/// Reads a Radiance scene, with the files of its `!xform` commands, into a model. A file is read once for all copies of
-/// an array; its meshes then have one instance per copy.
+/// Reads a Radiance scene and its `!xform` files into a model. A file is read once for all copies of an array, which
+/// become instances.
 class RadReader {
   public:
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -26,24 +26,23 @@ class RadReader {
     Model finish() { return std::move(model_); }
 
   private:
-    /// Copy of a file.
     struct Copy {
         Imath::M44d to_world;
         std::string prefix;  // of surface names
     };
-    /// File being read, with the changes to its surfaces.
+    /// File being read, and changes to its surfaces.
     struct OpenFile {
         const SourceFile& source;
         std::vector<Copy> copies;
-        std::string modifier;  // replaces the modifier of all surfaces unless empty
+        std::string modifier;  // overrides the surfaces' own unless empty
         bool is_inverted = false;
         const OpenFile* includer = nullptr;
         int depth = 0;
     };
     using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&);
     struct Surface {
-        std::size_t numbers;  // required count; 0: any
-        Reader read;          // nullptr: ignored type
+        std::size_t numbers;  // 0: any
+        Reader read;          // nullptr: ignored
     };
     static const std::unordered_map<std::string_view, Surface>& surfaces();
 

@@ -7,29 +7,28 @@
 
 namespace interflect::inline detail {
 
-/// Primitive (`modifier type name` with arguments) or `modifier alias name original`. Words are views of the text.
+/// `modifier type name` with arguments, or `modifier alias name original`, as views of the text.
 struct RadPrimitive {
     std::string_view modifier, type, name;
-    std::string_view original;  ///< For aliases only.
+    std::string_view original;  ///< Alias only.
     std::vector<std::string_view> strings;
     std::vector<double> numbers;
 };
 
-/// Splits a Radiance scene into statements: primitives, and commands that begin with `!`. Comments start with `#`
-/// between statements and end with the line. Words may be quoted with ' or ".
+/// Splits a Radiance scene into primitives and commands (`!`). Comments start with `#` between statements. Words may be
+/// quoted with ' or ".
 class RadStatements {
   public:
     enum class Kind { primitive, command, end };
 
     explicit RadStatements(std::string_view text) : text_(text) {}
 
-    /// Advances to the next statement.
     Kind next();
-    std::int64_t line() const { return line_; }  ///< First line of the statement, from 1.
+    std::int64_t line() const { return line_; }  ///< First line, from 1.
 
-    /// Returns the command without `!`, with continued lines joined.
+    /// Returns the command without `!`, continued lines joined.
     std::string command();
-    /// Parses the primitive. @throws std::invalid_argument  with a sentence if it is truncated or malformed.
+    /// @throws std::invalid_argument  for a truncated or malformed primitive.
     RadPrimitive primitive();
 
   private:

@@ -9,21 +9,21 @@
 
 namespace interflect::inline detail {
 
-/// Arguments of the command `xform [-n name] [-m modifier] [-I] [transform] file ...`. The command itself is never run.
+/// Arguments of `xform [-n name] [-m modifier] [-I] [transform] file ...`, which is never run.
 struct RadXform {
     std::string name;      ///< Prefix of surface names; may be empty.
-    std::string modifier;  ///< Replaces the modifier of all surfaces unless empty.
-    bool inverts = false;  ///< Whether front and back are swapped.
+    std::string modifier;  ///< Overrides the surfaces' own unless empty.
+    bool inverts = false;  ///< Swaps front and back.
     TransformSequence transform;
     std::vector<std::string> files;
 
-    /// Returns the name prefix of a copy: "name.0.2", or "a0.2" without a name; `name` if there is no array.
+    /// Returns "name.0.2", or "a0.2" without a name; `name` without an array.
     std::string prefix(const std::vector<int>& copy) const;
 };
 
-/// @param command  Without the `!`.
-/// @return  nullopt for commands other than xform and for shell syntax beyond quotes, such as pipes and variables.
-/// @throws std::invalid_argument  if xform itself would reject the command.
+/// @param command  Without `!`.
+/// @return  nullopt for other commands and for shell syntax beyond quotes (pipes, variables).
+/// @throws std::invalid_argument  if xform would reject it.
 std::optional<RadXform> parse_xform(std::string_view command);
 
 }  // namespace interflect::inline detail

@@ -14,19 +14,17 @@ struct SourceFile {
     std::string text;
 };
 
-/// Files of a scene, each read once. Addresses are stable, because contexts hold views of the texts and locations point
-/// to the paths.
+/// Files of a scene, each read once. Addresses are stable, since contexts and locations refer to them.
 class SourceFiles {
   public:
-    /// @return  The file, and whether it is new. A file known by another path keeps that path and its text.
+    /// @return  The file, and whether it is new. A known file keeps its first path and text.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);
-    /// Returns the file `name` relative to `includer`, reading it if new. @throws std::invalid_argument  if it is
-    /// unreadable.
+    /// @param name  Relative to `includer`. @throws std::invalid_argument  if unreadable.
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
 
   private:
     std::map<std::filesystem::path, SourceFile> sources_;                // by canonical path
-    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by the path as written
+    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by path as written
 };
 
 }  // namespace interflect::inline detail

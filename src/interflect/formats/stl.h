@@ -9,8 +9,7 @@
 namespace interflect::inline detail {
 
 /// Reads the triangles of an STL file, ASCII or binary, with reflectance 0.5; see docs/formats.md.
-/// @throws InputError  for invalid content, an exceeded limit of `options`, and the errors of scene_of().
-///                     @throws TooManyPatches
+/// @throws InputError  for invalid input and limits of `options`; also as scene_of(). @throws TooManyPatches
 Scene read_stl(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads from memory. @param path  Name for messages.

@@ -8,22 +8,21 @@
 
 namespace interflect::inline detail {
 
-/// Reads a text file.
-/// @throws InputError  if the path is not a readable regular file, or if the content is binary: control characters
-///                     other than white space. That error names the line.
+/// @throws InputError  if the path is not a readable regular file, or with the line of a control character other than
+///                     white space (binary content).
 std::string read_text_file(const std::filesystem::path& path);
 
-/// Reads a file. @param most  Size limit [bytes]. @throws InputError  if the file is unreadable or larger.
+/// @param most  Bytes. @throws InputError  if unreadable or larger.
 std::string read_bytes(const std::filesystem::path& path,
                        std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
 
-/// Performs only the path checks.
+/// Checks only the path.
 void require_regular_file(const std::filesystem::path& path);
 
-/// Returns whether a file is in a folder or below it, following links.
+/// Follows links; includes subfolders.
 bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-/// Performs only the check for control characters. @param path  Named in the error.
+/// Checks only for control characters. @param path  Named in errors.
 void require_text(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace interflect::inline detail

@@ -7,11 +7,10 @@
 
 namespace interflect::inline detail {
 
-/// Repeatedly halves the largest textures until all have at most `most` texels in total. Textures of equal size stay
-/// equal; each texel becomes the mean of its area. @return  Whether it reduced any.
+/// Halves the largest textures until all have at most `most` texels in total. Equal sizes stay equal; texels become
+/// area means. @return  Whether any was halved.
 bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most = most_texels);
 
-/// Returns the total for all textures.
 std::uint64_t texel_count(const std::vector<Texture>& textures);
 
 }  // namespace interflect::inline detail

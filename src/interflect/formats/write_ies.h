@@ -7,9 +7,8 @@
 
 namespace interflect::inline detail {
 
-/// Writes a photometric web in IES LM-63-2002 as type C; as type A if it does not go all around, and as type B if it
-/// has the pole of type B. read_ies() restores the intensities exactly, except at azimuth 0 (float rounding).
-/// @throws std::runtime_error  if writing fails.
+/// Writes IES LM-63-2002: type B for its pole, type A for an incomplete azimuth, else type C. read_ies() restores
+/// intensities exactly, except for float rounding at azimuth 0. @throws std::runtime_error  if writing fails.
 void write_ies(const PhotometricWeb& web, std::ostream& out);
 void write_ies(const PhotometricWeb& web, const std::filesystem::path& path);
 

@@ -32,14 +32,14 @@ std::string printable(std::string_view name) {
     return text;
 }
 
-/// White space would end a name, '-' separates the loops of a face, and '=' defines.
+/// White space ends a name, '-' separates loops of a face, '=' defines.
 std::string material_name(const Material& material) {
     std::string name = printable(material.name);
     if (name.starts_with('-') || name == "=") name[0] = '_';
     return name;
 }
 
-/// Splits "room.desk.leg" into {"room", "desk", "leg"}, and "" into no parts.
+/// Splits "room.desk.leg" at the dots; empty for "".
 std::vector<std::string> object_path(const std::string& dotted_name) {
     std::vector<std::string> path;
     if (dotted_name.empty()) return path;
@@ -57,30 +57,30 @@ struct Turns {
     double x, y, z;
 };
 
-/// Right-handed orthonormal frame.
+/// Right-handed and orthonormal.
 struct Frame {
     Imath::V3d x, y, z;
 };
 
-/// Frame of a luminaire: x in its C0 plane, nadir -z.
+/// x in the C0 plane, nadir -z.
 Frame frame_of(const MeasuredLight& light) {
     const Imath::V3d z(-light.direction.normalized()), c0(light.c0), x = (c0 - z * z.dot(c0)).normalized();
     return {x, z.cross(x), z};
 }
 
-/// Frame of a sky: x east, y north.
+/// x east, y north.
 Frame frame_of(const SkyFrame& sky) { return {Imath::V3d(sky.east), Imath::V3d(sky.north), Imath::V3d(sky.zenith)}; }
 
-/// Returns the rotations from the axes to a frame.
+/// Returns the rotations that turn the axes into a frame.
 Turns turns_of(const Frame& frame) {
     const auto& [x, y, z] = frame;
-    constexpr double no_turn = 1e-9;  // cosine of the rotation about y at gimbal lock
+    constexpr double no_turn = 1e-9;  // cosine of the y rotation at gimbal lock
     const double cosine = std::hypot(x.x, x.y);
     if (cosine < no_turn) return {degrees(std::atan2(-z.y, y.y)), degrees(std::atan2(-x.z, cosine)), 0};
     return {degrees(std::atan2(y.z, z.z)), degrees(std::atan2(-x.z, cosine)), degrees(std::atan2(x.y, x.x))};
 }
 
-/// Writes the patches, each preceded by its new objects, materials and vertices.
+/// Writes patches, preceded by their new objects, materials and vertices.
 class MgfWriter {
   public:
     MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
@@ -109,9 +109,9 @@ class MgfWriter {
     }
 
   private:
-    static constexpr int two_sides = 2;  // default of a new material
+    static constexpr int two_sides = 2;  // default of new materials
 
-    /// Current definition of a material name in the file.
+    /// Latest definition of a material name.
     struct Definition {
         std::uint32_t material = none;
         int sides = two_sides;
@@ -144,8 +144,8 @@ class MgfWriter {
         for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
     }
 
-    /// Redefines a material if another one with its name was used last. An unnamed material is lost as soon as another
-    /// is entered. `sides` is a property of the material and may change as well.
+    /// Redefines a material if its name was reused, or if it is unnamed and another was entered since. `sides` belongs
+    /// to the material and may change too.
     void enter_material(std::uint32_t material, int sides) {
         const std::string& name = names_[material];
         Definition& definition = definitions_[name];
@@ -206,7 +206,7 @@ class MgfWriter {
         put("\n");
     }
 
-    /// Lights take position and direction from a vertex.
+    /// A vertex provides position and direction.
     void add_light(const Luminaire& luminaire) {
         enter_object(luminaire.object);
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
@@ -247,7 +247,7 @@ class MgfWriter {
         });
     }
 
-    /// Writes a light under the rotation of a frame.
+    /// Writes a light inside a rotation.
     template <class Put>
     void add_turned(const Frame& frame, const Put& put_light) {
         const Turns turns = turns_of(frame);
@@ -257,7 +257,7 @@ class MgfWriter {
         if (is_turned) put("xf\n");
     }
 
-    /// `ies` refers to its colour by name.
+    /// `ies` refers to the colour by name.
     void add_measured(const MeasuredLight& light, const Chromaticity& chromaticity, double multiplier) {
         const Turns turns = turns_of(frame_of(light));
         const Imath::V3d world = scene_.origin + Imath::V3d(light.position);
@@ -278,7 +278,7 @@ class MgfWriter {
     const Scene& scene_;
     std::ostream& out_;
     std::span<const std::string> textures_;                    // file names
-    std::vector<std::string> names_;                           // material names
+    std::vector<std::string> names_;                           // of materials
     std::unordered_map<std::string, Definition> definitions_;  // by name
     std::unordered_map<const PhotometricWeb*, std::string> web_files_;
     std::unordered_map<const Texture*, std::string> map_files_;
