@@ -15,7 +15,7 @@ namespace interflect::inline detail {
 
 /// Covered fraction of a surface at each point; the rest is open.
 struct GltfCoverage {
-    std::uint32_t image = none;  ///< Source of alpha; none: fully covered.
+    std::uint32_t image = none;  ///< Image with the alpha channel, if any.
     float factor = 1;            ///< Multiplies alpha.
     float cutoff = 0;            ///< Threshold, if positive.
 
@@ -24,8 +24,8 @@ struct GltfCoverage {
 
 /// Key of a texture, equal for equal textures.
 struct GltfTexels {
-    std::uint32_t colour = none;    ///< sRGB; none: white.
-    std::uint32_t metallic = none;  ///< Metallic in the blue channel; none: `metallic_factor` alone.
+    std::uint32_t colour = none;    ///< sRGB image; white if absent.
+    std::uint32_t metallic = none;  ///< Image with metallic in the blue channel, if any.
     float metallic_factor = 0;      ///< Colours are multiplied by 1 - metallic.
     Rgb factor{1, 1, 1};            ///< Multiplies the result, which is clamped to 1.
     GltfCoverage coverage{};        ///< Open parts have the colour `open`.
@@ -50,7 +50,7 @@ class GltfImages {
   public:
     GltfImages(GltfAsset& asset, GltfBuffers& buffers);
 
-    /// Returns the image of a texture; none, with a warning, if it is missing.
+    /// Returns the image of a texture. Returns `none`, with a warning, if it is missing.
     std::uint32_t image_of_texture(std::uint32_t texture);
     std::size_t texture_count() const { return textures_.size(); }
     bool repeats(std::uint32_t texture) const;

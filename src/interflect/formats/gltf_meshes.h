@@ -15,7 +15,7 @@ namespace interflect::inline detail {
 
 /// Deformation of a mesh.
 struct GltfPose {
-    std::vector<double> weights;          ///< Of the morph targets; empty: the mesh's own.
+    std::vector<double> weights;          ///< Morph target weights; empty: the mesh's own.
     std::uint32_t skin = none;            ///< Part of the cache key.
     std::span<const Imath::M44d> joints;  ///< From the mesh to the world.
 };

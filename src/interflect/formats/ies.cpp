@@ -100,7 +100,7 @@ class IesReader {
     Warnings& warnings_;
     PhotometricText text_;
     int year_ = first_year;
-    double factor_ = 1;  // of intensities
+    double factor_ = 1;  // scales intensities
     PhotometricWeb web_;
 };
 
@@ -240,7 +240,7 @@ void IesReader::read_opening(double metres) {
     if (!is_known) warn("ies-opening", "the luminous opening has no shape of IES LM-63; it is read as a box");
 }
 
-/// Snaps angles near multiples of 90 degrees, so that symmetry tests are exact.
+/// Snaps angles near multiples of 90 degrees to make symmetry tests exact.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;

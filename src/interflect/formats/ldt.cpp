@@ -43,7 +43,7 @@ class LdtReader {
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
-    double factor_ = 1;  // of intensities
+    double factor_ = 1;  // scales intensities
     PhotometricWeb web_;
 };
 

@@ -48,7 +48,7 @@ struct OpenMgfTransform {
 /// Reads an MGF file and its includes. Entity handlers are in mgf_*_entities.cpp.
 class MgfReader {
   public:
-    /// @param origin  Of the scene, in the world.
+    /// @param origin  World position of the scene's origin.
     MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
     void read(const std::filesystem::path& path, std::string text);
     Imath::V3d suitable_origin() const { return scene_.suitable_origin(); }

@@ -29,7 +29,7 @@ class MgfSceneBuilder {
     /// @throws std::invalid_argument  beyond the patch limit. Omitted faces count.
     void require_room(double patches) const { faces_.require_room(patches); }
 
-    /// Converts from the world [m] to the scene's origin.
+    /// Converts a world position [m] to one relative to the scene's origin.
     V3f position(const Imath::V3d& world) const { return faces_.position(world); }
     /// @param world  [m]
     std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate) {
@@ -52,16 +52,17 @@ class MgfSceneBuilder {
     /// Counts an omitted face. @param message  Kind of face.
     void leave_out(const std::string& message, const Location& where) { faces_.leave_out(message, where); }
 
-    /// If this differs from the current origin, read the file again.
+    /// Computes an origin close to the faces. If it differs from the current one, read the file again.
     Imath::V3d suitable_origin() const { return faces_.suitable_origin(); }
 
+    /// Adds summary warnings and returns the scene.
     /// @throws InputError  if no patch is left, or if rounding removed a large distant face.
     Scene finish();
 
   private:
     /// @param largest  largest_reflectance, or the largest float for an exitance.
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
-    /// Reads new images. Returns none for an empty path.
+    /// Returns the index of the image, reading it if new. Returns `none` for an empty path.
     std::uint32_t texture(const MgfTexture& texture);
     /// Requires reflectance and exitance times textures to be within limits.
     void require_products(const Material& result, const MgfMaterial& material) const;

@@ -99,7 +99,7 @@ void RadReader::read_statement(RadStatements& statements, RadStatements::Kind ki
 
 // ---- Commands
 
-/// Applies `xform`. Ignores other commands; none is run.
+/// Applies `xform`. Ignores other commands.
 void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
     const std::optional<RadXform> xform = parse_xform(command);
     if (!xform) {

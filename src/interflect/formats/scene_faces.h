@@ -27,7 +27,7 @@ class SceneFaces {
 
     /// @throws PatchLimit  beyond the limit. Omitted faces count.
     void require_room(double patches) const;
-    /// Converts from the world [m] to the scene's origin.
+    /// Converts a world position [m] to one relative to the scene's origin.
     V3f position(const Imath::V3d& world) const;
     /// Sets the unrounded world outline of the next face.
     void place(std::span<const Imath::V3d> outline);

@@ -12,7 +12,7 @@ namespace interflect::inline detail {
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 
 /// Reads {"views": [{"name": "desk", "eye": [x, y, z], "look_at": [x, y, z], "up": [x, y, z], "fov": 45}]}, in metres
-/// and degrees (vertical, full). `up` defaults to (0, 0, 1), `fov` to 45.
+/// and degrees (vertical, full). `up` defaults to (0, 0, 1), `fov` to 45; other keys are required.
 /// @throws InputError  with file, view and key for invalid JSON, keys or values, duplicate names, and undefined
 ///                     directions.
 std::vector<View> read_view_list(const std::filesystem::path& path);
