@@ -6,7 +6,7 @@
 
 namespace interflect::inline detail {
 
-/// The bytes of a base64 text (RFC 4648), with padding or without; nothing where it is none.
+/// Decodes base64 (RFC 4648), padded or not; nullopt if invalid.
 std::optional<std::string> decode_base64(std::string_view text);
 
 }  // namespace interflect::inline detail

@@ -8,7 +8,7 @@
 
 namespace interflect::inline detail {
 
-/// The number that the first bytes of a file's part hold. @param bytes  sizeof(Number) or more.
+/// Reads a number from the first sizeof(Number) bytes.
 template <class Number>
 Number number_of(std::string_view bytes, std::endian order) {
     std::array<char, sizeof(Number)> raw;

@@ -4,7 +4,7 @@
 
 namespace interflect::inline detail {
 
-/// The options themselves. @throws InputError  where one is outside its range.
+/// Returns `options` unchanged. @throws InputError  if an option is out of range.
 const ReadOptions& checked(const ReadOptions& options);
 
 }  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 namespace interflect::inline detail {
 
-/// ".MGF" as ".mgf", whatever the locale.
+/// Returns the extension in lower case, independent of the locale.
 inline std::string lower_case_extension(const std::filesystem::path& path) {
     std::string text = path.extension().string();
     for (char& c : text)

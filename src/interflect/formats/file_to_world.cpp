@@ -6,12 +6,12 @@ namespace {
 
 using Imath::V3d;
 
-/// What the axes become.
+/// Images of the axes.
 struct Turn {
     V3d x, y, z;
 };
 
-/// The rotation about one axis that makes `up` z.
+/// Returns the rotation about one axis that maps `up` to z.
 Turn turn(Axis up) {
     const V3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     switch (up) {

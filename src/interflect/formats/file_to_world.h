@@ -6,7 +6,7 @@
 
 namespace interflect::inline detail {
 
-/// From a file's coordinates to the world: metres, turned as options.up_axis has it. Of row vectors, p * M.
+/// Scales to metres and rotates options.up_axis to z. For row vectors, p * M.
 Imath::M44d file_to_world(const ReadOptions& options);
 
 }  // namespace interflect::inline detail

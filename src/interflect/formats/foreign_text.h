@@ -6,9 +6,8 @@
 
 namespace interflect::inline detail {
 
-/// `message` without quoted words: "..." replaces everything between the first and the last quotation mark (') after
-/// `from`. For messages about a file that another file names: such a file may be any file of the machine, and its
-/// content is not for the author of the scene.
+/// Replaces the text between the first and last quotation mark (') after `from` by "...". Used for files that other
+/// files refer to: they may be any file, so messages must not reveal their content.
 std::string without_quotes(std::string_view message, std::size_t from = 0);
 
 }  // namespace interflect::inline detail

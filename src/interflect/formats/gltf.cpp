@@ -21,7 +21,7 @@ namespace {
 
 using Imath::M44d;
 
-/// What is read, or said to be ignored where it is met.
+/// Extensions that are read, or reported at the place of use.
 constexpr std::string_view known_extensions[] = {
     "EXT_lights_ies",
     "EXT_mesh_gpu_instancing",
@@ -66,7 +66,6 @@ void require_readable(GltfAsset& asset) {
     if (root.has("animations")) asset.warn("animation", "animations are ignored", "animations");
 }
 
-/// Fills a model with a file's scene.
 class SceneReader {
   public:
     SceneReader(GltfAsset& asset, const GltfParts& parts)
@@ -108,13 +107,13 @@ class SceneReader {
         std::uint64_t faces = 0;
         for (const std::uint32_t primitive : primitives) faces += asset_.model.meshes[primitive].indices.size() / 3;
         const std::vector<M44d> places = places_of(node, std::max<std::uint64_t>(faces, primitives.size()));
-        // The joints place a skinned mesh in the world; its node does not.
+        // The joints, not the node, place a skinned mesh in the world.
         for (const M44d& place : places)
             for (const std::uint32_t primitive : primitives)
                 asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object});
     }
 
-    /// A face gives one patch at least, as in scene_of().
+    /// Each face makes at least one patch (scene_of()).
     void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
         faces_ += static_cast<double>(copies) * static_cast<double>(faces);
         if (faces_ > static_cast<double>(asset_.options().max_patches))
@@ -124,7 +123,7 @@ class SceneReader {
                             node.place(), copies, faces, asset_.options().max_patches));
     }
 
-    /// Where a node's mesh of so many faces is: at the node, or at each of its instances (EXT_mesh_gpu_instancing).
+    /// Returns the mesh's transforms: of the node, or of its instances (EXT_mesh_gpu_instancing).
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {
@@ -159,7 +158,7 @@ class SceneReader {
         return places;
     }
 
-    /// From a skinned mesh to the world, for each joint.
+    /// Returns the matrix from mesh to world for each joint.
     const std::vector<M44d>& joints_of(std::uint32_t index) {
         const auto [entry, is_new] = joints_.try_emplace(index);
         std::vector<M44d>& result = entry->second;
@@ -188,8 +187,8 @@ class SceneReader {
     GltfNodes nodes_;
     GltfLights lights_;
     std::vector<GltfValue> skins_;
-    double faces_ = 0;                                   // of all instances so far
-    std::map<std::uint32_t, std::vector<M44d>> joints_;  // of the skins that are shown
+    double faces_ = 0;                                   // over all instances so far
+    std::map<std::uint32_t, std::vector<M44d>> joints_;  // by skin
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };
 

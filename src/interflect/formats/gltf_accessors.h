@@ -9,31 +9,31 @@
 
 namespace interflect::inline detail {
 
-/// Elements in memory, checked to lie within it: of one accessor.
+/// Bounds-checked elements of an accessor.
 struct GltfElements {
     const char* first = nullptr;
-    std::size_t stride = 0;  ///< Bytes from one element to the next; 0: all are the same.
+    std::size_t stride = 0;  ///< In bytes; 0: all elements are identical.
     std::uint64_t count = 0;
-    int component_type = 0;   ///< glTF's number of it: 5126 is float.
-    int components = 1;       ///< Of each element.
+    int component_type = 0;   ///< glTF enum value; 5126 is float.
+    int components = 1;       ///< Per element.
     bool normalized = false;  ///< Integers are fractions of their largest value.
 
-    /// As a number, after normalisation. @param element, component  In range.
+    /// Returns a component after normalisation. Arguments must be in range.
     double number(std::uint64_t element, int component) const;
-    /// Of a type without sign, as it is.
+    /// Returns an element of unsigned type without normalisation.
     std::uint32_t whole_number(std::uint64_t element) const;
 };
 
-/// The accessors of a glTF file: sparse ones, those without data (zeros) and all component types.
+/// Accessors of a glTF file, of all component types. Sparse accessors and those without data (zeros) are supported.
 class GltfAccessors {
   public:
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
 
     std::size_t count() const { return accessors_.size(); }
-    /// @param index  Below count(). @param types  Accepted: "VEC3", "VEC3 VEC4". @param user  Named in errors.
-    /// @return        valid while this lives. @throws GltfFault where its elements lie outside of their buffer.
+    /// @param types  Accepted types, such as "VEC3 VEC4". @param user  Named in errors.
+    /// @return  Valid while this object lives. @throws GltfFault  if elements lie outside their buffer.
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& user);
-    /// Of indices: unsigned scalars that are not normalized.
+    /// Returns indices: unsigned scalars, not normalized.
     GltfElements indices(std::uint32_t index, const GltfValue& user);
 
   private:
@@ -43,7 +43,7 @@ class GltfAccessors {
     GltfAsset& asset_;
     GltfBuffers& buffers_;
     std::vector<GltfValue> accessors_;
-    std::map<std::uint32_t, std::string> sparse_;  // their elements, packed
+    std::map<std::uint32_t, std::string> sparse_;  // packed
 };
 
 }  // namespace interflect::inline detail

@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 namespace {
 
 std::uint32_t word(std::string_view bytes, std::size_t offset) {
-    std::uint32_t value = 0;  // little-endian, as all machines that this is built for
+    std::uint32_t value = 0;  // little-endian, like all supported machines
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }
 
-/// Takes a chunk of the given type off the front; nothing where the next is of another.
+/// Removes the first chunk if it has the given type.
 std::optional<std::string_view> take_chunk(std::string_view& bytes, std::uint32_t type) {
     constexpr std::size_t header = 8;
     if (bytes.empty()) return std::nullopt;
@@ -59,7 +59,7 @@ bool has_scheme(std::string_view uri) {
     return colon != uri.npos && uri.find_first_of("/?#") > colon;
 }
 
-/// For messages.
+/// Shortens a URI for messages.
 std::string cut(const std::string& uri) {
     constexpr std::size_t longest = 100;
     return escaped(uri.size() > longest ? uri.substr(0, longest) + "..." : uri);

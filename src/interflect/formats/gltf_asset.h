@@ -11,16 +11,16 @@
 
 namespace interflect::inline detail {
 
-/// The two parts of a GLB file, or a .gltf file, which is all JSON.
+/// Parts of a GLB file. A .gltf file is all JSON.
 struct GltfParts {
     std::string_view json, binary;
-    bool is_binary = false;  ///< Whether the file is a GLB with a binary chunk.
+    bool is_binary = false;  ///< GLB with a binary chunk.
 };
 
-/// @throws GltfFault for a GLB that is cut short or of another version.
+/// @throws GltfFault  for a truncated GLB or another version.
 GltfParts gltf_parts(std::string_view bytes);
 
-/// What the readers of a glTF file's parts share: its JSON, the files that it names, the model that it fills.
+/// Data shared by the glTF readers: JSON, referenced files, and the resulting model.
 class GltfAsset {
   public:
     GltfAsset(const std::filesystem::path& path, const ReadOptions& options, const nlohmann::json& json);
@@ -31,10 +31,9 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
-    /// The bytes that a URI stands for: data, or a file in the folder of this one.
-    /// @param user  Named in errors.
+    /// Returns the bytes of a data URI or of a file in the scene's folder. @param user  Named in errors.
     std::string read_uri(const std::string& uri, const GltfValue& user);
-    /// Counts memory that the file asks for. @throws GltfFault where that is more than options.max_model_bytes.
+    /// Counts memory. @throws GltfFault  if the total exceeds options.max_model_bytes.
     void take_bytes(std::uint64_t count, const GltfValue& user);
 
     Model model;

@@ -10,19 +10,18 @@
 
 namespace interflect::inline detail {
 
-/// The buffers of a glTF file and the views of them, each read and decompressed when it is first asked for.
+/// Buffers and buffer views, read and decompressed on first use.
 class GltfBuffers {
   public:
     struct View {
         std::string_view bytes;
-        std::size_t stride = 0;  ///< 0: elements are packed.
+        std::size_t stride = 0;  ///< 0: packed.
     };
 
-    /// @param parts  Outlive this.
+    /// @param parts  Must outlive this object.
     GltfBuffers(GltfAsset& asset, const GltfParts& parts);
 
     std::size_t view_count() const { return views_.size(); }
-    /// @param index  Below view_count().
     View view(std::uint32_t index);
 
   private:

@@ -20,8 +20,8 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// The counts that a mesh's own header claims, by which the decoder takes memory. The edgebreaker's first number is its
-/// own count of vertices, the sequential method has that second (bitstream specification of Draco 2.2, section 2).
+/// Checks the header's counts, which determine the decoder's memory use. Edgebreaker stores the vertex count first, the
+/// sequential method second (Draco 2.2 bitstream specification, section 2).
 bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t most_triangles, std::uint64_t most_vertices) {
     constexpr int metadata_flag = 0x8000;
     draco::DracoHeader header{};

@@ -8,7 +8,7 @@
 
 namespace interflect::inline detail {
 
-/// The values of one attribute, those of a vertex side by side.
+/// Attribute values, interleaved by vertex.
 struct DracoAttribute {
     int components = 0;
     std::vector<float> values;
@@ -16,15 +16,13 @@ struct DracoAttribute {
 
 struct DracoMesh {
     std::uint64_t vertex_count = 0;
-    std::vector<std::uint32_t> indices;      ///< Of triangles.
-    std::vector<DracoAttribute> attributes;  ///< As many as were asked for, in that order.
+    std::vector<std::uint32_t> indices;      ///< Triangles.
+    std::vector<DracoAttribute> attributes;  ///< In the requested order.
 };
 
-/// Decodes what KHR_draco_mesh_compression compresses.
-/// @param attributes        Unique identifiers of those that are wanted.
-/// @param most_triangles, most_vertices  As the file's accessors tell; more are refused before memory is taken.
-/// @param extension         Named in errors.
-/// @throws GltfFault where the bytes are damaged.
+/// Decodes KHR_draco_mesh_compression. @param attributes  Unique identifiers.
+/// @param most_triangles, most_vertices  Limits, checked before memory is allocated. @param extension  Named in errors.
+/// @throws GltfFault  for damaged data.
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
 

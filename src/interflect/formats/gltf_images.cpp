@@ -12,12 +12,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr int repeat = 10497;  // glTF's number of it
+constexpr int repeat = 10497;  // glTF enum value
 
-/// Pixels that are decoded in all: an image serves several textures, but not any number of them.
+/// Limit of decoded pixels. An image is decoded for each texture that uses it.
 constexpr std::uint64_t most_decoded = 32 * most_texels;
 
-/// The linear value of each 16 bit value of sRGB.
+/// Linear values of 16-bit sRGB.
 const std::vector<float>& decoded_srgb() {
     static const std::vector<float> table = [] {
         std::vector<float> values(1 << 16);
@@ -33,7 +33,7 @@ Rgb colour_at(const StoredImage& image, std::size_t pixel) {
     return {decoded[values[0]], decoded[values[1]], decoded[values[2]]};
 }
 
-/// The pixel of `image` in which the middle of pixel (x, y) of one of another size lies.
+/// Returns the pixel of `image` at the centre of pixel (x, y) of `of`, which may have another size.
 std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& of) {
     const auto scaled = [](std::uint64_t i, std::uint64_t from, int to) {
         return static_cast<std::size_t>((2 * i + 1) * static_cast<std::uint64_t>(to) / (2 * from));
@@ -108,7 +108,7 @@ StoredImage GltfImages::decode(std::uint32_t image) {
 
 Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
     StoredImage colour, metallic, coverage;
-    const StoredImage* shape = nullptr;  // the first one's size is the texture's
+    const StoredImage* shape = nullptr;  // determines the texture's size
     std::string name;
     const auto load = [&](std::uint32_t index, StoredImage& image) {
         if (index == none) return;

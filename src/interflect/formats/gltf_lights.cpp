@@ -23,7 +23,7 @@ constexpr std::size_t most_lights = 1 << 16;
 
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
-/// Where an axis of a node goes, normalised; glTF's lights and cameras face along -z.
+/// Returns the world direction of an axis. glTF lights and cameras face along -z.
 V3d axis_of(const GltfNode& node, int axis) {
     const double* row = node.to_world[axis];
     const V3d direction(row[0], row[1], row[2]);
@@ -125,7 +125,7 @@ std::shared_ptr<const PhotometricWeb> GltfLights::web(std::uint32_t profile) {
     return result;
 }
 
-/// The nadir, where both angles of the measurement are 0, is along -z, C0 along x and C90 along y.
+/// Nadir along -z, C0 along x, C90 along y.
 void GltfLights::add_measured(const GltfNode& node, std::uint32_t object) {
     const GltfValue use = node.value->extension(measured_lights);
     const std::uint32_t profile = use.required_index("light", profiles_.size());

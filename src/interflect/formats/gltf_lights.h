@@ -12,14 +12,13 @@
 
 namespace interflect::inline detail {
 
-/// The lights and cameras of a glTF file: KHR_lights_punctual, EXT_lights_ies and views.
+/// Lights and cameras: KHR_lights_punctual, EXT_lights_ies and views.
 class GltfLights {
   public:
     GltfLights(GltfAsset& asset, GltfBuffers& buffers);
 
-    /// Adds those of a node to the model. @param object  Index into Model::objects.
+    /// @param object  Index into Model::objects.
     void add(const GltfNode& node, std::uint32_t object);
-    /// Whether a node has a light, so that it needs an object.
     bool has_light(const GltfNode& node) const;
 
   private:

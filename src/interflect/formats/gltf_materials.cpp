@@ -15,7 +15,7 @@ namespace {
 
 constexpr auto most_reflected = static_cast<float>(largest_reflectance);
 
-/// Of primitives that name no material: glTF's own default is a metal, of which no diffuse reflection is left.
+/// For primitives without a material. glTF's own default is a metal without diffuse reflection.
 constexpr float default_reflectance = 0.5f;
 
 GltfMapping mapping_of(const GltfValue& use) {
@@ -35,7 +35,6 @@ GltfMapping mapping_of(const GltfValue& use) {
 
 }  // namespace
 
-/// A material as glTF has it.
 struct GltfMaterials::Parts {
     Rgb base{1, 1, 1};
     GltfTextureUse base_texture;
@@ -43,14 +42,14 @@ struct GltfMaterials::Parts {
     GltfTextureUse metallic_texture;
     Rgb emissive{0, 0, 0};  ///< [cd/m^2]
     GltfTextureUse emissive_texture;
-    float transmission = 0;  ///< Mean.
+    float transmission = 0;  ///< Mean over the texture.
     GltfTextureUse coverage_texture;
-    float coverage = 1;  ///< Share of the area that is there; the rest is open. A factor where there is a texture.
-    float cutoff = 0;    ///< As GltfCoverage has it.
+    float coverage = 1;  ///< Covered fraction of the area. With a texture, a factor of its alpha.
+    float cutoff = 0;    ///< As in GltfCoverage.
     std::optional<GltfMapping> mapping;
 
     GltfCoverage coverage_from_texture() const { return {coverage_texture.image, coverage, cutoff}; }
-    /// Of the area that is there, where that is the same everywhere; else 1, since the textures have it.
+    /// Returns the covered fraction if uniform, else 1, since the textures contain it.
     float even_coverage() const { return coverage_texture.image == none ? coverage : 1; }
 };
 
@@ -125,7 +124,7 @@ void GltfMaterials::apply_alpha(const GltfValue& owner, Parts& parts, GltfSurfac
     }
 }
 
-/// Decides whose mapping the vertices get, since they have one, and replaces the other textures by their means.
+/// Chooses one mapping for the vertices. Textures with other mappings are replaced by their means.
 void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool textured) {
     GltfTextureUse* const uses[] = {&parts.coverage_texture, &parts.emissive_texture, &parts.base_texture,
                                     &parts.metallic_texture};
@@ -189,7 +188,7 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
         asset_.warn("transmission-texture", "what goes through a surface has the mean of its base colour's texture",
                     owner.place());
     constexpr float above_rounding = 1 - 0x1p-20f;
-    const Rgb through = base * (parts.transmission * (1 - metallic));  // where the surface is there
+    const Rgb through = base * (parts.transmission * (1 - metallic));  // of covered parts
     if (coverage.image != none) {
         material.transmittance = Rgb(1);
         material.transmittance_texture =

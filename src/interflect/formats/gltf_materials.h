@@ -9,45 +9,44 @@
 
 namespace interflect::inline detail {
 
-/// Which of a vertex's texture coordinates a texture uses, and how.
+/// Texture coordinate set and transform.
 struct GltfMapping {
     std::uint64_t set = 0;                                ///< TEXCOORD_set
     double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;  ///< (u, v) becomes (xx u + xy v + x, yx u + yy v + y).
 
     bool operator==(const GltfMapping&) const = default;
-    /// The coordinates that a Scene has, whose v goes up.
+    /// Returns coordinates as in Scene, v upwards.
     V2f apply(double u, double v) const {
         return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
     }
 };
 
-/// A material as the primitives that use it see it.
+/// Material of a primitive.
 struct GltfSurface {
     std::uint32_t material = 0;          ///< Index into Model::materials.
-    std::optional<GltfMapping> mapping;  ///< Of its textures, if it has any.
-    bool repeats = true;                 ///< Whether they repeat beyond [0, 1].
+    std::optional<GltfMapping> mapping;  ///< Mapping of the textures.
+    bool repeats = true;                 ///< Whether textures repeat beyond [0, 1].
     bool double_sided = false;
-    bool is_invisible = false;  ///< Its alpha mask leaves nothing of it.
+    bool is_invisible = false;  ///< Hidden by its alpha mask.
 };
 
-/// A reference to a texture, of a material.
 struct GltfTextureUse {
-    std::uint32_t image = none;  ///< none: there is no texture.
+    std::uint32_t image = none;  ///< `none`: untextured
     GltfMapping mapping;
     bool repeats = true;
 };
 
-/// The materials of a glTF file, each made when a primitive first asks for it.
+/// Materials of a glTF file, converted on first use.
 class GltfMaterials {
   public:
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index     Below count(), or none: the default material.
-    /// @param textured  Else its textures are replaced by their means.
+    /// @param index     Below count(), or `none` for the default material.
+    /// @param textured  If false, textures are replaced by their means.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
-    /// To call when all are made: says how much of the light that they reflect is left out.
+    /// Warns about omitted reflection. Call it after all materials are made.
     void warn_of_lost();
 
   private:
@@ -68,7 +67,7 @@ class GltfMaterials {
     std::vector<GltfValue> materials_;
     std::map<std::pair<std::uint32_t, bool>, GltfSurface> surfaces_;
     double lost_ = 0, all_ = 0;
-    std::vector<std::string> losing_;  // places of the materials that lose
+    std::vector<std::string> losing_;  // places of materials with omitted reflection
 };
 
 }  // namespace interflect::inline detail

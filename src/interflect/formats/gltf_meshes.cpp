@@ -16,9 +16,9 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
-constexpr const char* lightmap_set = "TEXCOORD_1";  // by which programs that bake lightmaps lay them out
+constexpr const char* lightmap_set = "TEXCOORD_1";  // set by lightmap bakers
 constexpr const char* normal_set = "NORMAL";
-/// How far a lightmap coordinate may lie outside of [0, 1]: rounding.
+/// Accepted rounding beyond [0, 1].
 constexpr double lightmap_tolerance = 1e-4;
 enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
@@ -34,7 +34,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// The triangles of a strip or a fan, but for those that use a vertex twice, by which strips turn and leap.
+/// Converts a strip or fan to triangles, without the degenerate ones by which strips turn or jump.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -48,7 +48,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Which vertices are used, ascending; the indices become places in that list.
+/// Returns the used vertices, ascending, and makes `indices` refer to them.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {
@@ -66,7 +66,6 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uin
 
 }  // namespace
 
-/// Where a primitive's vertices are.
 struct GltfMeshes::Vertices {
     struct Target {
         GltfElements offsets;
@@ -119,7 +118,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// The texture coordinates that its material's textures use: "TEXCOORD_0"; empty where it has none.
+/// Returns the coordinate set of the material's textures ("TEXCOORD_0"); empty if untextured.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
@@ -271,7 +270,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     asset_.model.meshes.push_back(std::move(mesh));
 }
 
-/// Leaves a mesh without lightmap coordinates where some of them are no place in a lightmap.
+/// Clears the coordinates if any is outside [0, 1].
 void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used,
                                            Mesh& mesh) {
     const auto is_in_range = [](double x) { return x >= -lightmap_tolerance && x <= 1 + lightmap_tolerance; };

@@ -13,20 +13,20 @@
 
 namespace interflect::inline detail {
 
-/// How a mesh is deformed before it is placed.
+/// Deformation of a mesh.
 struct GltfPose {
-    std::vector<double> weights;          ///< Of its morph targets; empty: the mesh's own.
-    std::uint32_t skin = none;            ///< Tells poses apart, for the cache.
-    std::span<const Imath::M44d> joints;  ///< Of the skin: from the mesh to the world.
+    std::vector<double> weights;          ///< Morph target weights; empty: the mesh's own.
+    std::uint32_t skin = none;            ///< Part of the cache key.
+    std::span<const Imath::M44d> joints;  ///< From the mesh to the world.
 };
 
-/// The meshes of a glTF file, each read in each pose when a node first asks for it.
+/// Meshes of a glTF file, read once per pose.
 class GltfMeshes {
   public:
     GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
 
     std::size_t count() const { return meshes_.size(); }
-    /// Indices into Model::meshes: one for each primitive that has faces. @param index  Below count().
+    /// Returns indices into Model::meshes, one per primitive with faces.
     const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
 
   private:

@@ -17,7 +17,7 @@ using Imath::V3d;
 
 V3d vector_of(const std::array<double, 3>& values) { return {values[0], values[1], values[2]}; }
 
-/// glTF's columns, one after the other, are the rows of a matrix that row vectors are multiplied by.
+/// glTF stores columns, which become rows for row vectors.
 M44d local_transform(const GltfValue& node) {
     if (node.has("matrix")) {
         const auto m = node.numbers<16>("matrix", {});
@@ -59,7 +59,7 @@ GltfNodes::GltfNodes(GltfAsset& asset)
     if (reached < values_.size()) throw GltfFault("nodes: some are their own ancestors");
 }
 
-/// Calls `visit` for each node below `roots`, depth first, without recursion: nesting is as deep as the file says.
+/// Visits the nodes below `roots` depth first. Not recursive, since files may nest arbitrarily deep.
 template <class Visit>
 void GltfNodes::traverse(const std::vector<std::uint32_t>& roots, const Visit& visit) const {
     std::vector<std::uint32_t> waiting(roots.rbegin(), roots.rend());
@@ -96,7 +96,7 @@ std::vector<std::uint32_t> GltfNodes::roots_of_scene() const {
 std::vector<GltfNode> GltfNodes::in_scene() const {
     const std::size_t longest = 4 * asset_.options().max_name_length;
     std::vector<GltfNode> result;
-    std::vector<std::uint32_t> place(values_.size(), none);  // in `result`
+    std::vector<std::uint32_t> place(values_.size(), none);  // index in `result`
     traverse(roots_of_scene(), [&](std::uint32_t i) {
         place[i] = static_cast<std::uint32_t>(result.size());
         const std::string outer = parents_[i] == none ? "" : result[place[parents_[i]]].dotted;

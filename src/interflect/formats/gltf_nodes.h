@@ -8,23 +8,21 @@
 
 namespace interflect::inline detail {
 
-/// A node of the scene, placed.
 struct GltfNode {
     const GltfValue* value = nullptr;
     Imath::M44d to_world;
-    std::string name;    ///< Its own; empty where it has none.
-    std::string dotted;  ///< With those of its ancestors: "room.desk.leg".
+    std::string name;    ///< May be empty.
+    std::string dotted;  ///< With the names of its ancestors: "room.desk.leg".
 };
 
-/// The nodes of a glTF file, placed in the world.
 class GltfNodes {
   public:
-    /// @throws GltfFault for a node that is its own ancestor or has two parents, and for a transform that is none.
+    /// @throws GltfFault  for cycles, for a node with two parents, and for invalid transforms.
     explicit GltfNodes(GltfAsset& asset);
 
     std::size_t count() const { return values_.size(); }
     const Imath::M44d& to_world(std::uint32_t node) const { return to_world_[node]; }
-    /// Those of the file's scene, or of its first one; where it has no scene, all. Parents come first.
+    /// Returns the nodes of the file's scene, or of its first scene; without scenes, all. Parents come first.
     std::vector<GltfNode> in_scene() const;
 
   private:
@@ -39,7 +37,7 @@ class GltfNodes {
     std::vector<Imath::M44d> to_world_;
 };
 
-/// Scaled, then turned by the quaternion (x, y, z, w), then moved. @throws GltfFault for a quaternion of length 0.
+/// Applies scale, then the quaternion (x, y, z, w), then translation. @throws GltfFault  for a quaternion of length 0.
 Imath::M44d gltf_transform(const Imath::V3d& scale, const std::array<double, 4>& rotation,
                            const Imath::V3d& translation, const GltfValue& owner);
 

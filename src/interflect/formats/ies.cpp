@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int first_year = 1986, last_year_of_factor = 1995, year_of_reserved = 2002;
 
-/// LM-63's own sizes of an opening [m]: across, along and above the C0 plane, negative where it is round.
+/// Opening sizes of LM-63 [m]: across, along and above the C0 plane. Negative: round.
 struct Dimensions {
     double width, length, height;
 };
@@ -40,7 +40,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// What follows "TILT=", in the file's own letters; nothing where the line is another.
+/// Returns the text after "TILT="; nullopt for other lines.
 std::optional<std::string_view> tilt_of(std::string_view line) {
     constexpr std::string_view keyword = "TILT";
     if (!upper_case(line.substr(0, keyword.size())).starts_with(keyword)) return std::nullopt;
@@ -48,8 +48,8 @@ std::optional<std::string_view> tilt_of(std::string_view line) {
     return line.starts_with('=') ? std::optional(trimmed(line.substr(1))) : std::nullopt;
 }
 
-/// Of negative sizes two are the diameters of a cylinder, three those of an ellipsoid. One stands for two, in files up
-/// to 1995: of a circle where the other is 0.
+/// Two negative sizes are the diameters of a cylinder, three those of an ellipsoid. Up to 1995, a single negative size
+/// is the diameter of a circle if the other size is 0.
 LuminousOpening opening_of(const Dimensions& d, bool& is_known) {
     using Shape = LuminousOpening::Shape;
     const bool round[3] = {d.length < 0, d.width < 0, d.height < 0};
@@ -95,12 +95,12 @@ class IesReader {
     void warn(const char* kind, const std::string& message) { warnings_.add(kind, message, text_.where()); }
 
     const fs::path& path_;
-    const fs::path& folder_;  // of its TILT file
+    const fs::path& folder_;  // of the TILT file
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
     int year_ = first_year;
-    double factor_ = 1;  // of the intensities
+    double factor_ = 1;  // scales intensities
     PhotometricWeb web_;
 };
 
@@ -113,7 +113,6 @@ PhotometricWeb IesReader::read() {
     return std::move(web_);
 }
 
-/// Up to the line with TILT, and that with its data.
 void IesReader::read_labels() {
     for (bool is_first = true;; is_first = false) {
         const auto line = text_.line();
@@ -123,7 +122,7 @@ void IesReader::read_labels() {
     }
 }
 
-/// "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019"; files of 1986 begin with labels.
+/// Accepts "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019". Files of 1986 begin with labels.
 void IesReader::read_version(std::string_view first_line) {
     const std::string line = upper_case(first_line);
     if (!line.starts_with("IES")) return;
@@ -163,7 +162,7 @@ void IesReader::read_tilt(std::string_view tilt) {
     PhotometricText text(content, path, ",");
     try {
         factor_ *= tilt_factor(text);
-    } catch (const InputError&) {  // whose message quotes the file
+    } catch (const InputError&) {  // its message quotes the file
         text_.refuse(
             fmt::format("the TILT file {} has no TILT data: expected the lamp's geometry (1 to 3), the number of "
                         "angles, the angles, and as many factors of at least 0",
@@ -171,7 +170,7 @@ void IesReader::read_tilt(std::string_view tilt) {
     }
 }
 
-/// The factor at the tilt of the measurement, 0.
+/// Interpolates at tilt 0, the measurement position.
 double IesReader::tilt_factor(PhotometricText& text) {
     text.count("the lamp's geometry in TILT data", 1, 3);
     const std::size_t count = text.count("the number of TILT angles", 1, options_.max_photometric_values);
@@ -241,7 +240,7 @@ void IesReader::read_opening(double metres) {
     if (!is_known) warn("ies-opening", "the luminous opening has no shape of IES LM-63; it is read as a box");
 }
 
-/// Ends of a quadrant are exact, so that symmetry can be told.
+/// Snaps angles near multiples of 90 degrees to make symmetry tests exact.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;
@@ -268,7 +267,7 @@ PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t h
     return {std::move(horizontal), std::move(intensities)};
 }
 
-/// One plane: the same all around. 0 to 90, or half a turn from a multiple of 90 on: the rest is their mirror image.
+/// A single plane means rotational symmetry. Ranges of 90 or 180 degrees are mirrored.
 void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> horizontal) {
     constexpr auto half = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
     const bool is_complete = (vertical.front() == 0 || vertical.front() == right_angle) &&
@@ -293,8 +292,8 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
     web_.intensities = all.intensities();
 }
 
-/// From 0 on: symmetric about the vertical plane. Types A and B count horizontal angles clockwise. Type A has vertical
-/// angles around the nadir, type B horizontal ones around y.
+/// Horizontal angles from 0 are mirrored; types A and B count them clockwise. The polar axis is the nadir for type A
+/// and y for type B.
 void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type) {
     if (horizontal.size() < 2) text_.refuse("a single horizontal angle; expected at least two of types A and B");
     if (std::abs(vertical.back()) < right_angle || std::abs(horizontal.back()) < right_angle)

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Goes over a text that cannot be parsed, for the place of its fault: not all of the parser's exceptions have it.
+/// Locates errors by parsing again, since not all exceptions of the parser have a position.
 class FaultFinder : public nlohmann::json_sax<json> {
   public:
     std::size_t offset() const { return offset_; }
@@ -39,7 +39,7 @@ class FaultFinder : public nlohmann::json_sax<json> {
     std::size_t offset_ = 0;
 };
 
-/// Without the library's own "[json.exception.parse_error.101] ".
+/// Removes the prefix "[json.exception.parse_error.101] ".
 std::string_view message_of(const json::exception& error) {
     const std::string_view text = error.what();
     const auto end = text.find("] ");

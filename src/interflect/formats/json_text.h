@@ -6,8 +6,8 @@
 
 namespace interflect::inline detail {
 
-/// Parses JSON. @param path  Named in the error. @throws InputError with file and line, where the text is no JSON or
-/// has a number beyond double precision.
+/// Parses JSON. @param path  Named in errors. @throws InputError  with file and line for invalid JSON and for numbers
+/// beyond double precision.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace interflect::inline detail

@@ -25,7 +25,7 @@ class LdtReader {
     PhotometricWeb read();
 
   private:
-    /// Isym of the format.
+    /// Isym.
     enum Symmetry { none_at_all = 0, rotation = 1, c0_plane = 2, c90_plane = 3, both_planes = 4 };
 
     std::string_view line(const char* what);
@@ -43,13 +43,13 @@ class LdtReader {
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
-    double factor_ = 1;  // of the intensities
+    double factor_ = 1;  // scales intensities
     PhotometricWeb web_;
 };
 
 PhotometricWeb LdtReader::read() {
     web_.name = path_.string();
-    skip_lines(2);  // the maker, the kind of luminaire
+    skip_lines(2);  // manufacturer, type of luminaire
     const auto symmetry = static_cast<Symmetry>(count_line("the symmetry", none_at_all, both_planes));
     const std::size_t most = options_.max_photometric_values;
     const std::size_t plane_count = count_line("the number of C planes", 1, most);
@@ -108,9 +108,9 @@ void LdtReader::skip_lines(int count) {
     for (int i = 0; i < count; ++i) line("the luminous intensities");
 }
 
-/// Lengths run along C90, widths along C0; a width of 0 means a round opening.
+/// Lengths are along C90, widths along C0; width 0: round.
 void LdtReader::read_opening() {
-    constexpr double metres = 1e-3;  // in a millimetre
+    constexpr double metres = 1e-3;  // per millimetre
     const double length = number_line("the length of the luminous area"),
                  width = number_line("the width of the luminous area");
     double height = 0;
@@ -123,7 +123,7 @@ void LdtReader::read_opening() {
                     millimetres * static_cast<float>(metres), 2};
 }
 
-/// Of each set: number, type, flux, colour, colour rendering, power. A negative number means absolute photometry.
+/// Set: number, type, flux, colour, colour rendering, power. A negative number means absolute photometry.
 void LdtReader::read_lamps() {
     constexpr std::size_t most_sets = 20;
     const std::size_t sets = count_line("the number of sets of lamps", 1, most_sets);
@@ -154,7 +154,7 @@ std::vector<float> LdtReader::angles(std::size_t count, const char* kind, double
     return result;
 }
 
-/// The planes of which the file has intensities. Those on both sides of C0 go from C270 to C90.
+/// Returns the planes with stored intensities. With symmetry 3 they run from C270 to C90.
 std::vector<float> LdtReader::planes_of(const std::vector<float>& all, Symmetry symmetry) const {
     const std::size_t count = all.size();
     const auto part = [&](std::size_t first, std::size_t end) {

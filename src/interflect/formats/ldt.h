@@ -9,17 +9,16 @@
 
 namespace interflect::inline detail {
 
-/// Reads a file of measured light in the EULUMDAT format (Stockmar 1990), every symmetry. Intensities are those of the
-/// file, which are for 1000 lm, times its conversion factor and the flux of its first set of lamps. The opening is as
-/// high as its highest side.
+/// Reads an EULUMDAT file (Stockmar 1990), with any symmetry. Intensities (per 1000 lm) are multiplied by the
+/// conversion factor and the flux of the first lamp set. The opening has the height of its highest side.
 ///
-/// Tolerated with a warning, counted by kind: "ldt-decimal-comma", commas for decimal points; "ldt-lamps", more than
-/// one set of lamps; "ldt-tilt", a luminaire that was tilted as it was measured; "ldt-angles", angles that end early;
-/// "ldt-negative", a negative intensity, read as 0; "ldt-trailing", words after the last intensity.
-/// @throws InputError with file and line, for what is not as above, and beyond the limits of `options`.
+/// Warnings by kind: "ldt-decimal-comma"; "ldt-lamps", several lamp sets; "ldt-tilt", tilted during measurement;
+/// "ldt-angles", angles end early; "ldt-negative", negative intensity, read as 0; "ldt-trailing", words after the last
+/// intensity.
+/// @throws InputError  with file and line for other invalid input and beyond the limits of `options`.
 PhotometricWeb read_ldt(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 
-/// The same from memory. @param path  Name for messages.
+/// Reads from memory. @param path  Name for messages.
 PhotometricWeb read_ldt_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,
                              Warnings& warnings);
 

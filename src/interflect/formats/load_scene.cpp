@@ -57,7 +57,7 @@ bool emits(const Scene& scene) {
     });
 }
 
-/// Diagonals of scenes that are probably in another unit than was thought [m].
+/// Diagonals of scenes that probably have a wrong unit [m].
 constexpr float implausibly_large = 2000, implausibly_small = 0.05f;
 
 void warn_of_size(Scene& scene) {
@@ -69,7 +69,6 @@ void warn_of_size(Scene& scene) {
 
 constexpr std::string_view maze_prefix = "maze:";
 
-/// What `maze:ROOMS[:furniture]` asks for.
 MazeOptions parse_maze(const std::string& name) {
     std::string_view rooms = std::string_view(name).substr(maze_prefix.size());
     MazeOptions maze;

@@ -7,14 +7,14 @@
 
 namespace interflect::inline detail {
 
-/// Whether a surface is smooth enough to show images. @param roughness  Of MGF and Radiance: the standard deviation of
-/// the slopes of its microfacets.
+/// Returns whether a surface shows mirror images. @param roughness  Standard deviation of microfacet slopes, as in MGF
+/// and Radiance.
 inline bool is_mirror(double specular_reflectance, double roughness) {
     constexpr double roughest = 0.02;
     return specular_reflectance > 0 && roughness <= roughest;
 }
 
-/// What surfaces have of which the file tells nothing.
+/// For surfaces without a material.
 inline Material default_material() {
     Material grey;
     grey.name = "default";
@@ -22,15 +22,14 @@ inline Material default_material() {
     return grey;
 }
 
-/// Limits every channel to `largest_reflectance`. @return whether one was above
+/// Clamps to `largest_reflectance`. @return  Whether it did.
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;
     for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], static_cast<float>(largest_reflectance));
     return reflectance != given;
 }
 
-/// Scales down what goes through and is mirrored where more light than arrives would leave the material. @return
-/// whether it would
+/// Scales transmittance and specular reflectance to conserve energy. @return  Whether it did.
 inline bool limit_sum(Material& material) {
     const float straight = largest_channel(Rgb(material.transmittance + material.specular_reflectance));
     const float rest = 1 - largest_channel(material.reflectance);

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 using Imath::V3d;
 
-/// Reads a scene about the world's origin, and where that is far from it, once more about an origin of its own.
+/// Reads relative to the world's origin, and again relative to a closer origin if the scene is far away.
 Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {
     V3d origin(0);
     {

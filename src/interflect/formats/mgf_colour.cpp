@@ -39,10 +39,10 @@ V3d colour_matching_at(double wavelength) {
     return row(colour_matching[i]) * (1 - t) + row(colour_matching[i + 1]) * t;
 }
 
-/// Of its tristimulus values, below which a colour has no luminance, or no chromaticity.
+/// Minimum of |Y| and |X + Y + Z| relative to |X| + |Y| + |Z|.
 constexpr double least_share = 1e-6;
 
-/// Tristimulus values may be negative: only their ratio to the luminance counts. @throws std::invalid_argument
+/// Only ratios to Y matter, so values may be negative. @throws std::invalid_argument
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     const double size = std::abs(xyz.x) + std::abs(xyz.y) + std::abs(xyz.z), total = xyz.x + xyz.y + xyz.z;
     if (!(std::abs(xyz.y) > least_share * size && std::abs(total) > least_share * size))
@@ -50,7 +50,7 @@ Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     return {xyz.x / total, xyz.y / total};
 }
 
-/// Tristimulus values of a spectrum, scaled so that equal energy gives equal values.
+/// Scaled so that equal energy gives equal tristimulus values.
 template <class Spectrum>
 Chromaticity integrate(const Spectrum& spectrum) {
     V3d sum(0), equal_energy(0);
@@ -64,14 +64,14 @@ Chromaticity integrate(const Spectrum& spectrum) {
 
 V3d xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
 
-/// Column vectors: XYZ' = m XYZ. (Imath multiplies row vectors from the left, hence the transposition.)
+/// XYZ' = m XYZ. Transposed, since Imath multiplies row vectors.
 V3d multiply(const M33d& m, const V3d& v) { return v * m.transposed(); }
 
 M33d diagonal(const V3d& d) { return {d.x, 0, 0, 0, d.y, 0, 0, 0, d.z}; }
 
 M33d columns(const V3d& a, const V3d& b, const V3d& c) { return {a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z}; }
 
-/// From XYZ under illuminant E to linear Rec. 709; derived in the header.
+/// From XYZ under illuminant E; derived in the header.
 M33d make_rec709_from_xyz() {
     const V3d white = xyz_of(0.3127, 0.3290);
     const M33d bradford(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296);
@@ -86,10 +86,10 @@ const M33d& rec709_from_xyz() {
     return matrix;
 }
 
-/// Relative excess that is rounding, not colour.
+/// Relative excess ignored as rounding.
 constexpr double rounding = 1e-9;
 
-/// How far from neutral, 0 to 1, a channel can go towards `channel` (both at luminance 1) and stay in [0, limit].
+/// Returns the largest saturation, 0 (neutral) to 1 (`channel`), that keeps a channel in [0, limit]. Luminance is 1.
 double saturation_within(double channel, double limit) {
     if (channel < -rounding) return 1 / (1 - channel);
     if (channel > limit * (1 + rounding)) return (limit - 1) / (channel - 1);
@@ -120,7 +120,7 @@ Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const
 Chromaticity chromaticity_of_black_body(double kelvin) {
     if (!(kelvin >= 1000)) throw std::invalid_argument("a colour temperature must be at least 1000 K");
     constexpr double second_radiation_constant = 1.438777e7;  // [nm K]
-    // Planck's law relative to its value at 560 nm, the scale does not matter and would overflow.
+    // Relative to 560 nm, since absolute values would overflow.
     const auto planck = [&](double nm) {
         return std::pow(nm, -5) / std::expm1(second_radiation_constant / (nm * kelvin));
     };
@@ -141,13 +141,13 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
         luminance = largest;
     }
     V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
-    constexpr double least_channel = 1e-15;  // where 1 is white
-    // The adaptation keeps Y of neutral only, so first come into the gamut, then set the luminance.
+    constexpr double least_channel = 1e-15;  // where white is 1
+    // Adaptation preserves Y of neutral only, so enter the gamut first, then set the luminance.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
     rgb = with_saturation(rgb, in_gamut);
     for (int c = 0; c < 3; ++c)
-        if (rgb[c] < least_channel) rgb[c] = 0;  // the channel on the border
+        if (rgb[c] < least_channel) rgb[c] = 0;  // on the gamut's border
     rgb /= interflect::luminance(RgbD(rgb));
     if (luminance > 0) {
         const double under_bound = smallest_saturation(rgb, largest / luminance);

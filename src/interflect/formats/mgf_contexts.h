@@ -16,26 +16,26 @@
 
 namespace interflect::inline detail {
 
-/// The named contexts of one kind (colours, materials or vertices), and which of them is current. A default-constructed
-/// Context is MGF's default. Names are views of the text that was read, which must outlive the table.
+/// Named contexts of one kind (colours, materials or vertices) and the current one. Context{} must be MGF's default.
+/// Names are views of the input text, which must outlive the table.
 template <class Context>
 class ContextTable {
   public:
-    /// @param kind  For error messages: "vertex".
+    /// @param kind  For errors: "vertex".
     ContextTable(std::string_view kind, std::size_t max_name_length) : kind_(kind), max_name_length_(max_name_length) {}
 
     Context& current() { return *current_; }
     std::string_view current_name() const { return current_name_; }  ///< Empty for the unnamed context.
 
-    /// @throws std::invalid_argument  where the name is not defined.
+    /// @throws std::invalid_argument  for an undefined name.
     Context& find(std::string_view name) {
         const auto entry = named_.find(name);
         if (entry == named_.end()) throw std::invalid_argument(fmt::format("{} '{}' is not defined", kind_, name));
         return entry->second;
     }
 
-    /// What follows the entity's keyword: nothing (a fresh unnamed context), `name` (back to that context), `name =` (a
-    /// fresh one of that name) or `name = template` (a copy). @throws std::invalid_argument
+    /// Applies the words after the keyword: none (new unnamed context), `name` (existing), `name =` (new) or `name =
+    /// template` (copy). @throws std::invalid_argument
     void enter(std::span<const std::string_view> words) {
         if (words.empty()) {
             unnamed_ = Context{};
@@ -60,7 +60,7 @@ class ContextTable {
         if (name.size() > max_name_length_)
             throw std::invalid_argument(
                 fmt::format("a name of {} characters; at most {} are read", name.size(), max_name_length_));
-        // '-' separates the loops of a face with holes, and a lone '=' is a name forgotten.
+        // '-' separates loops of a face; a lone '=' indicates a missing name.
         if (name[0] == '-' || name == "=") throw std::invalid_argument(fmt::format("'{}' cannot be a name", name));
     }
 
@@ -68,43 +68,41 @@ class ContextTable {
     std::size_t max_name_length_;
     std::unordered_map<std::string_view, Context> named_;
     Context unnamed_;
-    Context* current_ = &unnamed_;  // elements of an unordered_map stay where they are
+    Context* current_ = &unnamed_;  // stable: unordered_map does not move elements
     std::string_view current_name_;
 };
 
-/// MGF's colour.
 struct MgfColour {
     Chromaticity chromaticity;
-    std::uint32_t fault = none;  ///< In MgfFaults, where what defines it is wrong.
+    std::uint32_t fault = none;  ///< Index in MgfFaults.
 };
 
-/// The image of a `texture` entity; none where the path is empty.
+/// Image of a `texture` entity; path empty if absent.
 struct MgfTexture {
     std::string path;
     Location where;
 };
 
-/// MGF's material; black and two-sided by default. Reflectances, transmittances: luminous, 0 to 1.
+/// Black and two-sided by default. Reflectances and transmittances are luminous, 0 to 1.
 struct MgfMaterial {
     bool two_sided = true;
-    double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular reflectance and transmittance.
-    double ed = 0;                          ///< Exitance [lm/m^2].
+    double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular.
+    double ed = 0;                          ///< [lm/m^2]
     double rs_roughness = 0, ts_roughness = 0;
     MgfColour rd_colour, rs_colour, ts_colour, ed_colour;
     MgfTexture rd_texture, ts_texture, ed_texture;
-    Location defined;                  ///< The last line that changed it.
-    std::uint32_t fault = none;        ///< In MgfFaults: the first thing wrong with what defines it.
-    std::uint32_t scene_index = none;  ///< In Scene::materials, once a face has used it as it is.
+    Location defined;                  ///< Last change.
+    std::uint32_t fault = none;        ///< Index in MgfFaults of the first error.
+    std::uint32_t scene_index = none;  ///< Index in Scene::materials once used.
 
     bool is_textured() const {
         return !(rd_texture.path.empty() && ts_texture.path.empty() && ed_texture.path.empty());
     }
 };
 
-/// MGF's vertex.
 struct MgfVertex {
     Imath::V3d point{0, 0, 0};
-    Imath::V3d normal{0, 0, 0};  ///< Unit length, or zero where none is given.
+    Imath::V3d normal{0, 0, 0};  ///< Unit length; 0 if absent.
     bool has_texture_coordinate = false;
     V2f texture_coordinate{0, 0};
 

@@ -10,18 +10,16 @@
 
 namespace interflect::inline detail {
 
-/// The faults in colours and materials, which count only when a face uses them: real files define more than they use,
-/// and what nobody sees should not make them unreadable.
+/// Errors in colours and materials, reported only if a face uses them, since real files define more than they use.
 class MgfFaults {
   public:
-    /// Remembers a fault, once for each line however often that is read. @return its index, for a context to keep.
+    /// Stores one error per line. @return  Its index.
     std::uint32_t add(const Location& where, const std::string& message);
 
-    /// @throws InputError  with the file and line of the fault, unless `fault` is none.
+    /// @throws InputError  unless `fault` is none.
     void refuse(std::uint32_t fault) const;
-    /// The same for what the material holds, and for those of its colours that count.
+    /// Refuses errors of the material and of its rd and ed colours.
     void refuse_faults_of(const MgfMaterial& material) const;
-    /// The same for the first fault, where there is one.
     void refuse_first() const { refuse(faults_.empty() ? none : 0); }
 
   private:

@@ -23,10 +23,10 @@ bool is_name(std::string_view word) { return std::isalpha(static_cast<unsigned c
 
 }  // namespace
 
-/// The normal of a vertex, in the world, as the direction in which a light shines.
+/// Converts a vertex normal to a light's world direction.
 V3f MgfReader::direction_of(std::string_view vertex) { return turned(normal_of(vertex)); }
 
-/// A direction, in the world, of unit length.
+/// Transforms to a unit vector in the world.
 V3f MgfReader::turned(const V3d& direction) const {
     V3d result;
     total_transform().multDirMatrix(direction, result);
@@ -35,7 +35,7 @@ V3f MgfReader::turned(const V3d& direction) const {
 
 void MgfReader::light(MgfWords words) {
     struct Kind {
-        std::size_t fewest, most;  // arguments
+        std::size_t fewest, most;  // argument counts
         const char* usage;
     };
     static const std::unordered_map<std::string_view, Kind> kinds = {
@@ -67,7 +67,7 @@ void MgfReader::light(MgfWords words) {
     scene_.add_light(std::move(luminaire), name);
 }
 
-/// Transforms move, turn and mirror a luminaire; its light and its size are those of the file.
+/// Transforms change neither flux nor size.
 void MgfReader::luminaire(MgfWords words) {
     const std::string_view file = words[0];
     words = words.subspan(1);
@@ -93,7 +93,7 @@ void MgfReader::luminaire(MgfWords words) {
     } while (next_index(copy, sequence.array_sizes()));
 }
 
-/// The web of a file, which is relative to the one that names it; read once.
+/// Files are relative to the including file and read once.
 std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_view name) {
     const std::filesystem::path path = file_->source.path.parent_path() / name;
     std::shared_ptr<const PhotometricWeb>& web = webs_[path.string()];

@@ -12,24 +12,24 @@
 
 namespace interflect::inline detail {
 
-/// The objects (`o`, and one for each copy of an array) that are open where a file is being read.
+/// Open objects: of `o`, and of each array copy.
 class MgfObjects {
   public:
     MgfObjects(const ReadOptions& options, MgfSceneBuilder& scene) : options_(options), scene_(scene) {}
 
     std::size_t depth() const { return open_.size(); }
 
-    /// @param is_copy  Of an array: only close_copy() closes it. @throws std::invalid_argument beyond a limit.
+    /// @param is_copy  Closed only by close_copy(). @throws std::invalid_argument  beyond a limit.
     void open(std::string_view name, bool is_copy, const Location& where);
-    /// Closes the innermost object, as `o` without a name does. @return false where it is none of the file's own, which
-    /// begin at `outer_depth`.
+    /// Closes the innermost object. @return  false if it does not belong to the current file, whose objects begin at
+    /// `outer_depth`.
     bool close_innermost(std::size_t outer_depth);
-    /// Closes the innermost copy, and what was left open in it.
+    /// Closes the innermost copy with all objects in it.
     void close_copy();
-    /// Closes all but the outermost `depth`, with a warning for each that a file left open.
+    /// Closes all but `depth` objects and warns about unclosed ones.
     void close_down_to(std::size_t depth);
 
-    /// Index in Scene::objects of the innermost object.
+    /// Returns the innermost object's index in Scene::objects.
     std::uint32_t current();
 
   private:
@@ -37,7 +37,7 @@ class MgfObjects {
         std::string dotted_name;
         Location opened;
         bool is_copy = false;
-        std::optional<std::uint32_t> scene_index;  // in Scene::objects, once a patch was made
+        std::optional<std::uint32_t> scene_index;  // set by the first patch
     };
 
     const ReadOptions& options_;

@@ -65,13 +65,12 @@ void MgfReader::read(const std::filesystem::path& path, std::string text) {
 }
 
 Scene MgfReader::finish() {
-    // A file without a face is refused anyway; what is wrong with it says more.
+    // A file without faces fails anyway; a deferred error is more specific.
     if (scene_.patch_count() == 0) faults_.refuse_first();
     return scene_.finish();
 }
 
-/// @param transform  What an `i` gives with the file; it is in force until the end of the file, and read again for each
-///                   copy where it is an array.
+/// @param transform  In force for the whole file, which is read once per copy of an array.
 void MgfReader::read_file(const SourceFile& source, MgfWords transform) {
     OpenMgfFile file{source, LineReader(source.text), 0, objects_.depth(), file_};
     const LineReader::Position start = file.lines.position();
@@ -131,7 +130,7 @@ void MgfReader::apply(const Entity& entity, MgfWords arguments) {
     (this->*entity.handle)(arguments);
 }
 
-/// Records a fault with the colour or material that has it, and warns in case that no face uses it.
+/// Stores the error with its colour or material, and warns in case no face uses it.
 void MgfReader::defer(Defines defines, const std::string& message) {
     if (unused_fault_.empty())
         unused_fault_ = "fault in a colour or material that no face uses is ignored, such as: " + here().shown(message);
@@ -149,7 +148,7 @@ void MgfReader::count_repeated(std::uint64_t words) {
     if (include_depth_ > 0 || repeating_arrays_ > 0) repeated_.add(words, scene_.patch_count());
 }
 
-/// At the end of a file: warns of transforms and objects that are still open, and closes them.
+/// Closes everything left open at the end of a file, with a warning.
 void MgfReader::close_all() {
     for (; transforms_.size() > file_->outer_transforms; transforms_.pop_back()) {
         const OpenMgfTransform& transform = transforms_.back();

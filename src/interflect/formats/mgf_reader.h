@@ -25,7 +25,7 @@
 
 namespace interflect::inline detail {
 
-/// A file in the middle of being read, with how much was open when it began: it can close no more than it opened.
+/// File being read. It cannot close transforms or objects opened outside it.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
@@ -33,24 +33,22 @@ struct OpenMgfFile {
     const OpenMgfFile* includer;
 };
 
-/// A transform that is open, `xf` or that of an include, and which copy of its array is being read.
+/// Open `xf` or include, and the current copy of its array.
 struct OpenMgfTransform {
     TransformSequence sequence;
-    Imath::M44d total;  // from the coordinates inside to the world
+    Imath::M44d total;  // to the world
     Location opened;
-    std::vector<int> copy;  // indices of the copy being read; empty where the transform is no array
+    std::vector<int> copy;  // indices; empty if not an array
     LineReader::Position body;
-    double copies_together = 1;  // product of the sizes of all arrays around, this one included
+    double copies_together = 1;  // product of all enclosing array sizes, including this one
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
 
-/// Reads an MGF file, with the files that it includes, into a scene. Handlers of entities are in
-/// mgf_material_entities.cpp, mgf_surface_entities.cpp, mgf_light_entities.cpp and mgf_transform_entities.cpp, the rest
-/// in mgf_reader.cpp.
+/// Reads an MGF file and its includes. Entity handlers are in mgf_*_entities.cpp.
 class MgfReader {
   public:
-    /// @param origin  What the scene is made relative to.
+    /// @param origin  World position of the scene's origin.
     MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
     void read(const std::filesystem::path& path, std::string text);
     Imath::V3d suitable_origin() const { return scene_.suitable_origin(); }
@@ -58,18 +56,16 @@ class MgfReader {
 
   private:
     using Handler = void (MgfReader::*)(MgfWords);
-    /// What an entity defines, and so what bears its faults: where that is a colour or a material, only its use is
-    /// refused.
+    /// Kind of context that bears an entity's errors, which are deferred until a face uses it.
     enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
-        std::size_t fewest, most;  // arguments
+        std::size_t fewest, most;  // argument counts
         const char* usage;
         Defines defines = Defines::other;
     };
     static const std::unordered_map<std::string_view, Entity>& entities();
 
-    // Files and lines.
     void read_file(const SourceFile& source, MgfWords transform);
     void read_lines();
     void read_line(MgfWords words);
@@ -80,7 +76,7 @@ class MgfReader {
     Location here() const { return {&file_->source.path, file_->lines.line(), {}, file_->includer != nullptr}; }
     void count_repeated(std::uint64_t words);
 
-    // Entities, as in the table.
+    // Entities, in the order of the table.
     void include(MgfWords words);
     void colour(MgfWords words) { colours_.enter(words); }
     void colour_xy(MgfWords words);
@@ -115,7 +111,7 @@ class MgfReader {
     void sky(MgfWords words);
     void environment(MgfWords words);
 
-    // What they share.
+    // Helpers.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
@@ -147,12 +143,12 @@ class MgfReader {
     ContextTable<MgfMaterial> materials_;
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenMgfTransform> transforms_;
-    std::vector<std::vector<std::uint32_t>> loops_;  // of the face being read
-    std::vector<Imath::V3d> outline_;                // its first loop, in the world
-    // Messages for all of a kind, with the first one's particulars.
+    std::vector<std::vector<std::uint32_t>> loops_;  // of the current face
+    std::vector<Imath::V3d> outline_;                // first loop, in the world
+    // Messages with the details of the first occurrence.
     std::string unknown_entity_, unused_fault_;
     std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;   // by path
-    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // likewise
+    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // by path
     MgfSceneBuilder scene_;
     MgfObjects objects_;
 };

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t most_lights = 1 << 16;
 
-/// Equal for materials that look the same and are called the same, however often a file defines them.
+/// Equal for materials with the same name and properties.
 std::string identity(const Material& m) {
     std::string key = m.name;
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -113,7 +113,7 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     const auto reflected = [&](const MgfColour& colour, double share) {
         return converted(colour, share, largest_reflectance, material.defined);
     };
-    const double most_transmitted = material.ts_texture.path.empty() ? largest_reflectance : 1;  // 1: a hole
+    const double most_transmitted = material.ts_texture.path.empty() ? largest_reflectance : 1;  // 1 is a hole
     Material result{.name = std::string(name),
                     .reflectance = reflected(material.rd_colour, material.rd),
                     .exitance = emitted(material.ed_colour, material.ed, material.defined),

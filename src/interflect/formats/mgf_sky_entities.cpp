@@ -16,8 +16,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// @param words  The name of the sky and its arguments.
-/// @param most   Of them; the last may be left out where `fewest` is less.
+/// @param words  Name of the sky and its arguments. @param most  The last word is optional if `fewest` is less.
 void require_arguments(MgfWords words, std::size_t fewest, std::size_t most, const char* usage) {
     if (words.size() >= fewest && words.size() <= most) return;
     throw MgfFault(
@@ -100,7 +99,7 @@ void MgfReader::environment(MgfWords words) {
     scene_.add_light({"", objects_.current(), std::move(map)}, "environment");
 }
 
-/// The image of a file, which is relative to the one that names it; read once.
+/// Files are relative to the including file and read once.
 std::shared_ptr<const Texture> MgfReader::environment_image(std::string_view name) {
     const std::filesystem::path path = file_->source.path.parent_path() / name;
     std::shared_ptr<const Texture>& image = environments_[path.string()];

@@ -23,7 +23,6 @@ void MgfReader::texture_coordinate(MgfWords words) {
     vertices_.current().has_texture_coordinate = true;
 }
 
-/// Appends a loop of the face being read.
 void MgfReader::add_loop(MgfWords names) {
     if (names.size() > options_.max_face_vertices)
         throw MgfFault(
@@ -42,11 +41,11 @@ void MgfReader::add_loop(MgfWords names) {
         loop.push_back(scene_.vertex(outline_.back(), vertex.coordinate(), normal));
     }
     if (loops_.size() == 1) scene_.place_face(outline_);
-    // A mirror image turns the other way round.
+    // Mirroring reverses the orientation.
     if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
 
-/// Index of the current material, for a face. @throws MgfFault where a definition of the material has one.
+/// @throws MgfFault  if the material's definition is invalid.
 std::uint32_t MgfReader::usable_material() {
     MgfMaterial& material = materials_.current();
     faults_.refuse_faults_of(material);

@@ -19,7 +19,7 @@ void MgfReader::transform(MgfWords words) {
     close_transform();
 }
 
-/// @param body  Where reading goes on for each further copy.
+/// @param body  Start of the text read for each further copy.
 void MgfReader::open_transform(MgfWords words, const LineReader::Position& body) {
     if (transforms_.size() >= static_cast<std::size_t>(options_.max_nesting))
         throw MgfFault(fmt::format("transforms are nested more than {} deep", options_.max_nesting));
@@ -39,8 +39,7 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
     place_copy(transforms_.back());
 }
 
-/// Ends the innermost transform, or goes back to the start of its body for the next copy. @return whether it did the
-/// latter
+/// @return  true if it returned to the start of the body for the next copy.
 bool MgfReader::close_transform() {
     OpenMgfTransform& transform = transforms_.back();
     if (transform.sequence.is_array()) {
@@ -56,7 +55,7 @@ bool MgfReader::close_transform() {
     return false;
 }
 
-/// Puts the copy in its place, and opens the object that is named after it.
+/// Sets the copy's transform and opens its object.
 void MgfReader::place_copy(OpenMgfTransform& transform) {
     const M44d& around = transforms_.size() > 1 ? transforms_[transforms_.size() - 2].total : file_to_world_;
     transform.total = transform.sequence.matrix(transform.copy) * around;
@@ -65,10 +64,10 @@ void MgfReader::place_copy(OpenMgfTransform& transform) {
     if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());
 }
 
-/// Goes on to the next copy, the last array fastest. @return false after the last one
+/// The last array runs fastest. @return  false after the last copy.
 bool MgfReader::next_copy(OpenMgfTransform& transform) {
     if (!transform.repeating) {
-        // The first copy is done: now its content is known, and whether all copies will fit.
+        // The patch count of a copy is now known.
         double copies = 1;
         for (const int size : transform.sequence.array_sizes()) copies *= size;
         scene_.require_room(static_cast<double>(scene_.patch_count() - transform.first_patch) * (copies - 1));

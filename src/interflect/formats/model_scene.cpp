@@ -21,7 +21,7 @@ std::size_t face_count(const Mesh& mesh) {
     return mesh.face_sizes.empty() ? mesh.indices.size() / 3 : mesh.face_sizes.size();
 }
 
-/// Calls `use` with the range of each face's corners in mesh.indices.
+/// Calls `use` with each face's part of mesh.indices.
 void for_each_face(const Mesh& mesh, auto use) {
     std::size_t begin = 0;
     for (std::size_t face = 0; face < face_count(mesh); ++face) {
@@ -31,7 +31,7 @@ void for_each_face(const Mesh& mesh, auto use) {
     }
 }
 
-/// What is wrong with a mesh, in words; empty where nothing is.
+/// Returns the first error, or an empty string.
 std::string mesh_fault(const Mesh& mesh, const Model& model, const ReadOptions& options) {
     if (mesh.material >= model.materials.size()) return fmt::format("its material {} does not exist", mesh.material);
     if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
@@ -69,7 +69,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
             throw InputError(model.file, 0, "an instance shows a mesh or an object that does not exist");
         faces += static_cast<double>(face_count(model.meshes[instance.mesh]));
     }
-    // A face gives one patch at least: two of it and its back, for one or two triangles.
+    // Each face makes at least one patch: two triangles may merge into one face with two sides.
     if (faces > static_cast<double>(options.max_patches))
         throw TooManyPatches(model.file, 0,
                              fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
@@ -77,8 +77,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
                                          faces, options.max_patches));
 }
 
-/// Which objects have lightmaps that the file has laid out: those whose meshes with lightmap coordinates are in one
-/// place. A second instance would use the same part of the lightmap again.
+/// Returns per object whether its lightmap layout is usable. Instances with different transforms would overlap.
 std::vector<bool> objects_with_layouts(Model& model) {
     std::vector<const MeshInstance*> first(model.objects.size(), nullptr);
     std::vector<bool> has_layout(model.objects.size(), true);
@@ -94,14 +93,13 @@ std::vector<bool> objects_with_layouts(Model& model) {
     return has_layout;
 }
 
-/// Adds the instances of a model's meshes to a scene.
 class InstanceAdder {
   public:
-    /// @param has_layout  For each object, whether its lightmap coordinates are used.
+    /// @param has_layout  Per object: whether lightmap coordinates are used.
     InstanceAdder(const Model& model, const std::vector<bool>& has_layout, Scene& scene, const ReadOptions& options)
         : model_(model), has_layout_(has_layout), scene_(scene), faces_(scene, options), weld_(scene) {}
 
-    /// Finds where the faces lie, without adding any.
+    /// Places all faces without adding them.
     V3d suitable_origin() {
         for (const MeshInstance& instance : model_.instances) {
             const Mesh& mesh = model_.meshes[instance.mesh];
@@ -180,7 +178,7 @@ class InstanceAdder {
         if (!mesh.back_emits) darken_backs(first);
     }
 
-    /// Adds the face whose vertices are in face_.
+    /// Adds the face in face_.
     void add_face(const Mesh& mesh, const MeshInstance& instance, const Location& where) {
         outline_.clear();
         for (const std::uint32_t v : face_) outline_.push_back(scene_.origin + V3d(scene_.vertices[v]));
@@ -188,7 +186,7 @@ class InstanceAdder {
         faces_.add({&face_, 1}, mesh.material, instance.object, true, where);
     }
 
-    /// Gives the backs of the patches from `first` on a material that emits nothing.
+    /// Gives the backs of the patches from `first` on a material without emission.
     void darken_backs(std::size_t first) {
         if (first == scene_.patches.size()) return;
         const Material& material = scene_.materials[scene_.patches[first].material];
@@ -210,8 +208,8 @@ class InstanceAdder {
     SceneFaces faces_;
     VertexWeld weld_;
     std::vector<std::uint32_t> dark_material_ = std::vector(model_.materials.size(), none);
-    std::vector<V3d> outline_;         // of one face; a member, so that its memory is kept
-    std::vector<std::uint32_t> face_;  // likewise
+    std::vector<V3d> outline_;         // a member to keep its memory
+    std::vector<std::uint32_t> face_;  // a member to keep its memory
 };
 
 Luminaire placed(const PlacedLight& light, const V3d& origin) {

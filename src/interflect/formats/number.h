@@ -5,11 +5,11 @@
 
 namespace interflect::inline detail {
 
-/// Reads a decimal number that takes up the whole of `text` and is finite in single precision; nothing otherwise, so
-/// also for nan, inf, 1e39, hexadecimal and trailing characters. A leading '+' is understood. Does not use the locale.
+/// Parses a decimal number that fills `text` and is finite in single precision; otherwise nullopt (nan, inf, 1e39,
+/// hexadecimal, trailing characters). Accepts '+'. Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
-/// The same for a whole number that fits an int.
+/// Parses an int, with the same rules.
 std::optional<int> parse_integer(std::string_view text);
 
 }  // namespace interflect::inline detail

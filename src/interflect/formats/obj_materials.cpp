@@ -30,7 +30,6 @@ float mtl_number(std::string_view word) {
     return static_cast<float>(*value);
 }
 
-/// "r g b", or "r" for a grey.
 Rgb mtl_colour(std::span<const std::string_view> words) {
     if (words.size() != 2 && words.size() != 4)
         throw std::invalid_argument(
@@ -42,17 +41,16 @@ Rgb mtl_colour(std::span<const std::string_view> words) {
     return result;
 }
 
-/// The key of the texture of the diffuse reflectance.
 constexpr std::string_view map_of_colours = "map_Kd";
 
-/// Masks have their values in their alpha, or as greys.
+/// Masks are stored in alpha, or as greys.
 bool has_transparency(const StoredImage& image) {
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
         if (image.value(i, 3) < 1) return true;
     return false;
 }
 
-/// How many words follow an option of a texture map at most; those of -o, -s and -t are numbers.
+/// Maximum number of words after a texture option; those of -o, -s and -t are numbers.
 std::size_t option_words(std::string_view option) {
     if (option == "-mm") return 2;
     return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;
@@ -116,7 +114,7 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     }
 }
 
-/// The file name may have spaces.
+/// File names may contain spaces.
 fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, const Location& where) {
     while (words.size() > 1 && words[0].starts_with('-')) {
         warn("texture-option", "option of a texture map is ignored", where);

@@ -37,7 +37,7 @@ std::uint32_t index_of(std::int64_t number, std::size_t count) {
     return exists ? static_cast<std::uint32_t>(index) : none;
 }
 
-/// The index from 0 that a number from 1, or one from -1 backwards, stands for.
+/// The same. @throws std::invalid_argument  if there is no such item.
 std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
     const std::optional<std::int64_t> number = whole_number(text);
     if (!number || *number == 0)
@@ -144,7 +144,7 @@ void ObjReader::face(Words words, const Location& where) {
     target.face_sizes.push_back(static_cast<std::uint32_t>(words.size()));
 }
 
-/// Index in the present mesh of a corner such as "3", "3/1", "3//2" or "-1/-1/-1".
+/// Returns the index in the current mesh for "3", "3/1", "3//2" or "-1/-1/-1".
 std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
     const std::size_t slash = word.find('/');
     const std::size_t second_slash = slash == word.npos ? word.npos : word.find('/', slash + 1);
@@ -203,7 +203,7 @@ std::uint32_t ObjReader::object() {
     return entry->second;
 }
 
-/// One file, whose name may have spaces, or several.
+/// Reads one library, whose name may contain spaces, or several.
 void ObjReader::libraries(const LineReader& line, Words words, const Location& where) {
     const std::filesystem::path folder = model_.file.parent_path();
     std::error_code ignored;

@@ -15,10 +15,8 @@
 
 namespace interflect::inline detail {
 
-/// Reads an OBJ file into a model: one mesh for each material of each object.
-///
-/// tinyobjloader, which reads the same files, is not used: it takes indices that are out of range (with a warning
-/// alone) or do not fit into 32 bits, numbers that are none as 0, and numbers that overflow as infinite.
+/// Reads an OBJ file into one mesh per object and material. tinyobjloader is not used because it accepts invalid
+/// indices and reads invalid numbers as 0 and overflowing ones as infinite.
 class ObjReader {
   public:
     ObjReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -26,7 +24,7 @@ class ObjReader {
     Model finish() { return std::move(model_); }
 
   private:
-    /// Where in the mesh that was last given this vertex it is, and with which texture coordinates.
+    /// Latest use of a position.
     struct Use {
         std::uint32_t mesh = none, index = 0, coordinate = none, normal = none;
     };
@@ -50,7 +48,7 @@ class ObjReader {
     std::vector<Use> uses_;  // of each position
     std::string object_, group_;
     std::uint32_t material_ = 0;
-    std::uint32_t mesh_ = none;  // of the object, group and material in force; none: not looked up yet
+    std::uint32_t mesh_ = none;  // of the current object, group and material; `none`: not looked up yet
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };

@@ -5,33 +5,33 @@
 
 namespace interflect::inline detail {
 
-/// Half planes of a photometric web that a file lists, and their completion by symmetry.
+/// Half planes of a photometric file, completed by symmetry.
 class PhotometricPlanes {
   public:
-    /// @param angles       Azimuth of each [degrees], ascending.
-    /// @param intensities  Of each in turn, one for each polar angle.
+    /// @param angles       Azimuths [degrees], ascending.
+    /// @param intensities  Plane by plane, one per polar angle.
     PhotometricPlanes(std::vector<float> angles, std::vector<float> intensities);
 
     std::size_t count() const { return angles_.size(); }
     float span() const { return angles_.back() - angles_.front(); }  ///< [degrees]
-    /// Adds the mirror image of all, at the last or at the first.
+    /// Appends the mirror image at the last or first plane.
     void mirror_at_last();
     void mirror_at_first();
-    /// Repeats the first, one turn further.
+    /// Repeats the first plane after a full turn.
     void close();
-    /// Reverses the sense of the azimuth.
+    /// Reverses the azimuth.
     void reverse();
 
     const std::vector<float>& angles() const { return angles_; }
     const std::vector<float>& intensities() const { return intensities_; }
-    /// The intensities with polar angle and azimuth exchanged.
+    /// Returns the intensities with polar angle and azimuth swapped.
     std::vector<float> transposed() const;
 
   private:
     void append(std::size_t plane, float angle);
 
     std::vector<float> angles_, intensities_;
-    std::size_t height_;  // intensities of one
+    std::size_t height_;  // intensities per plane
 };
 
 }  // namespace interflect::inline detail

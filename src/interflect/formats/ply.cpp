@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Reads the elements of a file into a model of one mesh.
 class PlyReader {
   public:
     PlyReader(const PlyHeader& header, PlyValues& values, Model& model, const ReadOptions& options)
@@ -52,7 +51,7 @@ class PlyReader {
     }
 
   private:
-    static constexpr std::uint64_t most_elements = std::uint64_t{1} << 40;  // of which no product overflows
+    static constexpr std::uint64_t most_elements = std::uint64_t{1} << 40;  // products cannot overflow
 
     static std::string too_short(const PlyElement& element) {
         return fmt::format("the file is too short for {} of '{}'", element.count, element.name.substr(0, 40));
@@ -150,7 +149,7 @@ class PlyReader {
         }
     }
 
-    /// Of the one colour that all vertices have, which of bytes is sRGB; grey otherwise.
+    /// Uses the colour shared by all vertices (sRGB bytes), otherwise grey.
     Material material() {
         Material result = default_material();
         if (!colour_) return result;

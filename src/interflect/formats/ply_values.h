@@ -9,22 +9,22 @@ namespace interflect::inline detail {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// Bytes that a value takes in the binary form.
+/// In binary form [bytes].
 std::size_t size_of(PlyType type);
 
-/// Reads the values after a PLY file's header one by one.
+/// Reads the values after a PLY header.
 class PlyValues {
   public:
     enum class Form { ascii, little_endian, big_endian };
 
     PlyValues(std::string_view bytes, Form form) : bytes_(bytes), rest_(bytes), form_(form) {}
 
-    /// Number of line breaks between the first value and the last value read; no number for binary forms.
+    /// Returns the line breaks up to the last value read; nullopt for binary forms.
     std::optional<std::int64_t> lines() const;
 
-    /// @throws std::invalid_argument  at the end, and for what is no number. Not finite where the binary form is not.
+    /// @throws std::invalid_argument  at the end and for invalid numbers. Binary values may be infinite or NaN.
     double next(PlyType type);
-    /// Whether so many values of these bytes in all can be left: of text each takes two characters but the last.
+    /// Returns whether enough bytes remain. In text, each value but the last takes at least two characters.
     bool may_hold(std::uint64_t values, std::uint64_t bytes) const {
         return form_ == Form::ascii ? values <= (rest_.size() + 1) / 2 : bytes <= rest_.size();
     }

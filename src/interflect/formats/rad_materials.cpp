@@ -13,10 +13,10 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Of a modifier that a command which was left out may define: no file can have a type with this name.
+/// For modifiers that an ignored command may define; never valid in a file.
 constexpr std::string_view missing_type = "of a command";
 
-/// The first three numbers. @throws std::invalid_argument  for negative ones
+/// @throws std::invalid_argument  for negative values.
 Rgb colour_of(const RadPrimitive& p) {
     Rgb colour;
     for (int c = 0; c < 3; ++c) {
@@ -33,8 +33,8 @@ float share(const RadPrimitive& p, std::size_t i, const char* what) {
     return static_cast<float>(p.numbers[i]);
 }
 
-/// Of plastic, metal and trans [5th number] and of their anisotropic kin, the larger of two; those with a reflectance
-/// distribution of their own show no images.
+/// Roughness of plastic, metal and trans: the 5th number, or the larger one of anisotropic types. Types with their own
+/// reflectance distribution count as rough.
 double roughness_of(const RadPrimitive& p) {
     if (p.type.ends_with("func") || p.type.ends_with("data")) return 1;
     return p.type.ends_with('2') ? std::max(p.numbers[4], p.numbers[5]) : p.numbers[4];
@@ -44,7 +44,7 @@ double roughness_of(const RadPrimitive& p) {
 
 GlassShares glass_shares(double transmissivity, double index) {
     const double root = (index - 1) / (index + 1);
-    const double r = root * root, t = transmissivity;  // of one surface, of the way between the two
+    const double r = root * root, t = transmissivity;  // of one surface; of the interior
     const double passed = (1 - r) * (1 - r) / (1 - r * r * t * t);
     return {passed * t, r + r * passed * t * t};
 }
@@ -132,7 +132,7 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
     }
     if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier, where);
     if (types().at(modifier.primitive.type).role == Role::mixture) {
-        // Its foreground, or its background where that is void.
+        // The foreground, or the background if that is void.
         const auto& strings = modifier.primitive.strings;
         if (strings.size() < 2) throw std::invalid_argument("a mixture needs a foreground and a background");
         modifier.base = find(strings[0], where);
@@ -143,7 +143,7 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
 }
 
 std::uint32_t RadMaterials::material(std::uint32_t modifier) {
-    // A modifier is defined after its base, so that the chain ends.
+    // Bases are defined first, so the chain ends.
     for (; modifier != none; modifier = modifiers_[modifier].base) {
         Modifier& m = modifiers_[modifier];
         const Type& type = types().at(m.primitive.type);
@@ -191,7 +191,7 @@ std::uint32_t RadMaterials::convert(const Modifier& modifier, const Type& type) 
     return static_cast<std::uint32_t>(model_.materials.size() - 1);
 }
 
-/// Keeps what is mirrored, and tells of what is not kept.
+/// Keeps mirror reflection; warns about any other.
 void RadMaterials::reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result) {
     if (is_mirror(largest_channel(specular), roughness)) result.specular_reflectance = specular;
     if (largest_channel(specular) > 0)
@@ -246,7 +246,7 @@ void RadMaterials::glass(const Modifier& modifier, Material& result) {
     }
 }
 
-/// One side of a solid body: what passes its surface. The body neither absorbs nor refracts.
+/// Models one surface of a solid, without absorption or refraction.
 void RadMaterials::dielectric(const Modifier& modifier, Material& result) {
     const std::vector<double>& numbers = modifier.primitive.numbers;
     const double inside = numbers[3], outside = modifier.primitive.type == "interface" ? numbers[7] : 1;

@@ -13,50 +13,45 @@
 
 namespace interflect::inline detail {
 
-/// Luminous efficacy that Radiance assumes of white light [lm/W]: its radiances are in W/(m^2 sr).
+/// Radiance's luminous efficacy of white light [lm/W].
 inline constexpr double rad_efficacy = 179;
 
-/// The share of light that a pane of glass lets through at normal incidence, and the share that it mirrors, after all
-/// reflections within it. @param transmissivity  What of the light is left after one way through, in [0, 1]. @param
-/// index  Of refraction, > 0.
+/// Glass pane at normal incidence, with all internal reflections.
+/// @param transmissivity  Transmittance of the interior in one pass, 0 to 1. @param index  Refractive index, > 0.
 struct GlassShares {
     double transmittance = 0, reflectance = 0;
 };
 GlassShares glass_shares(double transmissivity, double index);
 
-/// The modifiers of a Radiance scene, and the materials that they stand for. Only what a surface uses is converted, and
-/// only there are its faults and warnings told.
+/// Modifiers of a scene and their materials. Unused modifiers cause no errors or warnings.
 class RadMaterials {
   public:
-    /// @param model  Gets the materials and the warnings.
+    /// @param model  Receives materials and warnings.
     explicit RadMaterials(Model& model) : model_(model) {}
 
-    /// Whether `type` is one of a modifier.
     static bool is_modifier(std::string_view type);
-    /// Adds a modifier, which hides an earlier one of that name. @throws std::invalid_argument
+    /// Hides an earlier modifier of the same name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
-    /// From now on, modifiers that are not defined are taken as diffuse grey, with a warning: a command that was left
-    /// out may define them.
+    /// Makes undefined modifiers diffuse grey with a warning, since an ignored command may define them.
     void allow_missing() { may_miss_ = true; }
 
-    /// Index of the modifier with this name; none for `void`. @throws std::invalid_argument  where it is not defined
+    /// Returns `none` for "void". @throws std::invalid_argument  if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// Index in Model::materials of what a surface with this modifier shows; none where that is nothing.
-    /// @throws InputError  with the place of the modifier that has a fault
+    /// Returns the index in Model::materials; `none` if invisible. @throws InputError  with the modifier's place.
     std::uint32_t material(std::uint32_t modifier);
 
   private:
     struct Modifier {
         RadPrimitive primitive;
         Location where;
-        std::uint32_t base = none;      // the modifier that it modifies
-        std::uint32_t material = none;  // index in Model::materials, once a surface has used it
+        std::uint32_t base = none;      // modified by this one
+        std::uint32_t material = none;  // in Model::materials, once used
     };
     enum class Role { material, pattern, mixture, nothing };
     struct Type {
         Role role;
-        std::size_t numbers = 0;  // the fewest that it has
+        std::size_t numbers = 0;  // minimum count
         void (RadMaterials::*convert)(const Modifier&, Material&) = nullptr;
     };
     static const std::unordered_map<std::string_view, Type>& types();
@@ -76,9 +71,9 @@ class RadMaterials {
 
     Model& model_;
     bool may_miss_ = false;
-    std::deque<std::string> missing_names_;  // which views point to
+    std::deque<std::string> missing_names_;  // referenced by views
     std::vector<Modifier> modifiers_;
-    std::unordered_map<std::string_view, std::uint32_t> index_;  // of the latest with each name
+    std::unordered_map<std::string_view, std::uint32_t> index_;  // latest of each name
 };
 
 }  // namespace interflect::inline detail

@@ -21,7 +21,7 @@ using Imath::V3d;
 
 namespace {
 
-/// Copies of one file at a time: each takes about 170 bytes.
+/// Per file; each takes about 170 bytes.
 constexpr std::size_t most_copies = 1 << 20;
 
 V3d point(const std::vector<double>& numbers, std::size_t first) {
@@ -99,7 +99,7 @@ void RadReader::read_statement(RadStatements& statements, RadStatements::Kind ki
 
 // ---- Commands
 
-/// Carries out `xform`; other commands are left out, and none is run.
+/// Applies `xform`. Ignores other commands.
 void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
     const std::optional<RadXform> xform = parse_xform(command);
     if (!xform) {
@@ -122,7 +122,7 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
     }
 }
 
-/// Names are relative to the scene's folder, where Radiance's programs are usually run, else to the including file's.
+/// Names are relative to the scene's folder, where Radiance usually runs, or else to the including file.
 const SourceFile& RadReader::included_file(const std::string& name, const OpenFile& file) {
     const SourceFile*& known = included_[{&file.source, name}];
     if (!known) {
@@ -194,7 +194,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
         return;
     }
-    // Of curved surfaces a sphere has most faces.
+    // The sphere has the most faces of all curved surfaces.
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
     add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);
@@ -227,7 +227,7 @@ std::uint32_t RadReader::object(const std::string& name) {
     return entry->second;
 }
 
-/// For so many faces more, each of two patches, in so many copies.
+/// Each face makes two patches per copy.
 void RadReader::require_room(double faces, std::size_t copies) {
     if (patches_ + 2 * faces * static_cast<double>(copies) > static_cast<double>(options_.max_patches))
         throw PatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));

@@ -17,8 +17,8 @@
 
 namespace interflect::inline detail {
 
-/// Reads a Radiance scene, with the files that its commands `!xform` name, into a model. A file is read once for all
-/// copies of an array: its surfaces become meshes, of which each copy shows an instance.
+/// Reads a Radiance scene and its `!xform` files into a model. A file is read once for all copies of an array, which
+/// become instances.
 class RadReader {
   public:
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -26,24 +26,23 @@ class RadReader {
     Model finish() { return std::move(model_); }
 
   private:
-    /// One copy of a file.
     struct Copy {
         Imath::M44d to_world;
-        std::string prefix;  // of the names of surfaces
+        std::string prefix;  // of surface names
     };
-    /// A file in the middle of being read, and how its surfaces are to be changed.
+    /// File being read, and changes to its surfaces.
     struct OpenFile {
         const SourceFile& source;
         std::vector<Copy> copies;
-        std::string modifier;  // that all surfaces get; empty: their own
+        std::string modifier;  // overrides the surfaces' own unless empty
         bool is_inverted = false;
         const OpenFile* includer = nullptr;
         int depth = 0;
     };
     using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&);
     struct Surface {
-        std::size_t numbers;  // that it has; 0: any
-        Reader read;          // none: it is left out
+        std::size_t numbers;  // 0: any
+        Reader read;          // nullptr: ignored
     };
     static const std::unordered_map<std::string_view, Surface>& surfaces();
 
@@ -76,7 +75,7 @@ class RadReader {
     Model model_;
     RadMaterials materials_;
     RepeatedWork repeated_;
-    double patches_ = 0;  // asked for so far
+    double patches_ = 0;  // requested so far
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 

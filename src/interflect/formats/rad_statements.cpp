@@ -79,7 +79,7 @@ RadPrimitive RadStatements::primitive() {
         for (std::size_t left = count(what); left > 0; --left) use(word(fmt::format("one of {} more {}", left, what)));
     };
     arguments("strings", [&](std::string_view text) { result.strings.push_back(text); });
-    arguments("integers", [](std::string_view) {});  // no primitive has some
+    arguments("integers", [](std::string_view) {});  // unused
     arguments("numbers", [&](std::string_view text) {
         const auto number = parse_number(text);
         if (!number) throw std::invalid_argument(fmt::format("expected a finite number, not '{}'", text));

@@ -7,29 +7,28 @@
 
 namespace interflect::inline detail {
 
-/// `modifier type name` with its arguments, or `modifier alias name original`. Words are views of the text.
+/// `modifier type name` with arguments, or `modifier alias name original`, as views of the text.
 struct RadPrimitive {
     std::string_view modifier, type, name;
-    std::string_view original;  ///< Only of an alias.
+    std::string_view original;  ///< Alias only.
     std::vector<std::string_view> strings;
     std::vector<double> numbers;
 };
 
-/// Splits the text of a Radiance scene into statements: primitives, and commands that begin with `!`. Comments reach
-/// from `#`, where a statement could begin, to the end of the line; words may be quoted with ' or ".
+/// Splits a Radiance scene into primitives and commands (`!`). Comments start with `#` between statements. Words may be
+/// quoted with ' or ".
 class RadStatements {
   public:
     enum class Kind { primitive, command, end };
 
     explicit RadStatements(std::string_view text) : text_(text) {}
 
-    /// Goes to the next statement.
     Kind next();
-    std::int64_t line() const { return line_; }  ///< Where the statement starts, from 1.
+    std::int64_t line() const { return line_; }  ///< First line, from 1.
 
-    /// The command, without the `!` and with continued lines joined.
+    /// Returns the command without `!`, continued lines joined.
     std::string command();
-    /// The primitive. @throws std::invalid_argument, with a sentence, where it is cut off or not well formed.
+    /// @throws std::invalid_argument  for a truncated or malformed primitive.
     RadPrimitive primitive();
 
   private:

@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// The words of a command, quotes removed; nothing where it needs a shell.
+/// Removes quotes. Returns nullopt if a shell is needed.
 std::optional<std::vector<std::string>> shell_words(std::string_view command) {
     constexpr std::string_view special = "|&;<>()$`\\*?[]{}#~!\n";
     std::vector<std::string> words;
@@ -30,7 +30,7 @@ std::optional<std::vector<std::string>> shell_words(std::string_view command) {
     return words;
 }
 
-/// The numbers that a transform of xform takes; nothing where `option` is none.
+/// Returns the argument count of a transform option; nullopt for others.
 std::optional<std::size_t> number_count(std::string_view option) {
     if (option == "-t") return 3;
     if (option == "-mx" || option == "-my" || option == "-mz") return 0;
@@ -69,13 +69,13 @@ std::optional<RadXform> parse_xform(std::string_view command) {
     while (end < arguments.size() && arguments[end].starts_with('-')) {
         const auto numbers = number_count(arguments[end]);
         if (!numbers) {
-            if (arguments[end] == "-f" || arguments[end] == "-") return std::nullopt;  // more files of arguments, stdin
+            if (arguments[end] == "-f" || arguments[end] == "-") return std::nullopt;  // argument file, stdin
             throw std::invalid_argument(fmt::format("'{}' is no option of xform", arguments[end]));
         }
         end += 1 + *numbers;
     }
     if (end > arguments.size()) throw std::invalid_argument("the transform of xform is cut off");
-    if (end == arguments.size()) return std::nullopt;  // from stdin
+    if (end == arguments.size()) return std::nullopt;  // stdin
     return RadXform{name,
                     modifier,
                     inverts,

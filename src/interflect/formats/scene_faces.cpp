@@ -9,11 +9,10 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Twice the area over the squared size, from which a face counts for where the scene lies.
+/// Minimum of doubled area / size^2; thinner faces do not affect the scene's position.
 constexpr double least_shape = 1e-6;
 
-/// Width of a face that may be lost to rounding, over the reach of the scene: 60 steps of a float there. Narrower ones
-/// are slivers and litter that real files have anywhere.
+/// Relative to the reach of the scene, 60 float steps. Real files often have narrower slivers, which may be lost.
 constexpr double largest_lost_width = 0x1p-16;
 
 }  // namespace
@@ -49,7 +48,7 @@ void SceneFaces::add(std::span<const std::vector<std::uint32_t>> loops, std::uin
     require_room(two_sided ? 2 : 1);
     const std::size_t before = scene_.patches.size();
     const PolygonResult result = add_polygon(scene_, loops, material, object, two_sided);
-    require_room(0);  // one face may have become many patches
+    require_room(0);  // a face may become several patches
     if (result == PolygonResult::self_crossing)
         leave_out(
             "face whose outline crosses itself or runs back along itself, so that its areas cancel, is left out; split "
@@ -79,7 +78,7 @@ void SceneFaces::require_precision() const {
                     lost_.width, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
 }
 
-/// That the scene is not too small: by the faces as they were, where rounding left nothing of them.
+/// Uses the unrounded faces if rounding removed all.
 void SceneFaces::require_width() const {
     double width = scene_width(scene_);
     if (scene_.patches.empty()) {

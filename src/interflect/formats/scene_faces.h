@@ -13,38 +13,37 @@
 
 namespace interflect::inline detail {
 
-/// A file asks for more patches than ReadOptions::max_patches.
+/// More patches than ReadOptions::max_patches.
 struct PatchLimit : std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-/// Adds the faces of a file to a scene, which is relative to an origin, and keeps account of those that are left out.
-/// Functions throw std::invalid_argument, with a sentence, where the file asks for what cannot be.
+/// Adds faces relative to the scene's origin and records omitted ones. Throws std::invalid_argument for invalid
+/// requests.
 class SceneFaces {
   public:
-    /// @param scene  Has its name and its origin.
+    /// @param scene  With name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// @throws PatchLimit  where `patches` more would pass the limit, to which faces left out count as well.
+    /// @throws PatchLimit  beyond the limit. Omitted faces count.
     void require_room(double patches) const;
-    /// A place in the world [m], relative to the scene's origin.
+    /// Converts a world position [m] to one relative to the scene's origin.
     V3f position(const Imath::V3d& world) const;
-    /// Tells where the outline of the face that is added next lies in the world, before rounding.
+    /// Sets the unrounded world outline of the next face.
     void place(std::span<const Imath::V3d> outline);
-    /// Adds a face as add_polygon() does; one without area is left out.
+    /// Adds a face with add_polygon(); omits it if it has no area.
     void add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
              bool two_sided, const Location& where);
-    /// Counts a face that is left out. @param message  Says what kind of face.
+    /// Records an omitted face. @param message  Kind of face.
     void leave_out(const std::string& message, const Location& where);
 
-    /// The origin that suits the faces placed so far.
+    /// Computes the origin from the faces placed so far.
     Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
-    /// @throws InputError where the whole has no face, or lost one that is as large as others to rounding, since it is
-    /// too far from them, or is too small, too dark or too bright to be computed.
+    /// @throws InputError  if no face is left, if a large distant one was lost to rounding, or if the scene is too
+    ///                     small, too dark or too bright.
     void require_usable() const;
 
   private:
-    /// A face of which rounding leaves nothing.
     struct LostFace {
         double width = 0;  // across its longest extent [m]
         Imath::V3d centre{0, 0, 0};
@@ -61,8 +60,8 @@ class SceneFaces {
     Scene& scene_;
     std::uint64_t max_patches_;
     FaceSample sample_;
-    LostFace placed_;  // the face that is added next; width 0 where its shape has no area even before rounding
-    LostFace lost_;    // the largest of them
+    LostFace placed_;  // next face; width 0 if it has no area before rounding
+    LostFace lost_;    // widest one lost to rounding
     LeftOut first_left_out_;
     std::uint64_t left_out_ = 0;
 };

@@ -9,25 +9,22 @@
 
 namespace interflect::inline detail {
 
-/// The text of a file.
 struct SourceFile {
-    std::filesystem::path path;  ///< As the file was asked for first.
+    std::filesystem::path path;  ///< Path used first.
     std::string text;
 };
 
-/// The files of a scene, each read once however often it is included. They stay where they are: contexts hold views of
-/// their texts, locations point to their paths.
+/// Files of a scene, each read once. Addresses are stable, since contexts and locations refer to them.
 class SourceFiles {
   public:
-    /// @return the file, and whether it is new. A file of which another path is known already keeps that and its text.
+    /// @return  The file, and whether it is new. A known file keeps its first path and text.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);
-    /// The file that `name` stands for in `includer`, read where it is new. @throws std::invalid_argument where it
-    /// cannot be read.
+    /// @param name  Relative to `includer`. @throws std::invalid_argument  if unreadable.
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
 
   private:
     std::map<std::filesystem::path, SourceFile> sources_;                // by canonical path
-    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by the path as it was written
+    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by path as written
 };
 
 }  // namespace interflect::inline detail

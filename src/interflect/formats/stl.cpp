@@ -25,14 +25,13 @@ namespace {
 
 constexpr std::size_t stl_header = 80, stl_triangle = 50;  // [bytes]
 
-/// Triangles in the binary form; none where the size is not that of one.
+/// Returns nullopt if the size does not match the count.
 std::optional<std::size_t> binary_triangles(std::string_view bytes) {
     if (bytes.size() < stl_header + 4) return std::nullopt;
     const std::size_t count = number_of<std::uint32_t>(bytes.substr(stl_header), std::endian::little);
     return bytes.size() == stl_header + 4 + count * stl_triangle ? std::optional(count) : std::nullopt;
 }
 
-/// Adds a mesh for an object of this name.
 Mesh& add_solid(Model& model, const std::string& name, const ReadOptions& options) {
     const auto index = static_cast<std::uint32_t>(model.meshes.size());
     Mesh& mesh = model.meshes.emplace_back();
@@ -68,7 +67,7 @@ void read_binary_stl(std::string_view bytes, std::size_t count, Model& model, co
     }
 }
 
-/// `vertex x y z` lines, three to a triangle; normals are left to the order of the vertices.
+/// Reads `vertex x y z` lines, three per triangle. Ignores normals.
 void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& options) {
     Mesh* solid = nullptr;
     std::size_t vertices = 0;

@@ -8,12 +8,11 @@
 
 namespace interflect::inline detail {
 
-/// Reads the triangles of an STL file, ASCII or binary, as grey of a reflectance of 0.5; docs/formats.md tells more.
-/// @throws InputError  for what is no such file or goes beyond a limit of `options`, and as scene_of() does;
-///         TooManyPatches.
+/// Reads the triangles of an STL file, ASCII or binary, with reflectance 0.5; see docs/formats.md.
+/// @throws InputError  for invalid input and limits of `options`; also as scene_of(). @throws TooManyPatches
 Scene read_stl(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The same from memory. @param path  Name for messages.
+/// Reads from memory. @param path  Name for messages.
 Scene read_stl_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::inline detail

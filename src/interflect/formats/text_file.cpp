@@ -16,7 +16,7 @@ namespace {
 
 bool is_binary(char c) {
     const auto byte = static_cast<unsigned char>(c);
-    // Bitwise, so that the compiler can look at many bytes at once.
+    // Bitwise operators allow vectorisation.
     return (byte < '\t') | ((byte > '\r') & (byte < ' ')) | (byte == 0x7f);
 }
 
@@ -42,7 +42,7 @@ void require_regular_file(const fs::path& path) {
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     std::error_code error;
-    const auto resolved = [&](const fs::path& given) {  // a relative path of which nothing exists would stay relative
+    const auto resolved = [&](const fs::path& given) {  // absolute, since a nonexistent path would stay relative
         const fs::path whole = fs::absolute(given, error);
         return error ? fs::path() : fs::weakly_canonical(whole, error);
     };
@@ -70,7 +70,7 @@ std::string read_bytes(const fs::path& path, std::uintmax_t most) {
 
 std::string read_text_file(const fs::path& path) {
     std::string text = read_bytes(path);
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // of UTF-8, as some editors write it
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // UTF-8
     if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     require_text(text, path);
     return text;

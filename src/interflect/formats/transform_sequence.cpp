@@ -16,7 +16,7 @@ namespace {
 using Imath::M44d;
 using Imath::V3d;
 
-/// Takes arguments one by one and complains by name where one is missing or wrong.
+/// Consumes arguments; errors name the option.
 class Arguments {
     std::span<const std::string_view> words_;
     std::string_view option_;
@@ -52,7 +52,7 @@ struct SineCosine {
     double sine, cosine;
 };
 
-/// Exact for quarter turns, so that rotated copies still meet edge to edge.
+/// Exact for quarter turns, so rotated copies meet.
 SineCosine sine_cosine(double degrees) {
     const double reduced = std::remainder(degrees, 360.0);
     if (reduced == 0) return {0, 1};
@@ -63,7 +63,7 @@ SineCosine sine_cosine(double degrees) {
     return {std::sin(radians), std::cos(radians)};
 }
 
-/// Counter-clockwise about `axis`, seen from its positive end.
+/// Counter-clockwise, seen from the positive end of `axis`.
 M44d rotation(int axis, double degrees) {
     const auto [sine, cosine] = sine_cosine(degrees);
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -86,7 +86,7 @@ M44d mirror(int axis) {
     return scaling(factors);
 }
 
-/// One of the transforms proper, without -i and -a.
+/// Transforms other than -i and -a.
 M44d elementary(std::string_view option, Arguments& arguments) {
     if (option == "-t") {
         const double x = arguments.number(), y = arguments.number(), z = arguments.number();
@@ -108,7 +108,7 @@ M44d elementary(std::string_view option, Arguments& arguments) {
         "'{}' is no transform; there are -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N", option));
 }
 
-/// By repeated squaring: a file may ask for a billion repetitions.
+/// Squares repeatedly, since files may request a billion repetitions.
 M44d power(M44d base, int exponent) {
     M44d result;
     for (; exponent > 0; exponent /= 2, base = base * base)

@@ -9,32 +9,31 @@
 
 namespace interflect::inline detail {
 
-/// The arguments of MGF's `xf`: -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N. They act on a point
-/// from left to right. -i repeats what follows it, up to the next -i or -a, N times; -a makes N copies, the k-th of
-/// which repeats what follows k times, k from 0; several -a make a grid, of which the last runs fastest.
-/// Matrices multiply row vectors from the right, as Imath has it: x' = x M.
+/// Arguments of MGF's `xf`: -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N, applied from left to
+/// right. -i repeats the following transforms, up to the next -i or -a, N times. -a makes N copies; copy k, from 0,
+/// repeats them k times. Several -a make a grid, the last fastest. For row vectors, x' = x M.
 class TransformSequence {
   public:
-    /// @throws std::invalid_argument  with the offending argument, where it is unknown, lacks a number, or scales by 0.
+    /// @throws std::invalid_argument  for unknown arguments, missing numbers, and scaling by 0.
     explicit TransformSequence(std::span<const std::string_view> arguments);
 
     bool is_array() const { return !array_sizes_.empty(); }
-    std::span<const int> array_sizes() const { return array_sizes_; }  ///< N of each -a, in order; every N >= 1.
+    std::span<const int> array_sizes() const { return array_sizes_; }  ///< N of each -a, >= 1.
 
-    /// The matrix of the copy with these indices, one for each -a.
+    /// @param copy  One index per -a.
     Imath::M44d matrix(std::span<const int> copy) const;
 
   private:
     struct Segment {
-        Imath::M44d step;       // what stands between this -i or -a and the next
-        int repetitions = 1;    // of -i
-        bool is_array = false;  // of -a: repetitions is the index of the copy
+        Imath::M44d step;  // up to the next -i or -a
+        int repetitions = 1;
+        bool is_array = false;  // `repetitions` is the copy's index
     };
     std::vector<Segment> segments_;
     std::vector<int> array_sizes_;
 };
 
-/// Goes on to the next copy of arrays, the last fastest. @return false after the last one, and then back at the first.
+/// Advances to the next copy, the last array fastest. @return  false after the last copy, with all indices 0.
 bool next_index(std::vector<int>& copy, std::span<const int> sizes);
 
 }  // namespace interflect::inline detail

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 // ---- JSON
 
-/// Reads the members of one JSON object, each at most once, and complains about those nobody asked for.
+/// Reads JSON members and rejects unknown ones.
 class Members {
   public:
     Members(const json& object, std::string where, const fs::path& file)
@@ -34,7 +34,7 @@ class Members {
 
     [[noreturn]] void fail(const std::string& message) const { throw InputError(file_, 0, where_ + ": " + message); }
 
-    /// nullptr where there is no such member.
+    /// nullptr if absent.
     const json* find(const std::string& key) {
         asked_for_.insert(key);
         const auto member = object_.find(key);
@@ -84,10 +84,9 @@ View parse_view(const json& value, std::size_t index, const fs::path& path) {
 
 // ---- Radiance
 
-/// The options of a view file that are understood, and what is wrong with the others.
 class RadianceView {
   public:
-    /// Takes the option at the front of `words`, and returns the rest.
+    /// Consumes one option and returns the remaining words.
     std::span<const std::string_view> take(std::span<const std::string_view> words);
     View view() const {
         View view;
@@ -158,7 +157,7 @@ std::vector<View> read_view_list(const fs::path& path) {
 }
 
 void write_view_list(std::span<const View> views, const fs::path& path) {
-    // Numbers are written by fmt: the shortest decimals that round to the same value, in its own precision.
+    // fmt writes the shortest decimals that round to the same value.
     const auto vector = [](const auto& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
     std::vector<std::string> lines;
     for (const View& v : views)
@@ -176,7 +175,7 @@ View read_radiance_view(const fs::path& path) {
     bool found = false;
     while (lines.next()) try {
             std::span<const std::string_view> words = lines.words();
-            // The name of the program that wrote the view, such as rvu, or VIEW=.
+            // Program name, such as rvu, or VIEW=.
             if (starts_a_view(words[0])) words = words.subspan(1);
             for (found |= !words.empty(); !words.empty();) words = radiance_view.take(words);
         } catch (const std::invalid_argument& fault) {

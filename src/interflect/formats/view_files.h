@@ -8,28 +8,24 @@
 
 namespace interflect::inline detail {
 
-/// Where the named views of a scene are kept: /a/office.mgf has them in /a/office.views.json.
+/// Returns /a/office.views.json for /a/office.mgf.
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 
-/// Reads named views: {"views": [{"name": "desk", "eye": [x, y, z], "look_at": [x, y, z], "up": [x, y, z], "fov":
-/// 45}]}, in metres and degrees (vertical, full). `up` is (0, 0, 1) and `fov` is 45 where they are missing; the others
-/// are required.
-/// @throws InputError  with file, view and key, where the file is no JSON, a key is unknown or missing, a value is of
-/// the
-///         wrong kind or range, two views have one name, or a view has no direction (`up` included).
+/// Reads {"views": [{"name": "desk", "eye": [x, y, z], "look_at": [x, y, z], "up": [x, y, z], "fov": 45}]}, in metres
+/// and degrees (vertical, full). `up` defaults to (0, 0, 1), `fov` to 45; other keys are required.
+/// @throws InputError  with file, view and key for invalid JSON, keys or values, duplicate names, and undefined
+///                     directions.
 std::vector<View> read_view_list(const std::filesystem::path& path);
 
-/// Writes named views in that form, so that read_view_list() gives them back exactly.
-/// @param views  Each with a name of its own. @throws std::runtime_error where the file cannot be written.
+/// Writes views for read_view_list(), exactly except for `extent`, which is dropped.
+/// @param views  With unique names. @throws std::runtime_error  if writing fails.
 void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
-/// Reads a Radiance view file, such as `rvu -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 45`. What is missing is as in
-/// Radiance (eye at the origin, direction y, up z, 45 degrees); where the file has several lines, later options
-/// override. The field of view is the vertical one (-vv), as the horizontal follows from the picture's shape. The view
-/// is named after the file.
-/// @throws InputError  with file and line, for anything but perspective views (-vtv) without shift, lift or clipping
-/// planes,
-///         for unknown options, and for values that make no view.
+/// Reads a Radiance view such as `rvu -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 45`, named after the file. Defaults
+/// are Radiance's (eye at the origin, direction y, up z, 45 degrees); later lines override earlier ones. Only the
+/// vertical field of view (-vv) counts, since the picture's shape determines the other.
+/// @throws InputError  with file and line for views other than perspective (-vtv), shift, lift or clipping planes,
+///                     unknown options, and invalid values.
 View read_radiance_view(const std::filesystem::path& path);
 
 }  // namespace interflect::inline detail

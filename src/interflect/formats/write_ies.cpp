@@ -22,7 +22,7 @@ Column column_of(const PhotometricWeb& web, std::size_t i) {
     return {web.at_azimuth(i), web.at_azimuth(i) + web.polar.size()};
 }
 
-/// The columns of a web all around, by azimuths from 0 to 360.
+/// By azimuth, 0 to 360.
 PhotometricPlanes all_around(const PhotometricWeb& web) {
     constexpr auto turn = static_cast<float>(full_turn);
     std::map<float, Column> columns;
@@ -54,7 +54,7 @@ std::vector<float> shifted(std::vector<float> angles, float by) {
     return angles;
 }
 
-/// LM-63's sizes: those across round sections are negative.
+/// As in LM-63, negative across round sections.
 V3f dimensions(const LuminousOpening& opening) {
     V3f size = opening.size;
     for (int k = 0; k < 3; ++k)

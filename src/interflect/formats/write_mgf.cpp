@@ -23,7 +23,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr std::size_t buffer_size = 1 << 16;  // characters, before they go to the stream
+constexpr std::size_t buffer_size = 1 << 16;  // characters
 
 std::string printable(std::string_view name) {
     std::string text(name);
@@ -32,14 +32,14 @@ std::string printable(std::string_view name) {
     return text;
 }
 
-/// What a material can be called: white space would end its name, '-' separates the loops of a face, '=' defines.
+/// White space ends a name, '-' separates loops of a face, '=' defines.
 std::string material_name(const Material& material) {
     std::string name = printable(material.name);
     if (name.starts_with('-') || name == "=") name[0] = '_';
     return name;
 }
 
-/// "room.desk.leg" as {"room", "desk", "leg"}; nothing for "".
+/// Splits "room.desk.leg" at the dots; empty for "".
 std::vector<std::string> object_path(const std::string& dotted_name) {
     std::vector<std::string> path;
     if (dotted_name.empty()) return path;
@@ -52,36 +52,35 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
     }
 }
 
-/// Turns about x, y and z, in this order [degrees].
+/// Rotations about x, y and z, in this order [degrees].
 struct Turns {
     double x, y, z;
 };
 
-/// A right-handed frame of unit vectors.
+/// Right-handed and orthonormal.
 struct Frame {
     Imath::V3d x, y, z;
 };
 
-/// Of a luminaire: its C0 plane holds x, its nadir is -z.
+/// x in the C0 plane, nadir -z.
 Frame frame_of(const MeasuredLight& light) {
     const Imath::V3d z(-light.direction.normalized()), c0(light.c0), x = (c0 - z * z.dot(c0)).normalized();
     return {x, z.cross(x), z};
 }
 
-/// Of a sky: x is east, y north.
+/// x east, y north.
 Frame frame_of(const SkyFrame& sky) { return {Imath::V3d(sky.east), Imath::V3d(sky.north), Imath::V3d(sky.zenith)}; }
 
-/// What turns the axes into this frame.
+/// Returns the rotations that turn the axes into a frame.
 Turns turns_of(const Frame& frame) {
     const auto& [x, y, z] = frame;
-    constexpr double no_turn = 1e-9;  // cosine of a turn about y where x and z turn alike
+    constexpr double no_turn = 1e-9;  // cosine of the y rotation at gimbal lock
     const double cosine = std::hypot(x.x, x.y);
     if (cosine < no_turn) return {degrees(std::atan2(-z.y, y.y)), degrees(std::atan2(-x.z, cosine)), 0};
     return {degrees(std::atan2(y.z, z.z)), degrees(std::atan2(-x.z, cosine)), degrees(std::atan2(x.y, x.x))};
 }
 
-/// Writes patch after patch, and before each what it needs and the file does not have yet: objects, materials,
-/// vertices.
+/// Writes patches, preceded by their new objects, materials and vertices.
 class MgfWriter {
   public:
     MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
@@ -110,9 +109,9 @@ class MgfWriter {
     }
 
   private:
-    static constexpr int two_sides = 2;  // what a new material has
+    static constexpr int two_sides = 2;  // default of new materials
 
-    /// What the file so far means by a material's name.
+    /// Latest definition of a material name.
     struct Definition {
         std::uint32_t material = none;
         int sides = two_sides;
@@ -145,8 +144,8 @@ class MgfWriter {
         for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
     }
 
-    /// Materials of one name take turns to be what the file means by it, and what has no name is forgotten as soon as
-    /// another is entered. `sides` belongs to the material in this format, so it may have to change as well.
+    /// Redefines a material if its name was reused, or if it is unnamed and another was entered since. `sides` belongs
+    /// to the material and may change too.
     void enter_material(std::uint32_t material, int sides) {
         const std::string& name = names_[material];
         Definition& definition = definitions_[name];
@@ -181,7 +180,7 @@ class MgfWriter {
         if (texture != none) put("\ttexture {} {}\n", entity, textures_[texture]);
     }
 
-    /// @param rest  Further arguments of the entity.
+    /// @param rest  Further arguments.
     void put_colour(std::string_view entity, const RgbD& rgb, std::string_view rest = "") {
         const auto [chromaticity, luminance] = from_rec709(rgb);
         put("\tc\n\t\tcxy {} {}\n\t{} {}{}\n", chromaticity.x, chromaticity.y, entity, luminance, rest);
@@ -209,7 +208,7 @@ class MgfWriter {
         put("\n");
     }
 
-    /// A vertex has its place and direction.
+    /// A vertex provides position and direction.
     void add_light(const Luminaire& luminaire) {
         enter_object(luminaire.object);
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
@@ -250,7 +249,7 @@ class MgfWriter {
         });
     }
 
-    /// Puts what is written with the axes of a frame.
+    /// Writes a light inside a rotation.
     template <class Put>
     void add_turned(const Frame& frame, const Put& put_light) {
         const Turns turns = turns_of(frame);
@@ -260,7 +259,7 @@ class MgfWriter {
         if (is_turned) put("xf\n");
     }
 
-    /// `ies` takes the current colour by its name.
+    /// `ies` refers to the colour by name.
     void add_measured(const MeasuredLight& light, const Chromaticity& chromaticity, double multiplier) {
         const Turns turns = turns_of(frame_of(light));
         const Imath::V3d world = scene_.origin + Imath::V3d(light.position);
@@ -280,7 +279,7 @@ class MgfWriter {
 
     const Scene& scene_;
     std::ostream& out_;
-    std::span<const std::string> textures_;                    // names of their files
+    std::span<const std::string> textures_;                    // file names
     std::vector<std::string> names_;                           // of materials
     std::unordered_map<std::string, Definition> definitions_;  // by name
     std::unordered_map<const PhotometricWeb*, std::string> web_files_;
