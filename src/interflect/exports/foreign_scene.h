@@ -13,36 +13,36 @@
 
 namespace interflect::inline detail {
 
-/// What the backs of a mesh's faces do.
+/// Behaviour of the backs of a mesh's faces.
 enum class Backs {
-    pass,     ///< Let light through: one-sided faces.
-    reflect,  ///< Reflect as the fronts do, but emit nothing.
-    emit,     ///< As the fronts.
+    pass,     ///< One-sided faces: light passes through their backs.
+    reflect,  ///< Reflect like the fronts, but do not emit.
+    emit,     ///< Reflect and emit like the fronts.
 };
 
-/// The faces of one material whose backs are alike.
+/// Faces of one material with the same behaviour of their backs.
 struct ForeignMesh {
     std::string name;
     std::uint32_t material = 0;
     Backs backs = Backs::pass;
     std::vector<V3f> positions;                       ///< Relative to Scene::origin [m].
-    std::vector<V2f> texture_coordinates;             ///< One for each position, or empty.
-    std::vector<std::array<std::uint32_t, 4>> faces;  ///< The fourth of a triangle is none.
+    std::vector<V2f> texture_coordinates;             ///< One per position, or empty.
+    std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; the fourth of a triangle is none.
 
-    /// With faces cut into triangles.
+    /// Returns the faces split into triangles.
     std::vector<std::array<std::uint32_t, 3>> triangles() const;
 };
 
-/// A scene as other renderers take it, and the files that a description of it refers to.
+/// A scene prepared for export to another renderer, and the files to which its description refers.
 struct ForeignScene {
     const Scene& scene;
-    std::filesystem::path path;  ///< Of the description.
+    std::filesystem::path path;  ///< Path of the description.
     SceneExportOptions options;
-    std::string (*escape)(std::string_view file_name);  ///< For the text of the description.
-    std::vector<std::string> materials;                 ///< Their names, all different.
+    std::string (*escape)(std::string_view file_name);  ///< Escapes file names for the description.
+    std::vector<std::string> materials;                 ///< Unique names of the materials.
     std::vector<std::string> luminaires;
     std::vector<ForeignMesh> meshes;
-    std::vector<View> views;  ///< At least one; `eye` and `look_at` relative to Scene::origin.
+    std::vector<View> views;  ///< At least one; `eye` and `look_at` are relative to Scene::origin.
     std::vector<ExportedFile> files;
     Warnings warnings;
 
@@ -51,39 +51,40 @@ struct ForeignScene {
 
     /// Adds a file "STEM-name" beside the description. @return  Its name, escaped for the description.
     std::string add_file(const std::string& name, std::string bytes);
-    /// The images of a material, in linear values: reflectance, radiance M / pi, and transmittance. @return  Its name.
+    /// Add an image of a material in linear values: reflectance, radiance M / pi or transmittance. Return its escaped
+    /// name.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
     std::string add_transmittance_image(std::uint32_t material);
-    /// The same as opacity, and the reflectance of what is opaque (opacity.h).
+    /// Add the opacity, or the reflectance of the opaque part of each texel (opacity.h). Return the escaped name.
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
-    /// All skies as one image of radiance; no name where there are none.
-    /// @param direction  Of a point of the image, x from the left and y from the top, in [0, 1].
+    /// Adds one radiance image of all skies. @return  Its escaped name; empty without skies.
+    /// @param direction  Maps a point of the image to a direction; x from the left and y from the top, in [0, 1].
     std::string add_sky_image(int width, int height, const std::function<V3f(float x, float y)>& direction);
 
     const Material& material(const ForeignMesh& mesh) const { return scene.materials[mesh.material]; }
     bool emits(const ForeignMesh& mesh) const { return material(mesh).exitance != Rgb(0); }
-    /// M / pi, where it is uniform.
+    /// Returns M / pi, without any texture of exitance.
     Rgb radiance(const ForeignMesh& mesh) const;
-    /// Counts a warning: "left out: ".
+    /// Counts the warning "left out: WHAT".
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// Warns of all that no renderer but `has_glass` ones are told.
-    /// @param has_holes  Whether it is told of textures of transmittance.
+    /// Warns about mirrors and other material properties that the target renderer does not support.
+    /// @param has_glass  Whether it supports glass panes and one-sided faces that pass light.
+    /// @param has_holes  Whether it supports textures of transmittance.
     void warn_of_materials(bool has_glass, bool has_holes);
 };
 
-/// The mean of an image.
 Rgb mean_texel(const Texture& texture);
 
-/// Binary PLY with triangles, for renderers; (u, v) as "u" and "v".
+/// Encodes a mesh as binary PLY with triangles and texture coordinates "u" and "v".
 std::string ply_of(const ForeignMesh& mesh);
 
-/// "0.5 0.25 1", with anything between.
+/// Formats a vector as "0.5 0.25 1", with `between` as separator.
 std::string triple(const V3f& v, const char* between = " ");
 
-// Each returns the description, and adds the files that it refers to.
+// Each returns the description and adds the files to which it refers.
 std::string radiance_description(ForeignScene& scene);
 std::string mitsuba_description(ForeignScene& scene);
 std::string pbrt_description(ForeignScene& scene);
