@@ -18,17 +18,17 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Two sides of a gap closer than this are kept apart [texels].
+/// Gaps narrower than this separate charts [texels].
 constexpr double narrow_gap = 2;
 
-/// An edge of a patch, or a part of one, across which no other patch continues it.
+/// An edge of a patch, or part of it, that no other patch continues.
 struct BorderEdge {
     std::uint32_t patch;
     V3f a, b;
     V3f inwards;  // unit vector in the patch's plane
 };
 
-/// Of one object; each edge with the first of its group.
+/// Returns the joints within objects. Each edge is paired with the first edge of its group.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<std::uint32_t> first(smooth.edges.count, none);
@@ -46,7 +46,7 @@ Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     return joints;
 }
 
-/// The patches on one side of each flat surface, and which of them continue which.
+/// Neighbours and border edges of the patches on each side of the flat surfaces.
 class Neighbourhood {
   public:
     Neighbourhood(const Scene& scene, const Joints& joints)
@@ -63,7 +63,7 @@ class Neighbourhood {
             if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
     }
 
-    /// Which side of which flat surface a patch is part of.
+    /// Returns an identifier of the side of the flat surface to which a patch belongs.
     std::uint64_t side(std::uint32_t p) const {
         const bool is_back = scene_.patches[p].other_side < p;
         return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
@@ -74,7 +74,7 @@ class Neighbourhood {
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
-    /// @param inner  The parts of the edge across which others continue it, in parameters along it.
+    /// @param inner  Intervals that other patches continue, in parameters along the edge.
     void add_border(std::uint32_t edge, Intervals inner) {
         constexpr float rounding = 1e-5f;
         const Patch& patch = scene_.patches[edge / 4];
@@ -84,7 +84,7 @@ class Neighbourhood {
         const V3f inwards = PatchGeometry(scene_, patch).normal().cross(along).normalized();
         std::sort(inner.begin(), inner.end());
         inner.emplace_back(1.0f, 1.0f);
-        float end = 0;  // of what is done
+        float end = 0;  // of the processed part
         for (const auto& [low, high] : inner) {
             if (low > end + rounding) border_.push_back({edge / 4, start + end * along, start + low * along, inwards});
             end = std::max(end, high);
@@ -103,7 +103,7 @@ float distance(const V3f& x, const BorderEdge& edge) {
     return (x - edge.a - t * along).length();
 }
 
-/// Whether a gap of at most `width` lies between two edges, with their patches beyond it on either side.
+/// Returns whether a gap of at most `width` lies between two edges, with their patches on opposite sides.
 bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     constexpr float opposite = -0.5f;
     if (!(e.inwards.dot(f.inwards) < opposite)) return false;
@@ -118,7 +118,7 @@ bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
 }
 
-/// Adds the conflicts between the patches of one side of a flat surface. @param border  All of its edges.
+/// Adds conflicts between patches on one side of a flat surface. @param border  All border edges of that side.
 void add_conflicts(std::span<const BorderEdge> border, float gap, ChartConflicts& conflicts) {
     const auto box_of = [](const BorderEdge& edge, float margin) {
         Imath::Box3f box(edge.a);
@@ -152,7 +152,7 @@ ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbour
     return conflicts;
 }
 
-/// Flat pieces of charts: grows each from a patch across its neighbours, as far as there is no conflict.
+/// Grows flat pieces of charts from seed patches across neighbours without conflicts.
 std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>& shown,
                                      const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
     std::vector<std::uint32_t> chart(scene.patches.size(), none);
@@ -178,7 +178,7 @@ std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>
 
 using Points = std::vector<Imath::V2d>;
 
-/// Counter-clockwise (Andrew's monotone chain, 1979).
+/// Returns the convex hull counter-clockwise (Andrew's monotone chain, 1979).
 Points convex_hull(Points points) {
     std::sort(points.begin(), points.end(),
               [](const auto& a, const auto& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
@@ -198,11 +198,11 @@ Points convex_hull(Points points) {
 }
 
 struct Rectangle {
-    Imath::V2d corner, across;  // across has unit length; `down` is it turned by 90 degrees
+    Imath::V2d corner, across;  // across is a unit vector; the other axis is it rotated by 90 degrees
     Imath::V2d size;
 };
 
-/// The smallest around a convex polygon: it shares a side with one of its edges (Freeman and Shapira 1975).
+/// Returns the smallest rectangle around a convex polygon. It shares a side with an edge (Freeman and Shapira 1975).
 Rectangle smallest_rectangle(const Points& hull) {
     Rectangle best;
     double least = std::numeric_limits<double>::max();
@@ -217,7 +217,7 @@ Rectangle smallest_rectangle(const Points& hull) {
             high = {std::max(high.x, q.x), std::max(high.y, q.y)};
         }
         const Imath::V2d size = high - low;
-        constexpr double rounding = 1e-6;  // equal rectangles: the first edge's
+        constexpr double rounding = 1e-6;  // among equal rectangles, chooses that of the first edge
         if (size.x * size.y < least * (1 - rounding)) {
             least = size.x * size.y;
             best = {x * low.x + y * low.y, x, size};
@@ -232,7 +232,7 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
-/// Of patches whose coordinates are positive, the smallest 0.
+/// @param patches  Their smallest coordinates must be 0.
 LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     LightmapChart chart{std::move(patches), {0, 0}};
     for (const FlatPatch& flat : chart.patches)
@@ -244,7 +244,7 @@ LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     return chart;
 }
 
-/// In the rectangle's frame: along it and down from its corner.
+/// Converts patches to the rectangle's frame: along it and down from its corner.
 FlatPatches moved_into(const Rectangle& rectangle, FlatPatches patches) {
     for (FlatPatch& flat : patches)
         for (Imath::V2d& corner : flat.corners) {
@@ -260,7 +260,7 @@ Points corners_of(const FlatPatches& patches) {
     return points;
 }
 
-/// The smallest rectangle that is not turned.
+/// Returns the axis-aligned bounding rectangle.
 Rectangle bounding_rectangle(const FlatPatches& patches) {
     Imath::Box2d box;
     for (const FlatPatch& flat : patches) box.extendBy(flat.box());

@@ -69,7 +69,7 @@ struct Reader {
     }
 };
 
-/// Writes fields to a row of numbers, and their names.
+/// Writes fields as a row of numbers, and their names.
 struct RowWriter {
     std::vector<std::string>& names;
     std::vector<double>& row;
@@ -114,8 +114,8 @@ struct RowReader {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The one list of options and their names: those of the members, after the group's name where they would not say
-/// enough alone. @param access  Writer or Reader.
+/// Visits all options with their names. A name begins with its group's if it would be ambiguous alone.
+/// @param access  Writer or Reader.
 template <class Options, class Access>
 void for_each_option(Options& options, const Access& access) {
     auto& limits = options.limits;
@@ -148,7 +148,7 @@ void for_each_option(Options& options, const Access& access) {
     access.field("beta", o.beta);
 }
 
-/// Of options as they were named before: under their present names.
+/// Renames the options of older versions to their present names.
 Json with_present_names(Json json) {
     if (json.contains("time")) return json;
     json["time"] = json.at("seconds");
@@ -161,7 +161,7 @@ Json with_present_names(Json json) {
     return json;
 }
 
-/// The one list of what is told of an iteration. @param access  Writer or Reader.
+/// Visits all numbers of an iteration with their names. @param access  Writer, Reader, RowWriter or RowReader.
 template <class Report, class Access>
 void for_each_number(Report& r, const Access& access) {
     access.field("iteration", r.iteration);

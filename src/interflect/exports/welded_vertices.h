@@ -11,11 +11,11 @@
 
 namespace interflect::inline detail {
 
-/// The vertices of a list of triangles, each once. @tparam Vertex  Of 32-bit members alone.
+/// Unique vertices and the indices of a triangle list. @tparam Vertex  Has only 32-bit members.
 template <class Vertex>
 class WeldedVertices {
   public:
-    /// The next corner of a triangle.
+    /// Appends the next corner of a triangle.
     void add(const Vertex& vertex) {
         const auto number = static_cast<std::uint32_t>(vertices_.size());
         Words words;
@@ -25,7 +25,7 @@ class WeldedVertices {
         indices_.push_back(entry->second);
     }
 
-    /// value(vertex) of each vertex.
+    /// Returns value(vertex) for each unique vertex.
     template <class Value>
     auto values(const Value& value) const {
         std::vector<decltype(value(std::declval<const Vertex&>()))> result;
