@@ -10,30 +10,30 @@
 
 namespace interflect::command {
 
-/// What false colours measure.
+/// Quantity shown in false colours.
 enum class Measured {
-    illuminance,  ///< On the surfaces that are seen [lx].
+    illuminance,  ///< Of visible surfaces [lx].
     luminance,    ///< Of the picture [cd/m^2].
 };
 
-/// How `render` draws what it measured.
+/// False colours of `render`.
 struct FalseColourOptions {
-    std::optional<Measured> measured;  ///< None: colours as they are.
+    std::optional<Measured> measured;  ///< Empty: natural colours.
     std::optional<Range> scale;
     bool logarithmic = false;
-    std::optional<std::vector<float>> isolines;  ///< Values; none in it: round ones.
+    std::optional<std::vector<float>> isolines;  ///< If empty, round values.
 
     void add_to(CLI::App& app);
-    /// @throws UsageError for options that have no effect, or contradict each other.
+    /// @throws UsageError for options that have no effect or contradict each other.
     void check() const;
-    /// With the unit, for a legend and the metadata of a picture.
+    /// Returns the name and unit for a legend and metadata.
     std::string label() const;
-    /// In false colours, with a legend below if it is to have one.
-    /// @param values  Numbers as they were measured, in the first channel.
+    /// Draws values in false colours, with a legend below if wanted.
+    /// @param values  Measured numbers in the first channel.
     Image draw(const Image& values, bool has_legend) const;
 };
 
-/// The numbers of a picture: its luminance, in all channels.
+/// Returns the luminance of each pixel, in all channels.
 Image luminances(const Image& light);
 
 }  // namespace interflect::command

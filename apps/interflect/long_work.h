@@ -10,10 +10,10 @@
 
 namespace interflect::command {
 
-/// Reports work of unknown length on stderr every few seconds: its name, its time so far and the memory in use.
+/// Reports long work on stderr every few seconds: name, time so far and memory in use.
 class LongWork {
   public:
-    /// @param what  The work: "reading scene.obj".
+    /// @param what  Name of the work: "reading scene.obj".
     explicit LongWork(std::string what);
     ~LongWork();
     LongWork(const LongWork&) = delete;

@@ -9,9 +9,9 @@
 
 namespace interflect::command {
 
-// Where text leaves the program: names of files and of what they hold cannot command the terminal, being escaped().
+// All text output is escaped(), so names in files cannot control the terminal.
 
-/// Sends what spdlog logs to stderr. Of line breaks only those before an indented line remain: lists of faults.
+/// Sends spdlog's messages to stderr. Keeps only line breaks before indented lines: lists of faults.
 void log_to_stderr();
 
 /// Prints one line of results to stdout.

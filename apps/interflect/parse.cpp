@@ -15,7 +15,7 @@ namespace {
     throw std::invalid_argument("expected " + expected + ", found '" + text + "'");
 }
 
-/// Reads a finite number from the front of `text` and removes it; false where there is none.
+/// Reads and removes a finite number at the front of `text`; returns whether it succeeds.
 bool take_number(std::string_view& text, double& number) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

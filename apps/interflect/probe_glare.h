@@ -9,28 +9,28 @@
 
 namespace interflect::command {
 
-/// Ratings of observers at the points of a grid, who look in several directions; of those that were reached.
+/// Ratings of observers at the points of a grid, each in several directions. Only those that were reached.
 struct RatedGrid {
     MeasuringGrid grid;
     std::vector<Observer> observers;
     std::vector<GlareRating> ratings;
     std::size_t missing = 0;  ///< Ratings that were not reached.
 
-    /// Index of the largest rating; there is one.
+    /// Returns the index of the largest rating; requires at least one.
     std::size_t worst() const;
 };
 
-/// Rates what is seen from all grids, with a progress bar, and warns of sources that UGR is not made for.
+/// Rates the glare at all grids with a progress bar. Warns about sources for which UGR is not defined.
 /// @param solution  As in rate_glare().
 /// @throws Stopped if no observer was reached.
 std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
                                   const PathOptions& options);
 
-/// A table of all ratings.
+/// Writes all ratings as a table.
 void write_ratings(PendingFile& output, const std::vector<RatedGrid>& grids);
 
-/// A summary to stdout: the worst rating of each grid and what causes it.
+/// Prints the worst rating of each grid and its sources to stdout.
 void print_ratings(const std::vector<RatedGrid>& grids, bool json);
 
 }  // namespace interflect::command
