@@ -21,17 +21,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view signature = "interflect checksums\n";
-/// Range name of the bytes outside the named ranges.
+/// Range name of all other bytes.
 constexpr const char* structure = "structure";
-/// The block ends with its own checksum: eight hexadecimal digits and a line break.
+/// Eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
 
-/// Returns the checksum of the rest of the block, as the block's last line.
+/// Returns the block's last line: the checksum of the rest.
 std::string own_checksum(std::string_view block) {
     return text_of_crc32(crc32(block.substr(0, checked_length))) + "\n";
 }
 
-/// Returns the checksum of a range, or nullopt if the file ends before its end.
+/// Returns nullopt if the file ends before the range.
 std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& range) {
     std::array<char, 1 << 18> buffer;
     std::uint32_t checksum = 0;
@@ -46,15 +46,14 @@ std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& r
     return checksum;
 }
 
-/// Reduces a numbered name to its group: "/scene/textures/12" to "/scene/textures". Returns other names unchanged.
+/// Reduces "/scene/textures/12" to "/scene/textures".
 std::string_view checked_name(std::string_view name) {
     const std::size_t last = name.find_last_not_of("0123456789");
     const bool is_numbered = last + 1 < name.size() && name[last] == '/';
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Merges neighbouring numbered arrays of one group, with the bytes between them, into one range: a group may have more
-/// arrays than the block has room for.
+/// Merges neighbouring numbered arrays of one group into one range, since the block may not have room for all.
 /// @param ranges  In file order.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
@@ -68,7 +67,7 @@ std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges
     return joined;
 }
 
-/// Adds the gaps between the ranges, in file order. The result covers [checksum_block_size, size) exactly once.
+/// Fills the gaps between the ranges. The result covers [checksum_block_size, size) once, in file order.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
     ranges = with_numbered_joined(ranges);
@@ -94,7 +93,6 @@ std::string read_block(std::ifstream& file) {
     return block;
 }
 
-/// Removes and returns the first word of a line.
 std::string_view next_word(std::string_view& line) {
     const std::string_view word = line.substr(0, line.find(' '));
     line.remove_prefix(std::min(word.size() + 1, line.size()));

@@ -14,12 +14,11 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// First version with escaped names, options, result, files and the version of Interflect.
+/// First version with escaped names, options, result, files and version of Interflect.
 constexpr int first_with_options = 4;
-/// First version with checksums of the input files and a history of all iterations.
+/// First version with checksums of the input files and all iterations.
 constexpr int first_with_history = 5;
 
-/// Lists the input files, with their checksums if known.
 Json json_of_files(const Scene& scene) {
     Json files = Json::array();
     for (std::size_t i = 0; i < scene.files.size(); ++i) {
@@ -82,7 +81,7 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
     if (json.contains("files")) read_files(json.at("files"), format_version, scene);
 }
 
-/// Reads the result; files without options contain only the number of rays.
+/// Reads the result; old files contain only the number of rays.
 void read_result(const Json& json, int format_version, Solution& solution) {
     IterationReport& last = solution.iterations.emplace_back();
     if (format_version >= first_with_history && json.at("history").get<std::vector<std::string>>() != report_columns())

@@ -7,11 +7,11 @@
 
 namespace interflect::inline detail {
 
-/// Returns the JSON text of a solution file: all its content except long arrays. Keys: docs/solution-file.md.
+/// Returns all content of a solution file except long arrays, as JSON (docs/solution-file.md).
 /// @throws std::runtime_error if a number is not finite.
 std::string describe(const Scene& scene, const Solution& solution, int format_version);
 
-/// Reads the text of describe() into `solved`. @return  Whether the file contains importance.
+/// Parses describe() into `solved`. @return  Whether the file contains importance.
 /// @throws std::exception for missing or unknown values and for other versions.
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version, SolvedScene& solved);
 

@@ -13,75 +13,72 @@
 
 namespace interflect::inline detail {
 
-/// Behaviour of the backs of a mesh's faces.
+/// Behaviour of the backs of faces.
 enum class Backs {
-    pass,     ///< One-sided faces: light passes through their backs.
+    pass,     ///< One-sided: light passes.
     reflect,  ///< Reflect like the fronts, but do not emit.
     emit,     ///< Reflect and emit like the fronts.
 };
 
-/// Faces of one material with the same behaviour of their backs.
+/// Faces of one material with equal behaviour of their backs.
 struct ForeignMesh {
     std::string name;
     std::uint32_t material = 0;
     Backs backs = Backs::pass;
     std::vector<V3f> positions;                       ///< Relative to Scene::origin [m].
     std::vector<V2f> texture_coordinates;             ///< One per position, or empty.
-    std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; the fourth of a triangle is none.
+    std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; `none` fills the fourth of triangles.
 
-    /// Returns the faces split into triangles.
     std::vector<std::array<std::uint32_t, 3>> triangles() const;
 };
 
-/// A scene prepared for export to another renderer, and the files to which its description refers.
+/// A scene prepared for another renderer, with the files to which its description refers.
 struct ForeignScene {
     const Scene& scene;
     std::filesystem::path path;  ///< Path of the description.
     SceneExportOptions options;
     std::string (*escape)(std::string_view file_name);  ///< Escapes file names for the description.
-    std::vector<std::string> materials;                 ///< Unique names of the materials.
+    std::vector<std::string> materials;                 ///< Unique names of materials.
     std::vector<std::string> luminaires;
     std::vector<ForeignMesh> meshes;
-    std::vector<View> views;  ///< At least one; `eye` and `look_at` are relative to Scene::origin.
+    std::vector<View> views;  ///< At least one, relative to Scene::origin.
     std::vector<ExportedFile> files;
     Warnings warnings;
 
     ForeignScene(const Scene& exported, const std::filesystem::path& description, const SceneExportOptions& chosen,
                  std::string (*file_name_escape)(std::string_view));
 
-    /// Adds a file "STEM-name" beside the description. @return  Its name, escaped for the description.
+    /// Adds a file "STEM-name" beside the description. @return  Its escaped name.
     std::string add_file(const std::string& name, std::string bytes);
-    /// Add an image of a material in linear values: reflectance, radiance M / pi or transmittance. Return its escaped
-    /// name.
+    /// Add a linear image of reflectance, radiance M / pi or transmittance. @return  Its escaped name.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
     std::string add_transmittance_image(std::uint32_t material);
-    /// Add the opacity, or the reflectance of the opaque part of each texel (opacity.h). Return the escaped name.
+    /// The same for opacity and the reflectance of the opaque part (opacity.h).
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
     /// Adds one radiance image of all skies. @return  Its escaped name; empty without skies.
-    /// @param direction  Maps a point of the image to a direction; x from the left and y from the top, in [0, 1].
+    /// @param direction  Direction of an image point, x from the left and y from the top, in [0, 1].
     std::string add_sky_image(int width, int height, const std::function<V3f(float x, float y)>& direction);
 
     const Material& material(const ForeignMesh& mesh) const { return scene.materials[mesh.material]; }
     bool emits(const ForeignMesh& mesh) const { return material(mesh).exitance != Rgb(0); }
-    /// Returns M / pi, without any texture of exitance.
+    /// Returns M / pi, without texture.
     Rgb radiance(const ForeignMesh& mesh) const;
-    /// Counts the warning "left out: WHAT".
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// Warns about mirrors and other material properties that the target renderer does not support.
-    /// @param has_glass  Whether it supports glass panes and one-sided faces that pass light.
-    /// @param has_holes  Whether it supports textures of transmittance.
+    /// Warns about material properties that the renderer lacks, such as mirrors.
+    /// @param has_glass  Supports panes and one-sided faces.
+    /// @param has_holes  Supports textures of transmittance.
     void warn_of_materials(bool has_glass, bool has_holes);
 };
 
 Rgb mean_texel(const Texture& texture);
 
-/// Encodes a mesh as binary PLY with triangles and texture coordinates "u" and "v".
+/// Encodes binary PLY with triangles and texture coordinates "u" and "v".
 std::string ply_of(const ForeignMesh& mesh);
 
-/// Formats a vector as "0.5 0.25 1", with `between` as separator.
+/// Formats "0.5 0.25 1".
 std::string triple(const V3f& v, const char* between = " ");
 
 // Each returns the description and adds the files to which it refers.

@@ -12,32 +12,30 @@
 
 namespace interflect::inline detail {
 
-/// A glTF 2.0 file under construction: its JSON and a single binary buffer.
+/// A glTF 2.0 file under construction, with one binary buffer.
 class GltfDocument {
   public:
     GltfDocument();
 
-    /// The JSON without its buffer; callers may add to it.
+    /// Everything except the buffer; callers may add to it.
     Json json;
 
-    /// Appends an object to an array of the JSON, such as "materials". @return  Its index.
+    /// Appends an object to an array such as "materials". @return  Its index.
     int add(const char* array, Json object);
-    /// Declares an extension that the file uses.
     void use_extension(const char* name);
 
-    /// Add an accessor of vertex attributes or of triangle-list indices. @return  Its index.
-    int add_positions(std::span<const V3f> values);  ///< Adds the bounds, which glTF requires for positions.
+    /// Add an accessor of vertex attributes or indices. @return  Its index.
+    int add_positions(std::span<const V3f> values);  ///< Adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
 
-    /// Adds an image as 8-bit sRGB PNG, clamped to [0, 1], and a texture that refers to it.
-    /// @param opacity  Alpha of each pixel, in [0, 1]; no alpha channel if empty.
-    /// @param repeats  Whether it repeats beyond [0, 1] and has mipmaps; otherwise its edge texels extend.
-    /// @return         Index of the texture.
+    /// Adds a texture and its image: 8-bit sRGB PNG, clamped to [0, 1]. @return  Index of the texture.
+    /// @param opacity  Alpha per pixel, in [0, 1]; no alpha channel if empty.
+    /// @param repeats  Repeats beyond [0, 1], with mipmaps; otherwise edge texels extend.
     int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 
-    /// Return the file as GLB, or as JSON with the buffer embedded. glb() throws InputError beyond 4 GiB.
+    /// Return the file as GLB, or as JSON with embedded buffer. glb() throws InputError beyond 4 GiB.
     std::string glb() const;
     std::string gltf() const;
 

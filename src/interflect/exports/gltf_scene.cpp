@@ -16,7 +16,7 @@ namespace interflect::inline detail {
 namespace {
 
 Json json_of(const Imath::V3d& v) { return {v.x, v.y, v.z}; }
-/// In the order of glTF: (x, y, z, w).
+/// Uses glTF's order: (x, y, z, w).
 Json json_of(const Imath::Quatd& q) { return {q.v.x, q.v.y, q.v.z, q.r}; }
 
 double size_of(const Scene& scene) {
@@ -26,7 +26,7 @@ double size_of(const Scene& scene) {
     return bounds.size().length();
 }
 
-/// Rotation of a camera that looks along -z, with y up and x to the right.
+/// Rotates from glTF's camera, which looks along -z with y up and x right.
 Imath::Quatd rotation_of(const View& view) {
     const Imath::V3d back = (view.eye - view.look_at).normalized();
     const Imath::V3d right = Imath::V3d(view.up).cross(back).normalized(), up = back.cross(right);
@@ -36,7 +36,7 @@ Imath::Quatd rotation_of(const View& view) {
 
 Json camera_of(const View& view, double scene_size) {
     const double distance = (view.look_at - view.eye).length();
-    const double far = scene_size + distance, near = 1e-3 * far;  // resolved by single-precision depth buffers
+    const double far = scene_size + distance, near = 1e-3 * far;  // limit of single-precision depth buffers
     if (view.extent > 0) {
         const double half = view.extent / 2;
         return {{"name", escaped(view.name)},

@@ -17,7 +17,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Returns whether the file keeps a material's image; its vertices then store only the factor of the image.
+/// Returns whether the file keeps the material's image; its vertices then store the factor of the image.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }
@@ -28,8 +28,8 @@ struct LitVertex {
     V2f coordinate;
 };
 
-/// Returns the largest value of each channel of a material's image; 1 for black channels. The file stores the image
-/// divided by it. Vertex colours, which are at most 1, then use their full range.
+/// Returns the largest value per channel of a material's image, 1 for black channels. The image in the file is divided
+/// by it, so vertex colours, at most 1, use their full range.
 Rgb peak_of(const Scene& scene, const Material& material) {
     Rgb peak = material.transmittance_texture == none
                    ? largest_texel(scene.textures[material.reflectance_texture])
@@ -39,7 +39,6 @@ Rgb peak_of(const Scene& scene, const Material& material) {
     return peak;
 }
 
-/// Display colours of a scene's vertices.
 class VertexLight {
   public:
     VertexLight(const Scene& scene, float exposure)
@@ -62,7 +61,7 @@ class VertexLight {
   private:
     const Scene& scene_;
     float scale_;
-    std::vector<Rgb> brightest_;  // of materials that keep their texture: reflectance of the brightest texel
+    std::vector<Rgb> brightest_;  // per material that keeps its texture: reflectance of the brightest texel
 };
 
 /// Triangles of one object and material.

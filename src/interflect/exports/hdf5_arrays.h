@@ -17,7 +17,7 @@ namespace interflect::inline detail {
 /// Owner of an HDF5 identifier.
 class Hdf5Handle {
   public:
-    /// @param what  Failed operation. @throws std::runtime_error naming it if `id` is invalid.
+    /// @param what  Failed operation, for the std::runtime_error of an invalid `id`.
     Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what);
     ~Hdf5Handle() { close_(id_); }
     Hdf5Handle(const Hdf5Handle&) = delete;
@@ -29,16 +29,15 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
-/// Reader of the arrays of an HDF5 file. T is float, double, std::uint32_t, char or std::byte. All functions throw
-/// std::runtime_error and allocate at most the size of the file. They refuse arrays in other files: links, external
-/// storage, virtual arrays.
+/// Reads arrays of float, double, std::uint32_t, char or std::byte. Throws std::runtime_error, allocates at most the
+/// size of the file, and refuses arrays in other files (links, external or virtual storage).
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);
 
-    /// Returns whether the file has a group or an array of this name.
+    /// Returns whether a group or an array of this name exists.
     bool has(const std::string& name) const;
-    /// Reads an array row by row: one-dimensional if `columns` is 1, otherwise two-dimensional.
+    /// Reads rows; one-dimensional if `columns` is 1, otherwise two-dimensional.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
@@ -46,25 +45,25 @@ class Hdf5Reader {
     Hdf5Handle file_, links_;
 };
 
-/// Writer of a new HDF5 file of arrays. It has no time stamps, so equal contents give equal bytes. Throws
-/// std::runtime_error. T is float, double, std::int64_t, std::uint32_t, std::uint8_t or, uncompressed, char.
+/// Writes a new HDF5 file without time stamps: equal contents give equal bytes. Throws std::runtime_error. T is float,
+/// double, std::int64_t, std::uint32_t, std::uint8_t or, uncompressed, char.
 class Hdf5Writer {
   public:
-    /// @param user_block  Size of the unused block at the beginning of the file [bytes].
+    /// @param user_block  Unused bytes at the beginning.
     Hdf5Writer(const std::filesystem::path& path, std::uint64_t user_block);
-    /// Creates a file in memory, for image().
+    /// Writes to memory, for image().
     Hdf5Writer();
 
     /// Writes rows of `columns` numbers. @return  Position in the file.
     template <class T>
     FileRange write(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
-    /// Writes rows in losslessly compressed chunks (shuffle and deflate).
+    /// Compresses chunks without loss (shuffle and deflate).
     template <class T>
     void write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
-    /// Adds an attribute to a group: an array of integers, or ASCII text of fixed length.
+    /// Add integers, or ASCII text of fixed length, to a group.
     void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
     void write_attribute(const std::string& group, const char* name, std::string_view text);
-    /// Writes the parts as one consecutive array.
+    /// Writes the parts as one array.
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
     /// Must be the last call.
     void flush();

@@ -8,19 +8,19 @@ namespace interflect::inline detail {
 
 using Json = nlohmann::ordered_json;
 
-/// Serialises JSON for output. Strings are escaped() (escapes.h), since names are bytes of unknown encoding. JSON has
-/// no NaN or infinity; null means a missing value.
+/// Serialises JSON with escaped() strings, since names are bytes of unknown encoding. JSON has no NaN or infinity; null
+/// means a missing value.
 /// @param indent  Spaces per level; -1 for a single line.
 /// @throws std::runtime_error naming a number that is not finite.
 std::string json_text(Json json, int indent = -1);
 
-/// Parses the text of json_text() and restores the bytes of its strings. @throws nlohmann::json::exception
+/// Inverse of json_text(). @throws nlohmann::json::exception
 Json parse_json_text(std::string_view text);
 
-/// Returns a double that prints with the fewest digits that identify `value`: 0.1f is 0.1, not 0.10000000149011612.
+/// Returns a double with the fewest digits that identify `value`: 0.1f is 0.1, not 0.10000000149011612.
 double shortest_number(float value);
 
-/// Converts a vector to an array, with shortest_number() for floats.
+/// Uses shortest_number() for floats.
 template <class Vector>
 Json json_of(const Vector& v) {
     if constexpr (std::is_same_v<decltype(Vector::x), float>)

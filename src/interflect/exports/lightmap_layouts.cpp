@@ -13,10 +13,10 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Tolerance relative to the unit square: above the rounding of 16-bit coordinates.
+/// Tolerance in the unit square: above the rounding of 16-bit coordinates.
 constexpr double layout_rounding = 0x1p-15;
 
-/// Returns a patch's own layout in the unit square, with v downwards.
+/// Returns the layout in the unit square, v downwards.
 FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     const Patch& patch = scene.patches[p];
     FlatPatch flat{p, patch.vertex_count()};
@@ -27,7 +27,7 @@ FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     return flat;
 }
 
-/// Minimum share of its rectangle that a layout fills. Emptier layouts waste texels, as where many objects share a map.
+/// Minimum share of a layout's rectangle in use. Emptier layouts waste texels, as where many objects share a map.
 constexpr double least_filled = 0.1;
 
 bool is_mostly_empty(const FlatPatches& layout) {
@@ -61,7 +61,7 @@ bool overlaps_itself(const FlatPatches& layout) {
     });
 }
 
-/// Returns the fault that makes a layout unusable, or null.
+/// Returns null for a usable layout.
 const char* fault_of(const FlatPatches& layout) {
     const auto has_no_area = [](const FlatPatch& flat) {
         return std::abs(flat.signed_area()) < layout_rounding * layout_rounding;
@@ -90,7 +90,7 @@ std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool
     std::map<std::uint32_t, FlatPatches> layout_of_object;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
-        const bool is_second_side = patch.other_side < p && shown[patch.other_side];  // its first side is in the layout
+        const bool is_second_side = patch.other_side < p && shown[patch.other_side];  // the first side is in the layout
         if (shown[p] && !is_second_side && !std::isnan(scene.lightmap_coordinates[patch.vertices[0]].x))
             layout_of_object[patch.object].push_back(given_layout(scene, p));
     }

@@ -8,9 +8,9 @@
 
 namespace interflect::inline detail {
 
-/// Returns the objects' own layouts (Scene::lightmap_coordinates) of shown patches with coordinates. Axes point right
-/// and down [m]; a layout has the same total area as its patches in space. If both sides of a face are shown, the
-/// layout contains the first. Layouts with patches of no area, overlaps or a mostly empty rectangle are ignored.
+/// Returns the objects' own layouts (Scene::lightmap_coordinates) of shown patches, x right and y down [m], with the
+/// patches' total area in space. If both sides of a face are shown, only the first is included. Ignores layouts with
+/// overlaps, patches of no area or a mostly empty rectangle.
 /// @param warnings  Receives the objects with ignored layouts; may be null.
 std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool>& shown, Warnings* warnings);
 

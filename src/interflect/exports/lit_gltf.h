@@ -7,11 +7,11 @@
 
 namespace interflect::inline detail {
 
-/// Exports a solved scene as binary glTF 2.0 (docs/export.md): one mesh per object, light at its vertices or in
-/// lightmaps, views as cameras, y up.
+/// Exports binary glTF 2.0 (docs/export.md): one mesh per object, light at vertices or in lightmaps, views as cameras,
+/// y up.
 std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
-/// Exports the same as JSON with embedded binary data.
+/// Exports JSON with embedded binary data.
 std::vector<ExportedFile> make_gltf(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                     const ExportOptions& options);
 

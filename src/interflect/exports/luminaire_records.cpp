@@ -48,7 +48,7 @@ Json list_of(const std::vector<float>& numbers) {
     return json;
 }
 
-/// Parameters of a sky model in file order.
+/// Parameters in file order.
 constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &SkyModel::b, &SkyModel::c,
                                                                &SkyModel::d, &SkyModel::e, &SkyModel::g};
 

@@ -1,4 +1,4 @@
-// Solver::save() and Solver::open() are here because the solver does not depend on file formats.
+// Solver::save() and Solver::open(), here because the solver is independent of file formats.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace interflect {
 
 namespace {
 
-/// Archives options that solution files omit because they depend on the machine on which the run started.
+/// Archives options that solution files omit because they depend on the machine.
 void archive_options(StateArchive& archive, SolveOptions& options) {
     options.refinement.max_elements =
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);

@@ -27,8 +27,8 @@ namespace interflect {
 
 namespace {
 
-/// Version 5 adds all iterations and checksums of the input files. Version 4 adds checksums, options and result.
-/// Version 3 adds an origin (0 before), contacts, and the surfaces of patches.
+/// Version 5 adds all iterations and checksums of input files; 4 checksums, options and result; 3 an origin (before:
+/// 0), contacts and surfaces of patches.
 constexpr int format_version = 5, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
@@ -61,7 +61,7 @@ std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     return numbers;
 }
 
-/// @param each  Numbers per patch: all, or all but the surface.
+/// @param each  Numbers per patch, with or without the surface.
 std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
     std::vector<Patch> patches(numbers.size() / each);
     for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -112,7 +112,7 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-/// Returns why `numbers` are not `per_element` finite, non-negative numbers per element; empty if they are.
+/// Requires `per_element` finite, non-negative numbers per element; returns the fault or an empty string.
 std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
                      const char* what) {
     if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);
@@ -128,13 +128,13 @@ void require_none(const std::string& fault) {
     if (!fault.empty()) throw std::runtime_error(fault);
 }
 
-// Invariants that writers enforce and readers rely on.
+// Invariants of files.
 
 void require_valid(const Scene& scene) {
     for (const std::string& fault : scene_faults(scene)) require_none(fault);
 }
 
-/// @param solution  Solution of a valid scene.
+/// @param solution  Of a valid scene.
 void require_valid(const Solution& solution) {
     const ElementForest& forest = *solution.forest;
     const auto* irradiance = reinterpret_cast<const float*>(solution.irradiance.data());
@@ -149,7 +149,6 @@ void require_valid(const Solution& solution) {
     if (!is_finite(solution.emitted_power)) require_none("the emitted power is not finite");
 }
 
-/// Returns whether a file has the HDF5 signature at `offset`.
 bool has_hdf5_signature(const std::filesystem::path& path, std::uint64_t offset) {
     std::string begin(hdf5_signature.size(), '\0');
     std::ifstream file(path, std::ios::binary);
@@ -177,7 +176,7 @@ std::vector<double> history_numbers(const Solution& solution) {
     return numbers;
 }
 
-/// @param solution  Has one iteration, the last or an empty one. A non-empty history replaces it.
+/// @param solution  Its single iteration is replaced by a non-empty history.
 void read_history(const Hdf5Reader& file, Solution& solution) {
     const std::size_t columns = report_columns().size();
     const std::vector<double> numbers = file.read<double>(history_dataset, columns);
@@ -191,7 +190,7 @@ std::string group_dataset(std::size_t group) { return fmt::format("/solution/gro
 
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
     Solution& solution = solved.solution;
-    const std::size_t named = solved.scene.light_groups.size();  // there may also be a group for other sources
+    const std::size_t named = solved.scene.light_groups.size();  // perhaps also a group of other sources
     const bool has_names =
         solution.group_names.size() == named || (named > 0 && solution.group_names.size() == named + 1);
     if (!has_names || solution.dimming.size() != solution.group_names.size())
@@ -201,7 +200,7 @@ void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
         solution.groups.push_back(grouped<Rgb>(file.read<float>(group_dataset(g), 3)));
 }
 
-/// Scales the sources of the scene by the solution's dimming, and resets the dimming to 1.
+/// Applies the dimming to the scene's sources and resets it to 1.
 void apply_dimming(SolvedScene& solved) {
     std::vector<float>& dimming = solved.solution.dimming;
     if (std::all_of(dimming.begin(), dimming.end(), [](float factor) { return factor == 1; })) return;
@@ -227,14 +226,14 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
 }
 
-/// A solution file whose checksums, if any, are verified.
+/// A file whose checksums, if any, are verified.
 struct VerifiedFile {
     bool has_checksums;
     Hdf5Reader arrays;
 };
 
 VerifiedFile verified(const std::filesystem::path& path) {
-    // HDF5 would also search for its signature further on; a file without checksums begins with it.
+    // HDF5 also searches for its signature further on; a file without checksums begins with it.
     const bool has_checksums = !has_hdf5_signature(path, 0);
     if (has_checksums) verify_checksums(path);
     return {has_checksums, Hdf5Reader(path)};
@@ -277,10 +276,10 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 }
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
-/// Version of the state's arrays; increase it whenever one of them changes.
+/// Increase it whenever an array of the state changes.
 constexpr int state_version = 2;
 
-/// Writes the arrays of a state as one array, and an index of them. @return  Their positions in the file.
+/// Writes a state as one array and an index. @return  Their positions in the file.
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();
     std::vector<std::span<const std::byte>> parts;
@@ -315,7 +314,7 @@ StateArchive read_state(const VerifiedFile& file) {
     return StateArchive(std::move(arrays));
 }
 
-/// Writes an HDF5 file that begins with an empty block for checksums.
+/// Writes a file that begins with an empty block for checksums.
 std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
                                   const Solution& solution, const StateArchive* state) {
     Hdf5Writer file(path, checksum_block_size);
@@ -332,7 +331,7 @@ void require_solution_file(const std::filesystem::path& path) {
     if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
 }
 
-/// Returns the result of `read`. Converts its exceptions to an InputError with the file's name and `fault`.
+/// Calls `read` and converts its exceptions to an InputError with the file's name and `fault`.
 template <class Read>
 auto read_or_refuse(const std::filesystem::path& path, const char* fault, const Read& read) {
     try {

@@ -9,32 +9,32 @@
 
 namespace interflect::inline detail {
 
-/// Returns the options of a run, under the names of the command line, for solution files and `solve --stats`. Limits
-/// that were not set are null. Omits the seed and the method's name, which are stored beside it, and max_elements,
-/// which depends on the memory of the machine.
+/// Returns the options of a run under the names of the command line, for solution files and `solve --stats`. Limits
+/// that were not set are null. Omits the seed and the method's name, stored beside it, and max_elements, which depends
+/// on the machine's memory.
 Json json_of(const SolveOptions& options);
 
-/// Sets options from json_of(). @throws nlohmann::json::exception, InputError for missing or unknown values.
+/// Inverse of json_of(). @throws nlohmann::json::exception, InputError for missing or unknown values.
 void read_options(const Json& stored, SolveOptions& options);
 
-/// Returns the state of a run after an iteration. Omits its duration, so the same input gives the same text. Unknown
-/// errors are null.
+/// Returns the state of a run after an iteration, without its duration: equal input gives equal text. Unknown errors
+/// are null.
 Json json_of(const IterationReport& report);
 
-/// Parses json_of(). @throws nlohmann::json::exception
+/// Inverse of json_of(). @throws nlohmann::json::exception
 IterationReport report_of(const Json& json);
 
 /// Return all iterations as a table of numbers, for plots. Unknown errors are infinite.
 std::vector<std::string> report_columns();
 std::vector<double> report_row(const IterationReport& report);
-/// Parses report_row(). @param row  One number per column. @throws std::runtime_error for an impossible number.
+/// Inverse of report_row(). @throws std::runtime_error for impossible numbers. @param row  One number per column.
 IterationReport report_of_row(std::span<const double> row);
 
-/// Returns a view with world coordinates in double precision.
+/// Keeps world coordinates in double precision.
 Json json_of(const View& view);
 View view_of(const Json& json);
 
-/// Parses three numbers. @throws nlohmann::json::exception
+/// @throws nlohmann::json::exception
 template <class Vector>
 Vector vector_of(const Json& json) {
     using Number = decltype(Vector::x);

@@ -10,12 +10,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Maximum number of patches per layout: each new piece is compared with all of them.
+/// Limit of patches per layout: each new piece is compared with all of them.
 constexpr std::size_t most_patches_unfolded = 4096;
 
-/// Maximum relative change of the length of an edge.
+/// Maximum relative change of edge lengths.
 constexpr double most_stretch = 0.1;
-/// Maximum relative change of the area between the two edges at a corner.
+/// Maximum relative change of the area between two edges at a corner.
 constexpr double most_shear = 0.2;
 
 /// Relative tolerance for rounding.
@@ -31,10 +31,10 @@ struct RigidMotion {
     }
 };
 
-/// A point of a piece and its target.
+/// A point and its target.
 using PointPair = std::pair<Imath::V2d, Imath::V2d>;
 
-/// Returns the least-squares motion (Kabsch 1976), or nullopt if all points coincide.
+/// Finds the least-squares motion (Kabsch 1976); nullopt if all points coincide.
 std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     RigidMotion motion{{0, 0}, {0, 0}, {0, 0}};
     for (const auto& [from, to] : pairs) {
@@ -50,7 +50,7 @@ std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     return motion;
 }
 
-/// Returns whether a patch has nearly the same shape: edges within `stretch`, areas at corners within `shear`.
+/// Returns whether edges change by at most `stretch` and areas at corners by at most `shear`.
 bool is_alike(const FlatPatch& a, const FlatPatch& b, double stretch, double shear) {
     const std::size_t count = a.outline().size();
     const auto is_within = [](double x, double y, double share) { return std::abs(x - y) <= share * std::abs(x); };
@@ -91,7 +91,7 @@ class Unfolding {
     }
 
   private:
-    /// Adds neighbouring pieces until no more fit.
+    /// Adds neighbouring pieces while any fits.
     FlatPatches grow(std::uint32_t seed, std::uint32_t number) {
         layout_.clear();
         boxes_.clear();
@@ -122,7 +122,7 @@ class Unfolding {
         }
     }
 
-    /// Places a piece in the layout; nullopt if it does not fit.
+    /// Returns nullopt if the piece does not fit.
     std::optional<FlatPatches> place(std::uint32_t piece, std::uint32_t number) const {
         if (has_conflict(piece, number)) return std::nullopt;
         bool has_seams = false;
@@ -137,7 +137,7 @@ class Unfolding {
             }
         }
         for (std::size_t i = 0; i < placed.size(); ++i) {
-            // Partial edges have corners inside other edges, which cannot deform.
+            // Partial edges have corners inside other edges and cannot deform.
             const bool fits = has_seams ? is_alike(pieces_[piece][i], placed[i], flat_rounding, flat_rounding)
                                         : is_alike(pieces_[piece][i], placed[i], most_stretch, most_shear);
             if (!fits || !has_room(placed[i])) return std::nullopt;
@@ -154,7 +154,7 @@ class Unfolding {
         });
     }
 
-    /// Returns the points of a piece that are already in the layout.
+    /// Returns the points of a piece that the layout already contains.
     std::vector<PointPair> common_points(std::uint32_t piece, std::uint32_t number, bool& has_seams) const {
         std::vector<PointPair> pairs;
         for (const FlatPatch& flat : pieces_[piece])
@@ -182,7 +182,7 @@ class Unfolding {
         return flat.corners[start] * (1 - share) + flat.corners[end] * share;
     }
 
-    /// Returns whether a patch overlaps no patch in the layout, and is near only to patches that are near in space.
+    /// Returns whether a patch overlaps no other and is near only to patches near in space.
     bool has_room(const FlatPatch& flat) const {
         const Imath::Box2d box = flat.box();
         const double rounding = flat_rounding * box.size().length();
@@ -195,8 +195,7 @@ class Unfolding {
         return true;
     }
 
-    /// The line between two points of a layout is a path on the surface if the layout covers it. If the points are
-    /// further apart in space, part of the line is outside the layout.
+    /// If points are further apart in space than in the layout, part of the line between them is outside the layout.
     bool is_apart_in_space(const FlatPatch& a, const FlatPatch& b) const {
         const double in_space = (centre(a.patch) - centre(b.patch)).length(), flat = (a.centre() - b.centre()).length();
         return in_space > (1 + most_stretch) * flat;

@@ -12,7 +12,7 @@
 
 namespace interflect::inline detail {
 
-/// A VTK array: rows of `components` numbers.
+/// Rows of `components` numbers.
 struct VtkArray {
     std::string name;
     std::size_t components;
@@ -20,28 +20,27 @@ struct VtkArray {
         numbers;
 };
 
-/// A solved scene as VTK unstructured grid, for all of VTK's file formats. Cells are leaves; points are shared by
-/// corners of leaves. Arrays are created one at a time, on request.
+/// A solved scene as VTK unstructured grid: cells are leaves; corners of leaves share points. Creates one array at a
+/// time, on request.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;
 
-    /// Keeps references to both arguments. Cost: that of lit_polygons().
+    /// Keeps references. Cost: as lit_polygons().
     VtkGrid(const Scene& scene, const Solution& solution)
         : scene_(scene), solution_(solution), polygons_(lit_polygons(scene, solution)) {}
 
     std::size_t point_count() const { return polygons_.vertices.size(); }
     std::size_t cell_count() const { return polygons_.size(); }
-    /// World coordinates [m]; single precision if the scene's origin is 0, otherwise double.
+    /// Returns world coordinates [m]; double if the scene's origin is not 0.
     VtkArray points() const;
-    /// Points of all cells, one cell after the other.
+    /// Returns the points of all cells in order.
     std::vector<std::int64_t> connectivity() const;
-    /// First index of each cell in `connectivity`, and the end of the last.
+    /// Returns the first index of each cell in `connectivity`, then the end of the last.
     std::vector<std::int64_t> offsets() const;
-    /// VTK's numbers of the cell types.
     std::vector<std::uint8_t> types() const;
 
-    /// Pass all arrays of the points or cells to `sink`, beginning with the default for display.
+    /// Pass all arrays of points or cells to `sink`; the first is the default for display.
     void visit_point_data(const Sink& sink) const;
     void visit_cell_data(const Sink& sink) const;
 
