@@ -58,7 +58,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// A step of the solver after the light has spread, with its mesh and rays.
+/// A step of the solver with converged light, its mesh and rays.
 struct Workload {
     Workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options)
         : materials(scene, ray_caster),
@@ -91,13 +91,13 @@ struct Measurement {
     double ceiling = 0, solver = 0;                  // [rays/s], of one round
     std::array<double, interfaces.size()> embree{};  // [rays/s], per interface
     // Shares of the solver's time, each measured alone: generating rays, tracing, finding the hit leaves, and choosing
-    // elements with the oracle. The rest is the work per element of every iteration.
+    // elements with the oracle. The rest is work per element of every iteration.
     double making_rays = 0, tracing = 0, receiving = 0, refinement = 0;
 
     double sweeps() const { return std::max(0.0, 1 - making_rays - tracing - receiving - refinement); }
 };
 
-/// Traces in batches, as the solver does.
+/// Traces batches, as the solver does.
 void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
     constexpr std::size_t batch_rays = 4096;
     parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
@@ -106,7 +106,7 @@ void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
     });
 }
 
-/// Runs one step of transport without refining the mesh.
+/// Runs a step of transport without refinement.
 void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_oracle) {
     TransportStep step = work.step;
     step.oracle.refines = with_oracle && work.step.oracle.refines;
@@ -114,7 +114,7 @@ void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_or
     transport(work.materials, *work.forest, ray_caster, std::move(step), streams);
 }
 
-/// Measures everything in one run, because the speed of a machine changes with its load.
+/// Measures everything in one run, since a machine's speed changes with its load.
 Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workload& work) {
     Measurement m;
     const auto count = static_cast<double>(work.rays.size());
@@ -141,7 +141,6 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     return m;
 }
 
-/// Medians over the rounds.
 struct BenchResult {
     explicit BenchResult(const std::vector<Measurement>& rounds) {
         const auto median_of = [&](const auto& figure) {

@@ -7,7 +7,7 @@
 
 namespace interflect::command {
 
-/// A table written line by line; commit() gives it its name.
+/// A table written line by line; commit() renames it.
 class CsvFile {
   public:
     CsvFile(PendingFile& file, const std::string& header);

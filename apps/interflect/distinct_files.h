@@ -6,9 +6,8 @@
 
 namespace interflect::command {
 
-/// A file on the command line.
 struct NamedFile {
-    std::string_view argument;   ///< Its argument, such as '--stats'.
+    std::string_view argument;   ///< Such as '--stats'.
     std::filesystem::path path;  ///< Empty if not given.
 };
 

@@ -8,15 +8,15 @@
 
 namespace interflect::command {
 
-/// Progress bar of a picture, shown after one second. During its lifetime a signal ends the process at once, since half
-/// a picture is useless.
+/// Progress bar of a picture, shown after one second. Meanwhile a signal ends the process, since half a picture is
+/// useless.
 class DrawingProgress {
   public:
     DrawingProgress();
     ~DrawingProgress();
     DrawingProgress(const DrawingProgress&) = delete;
     DrawingProgress& operator=(const DrawingProgress&) = delete;
-    /// For one drawing at a time; refers to this.
+    /// Serves one drawing at a time; refers to this.
     PictureMonitor monitor();
 
   private:

@@ -43,10 +43,9 @@ struct ExportArguments {
     int threads = 0;
 };
 
-/// Heading in the help.
 constexpr const char* lightmap_group = "Lightmaps";
 
-/// Computes the exposure as `render` does, for the scene's first view or an overview.
+/// Computes the exposure of `render` for the first view or an overview.
 float automatic_exposure_of(const SolvedScene& solved) {
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     const View view = solved.scene.views.empty() ? overview(solved.scene) : solved.scene.views.front();
@@ -84,7 +83,6 @@ void run_scene(const ExportArguments& arguments) {
     log_warnings(exported.warnings);
 }
 
-/// Returns whether the export traces rays and reports its progress.
 bool traces_rays(const std::filesystem::path& output, const ExportOptions& options) {
     const std::string extension = lower_case_extension(output);
     return (options.lightmap && options.lightmap->shading == LightmapShading::gather) || extension == ".json" ||

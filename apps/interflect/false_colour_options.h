@@ -10,13 +10,11 @@
 
 namespace interflect::command {
 
-/// Quantity shown in false colours.
 enum class Measured {
-    illuminance,  ///< Of visible surfaces [lx].
-    luminance,    ///< Of the picture [cd/m^2].
+    illuminance,  ///< On visible surfaces [lx].
+    luminance,    ///< In the picture [cd/m^2].
 };
 
-/// False colours of `render`.
 struct FalseColourOptions {
     std::optional<Measured> measured;  ///< Empty: natural colours.
     std::optional<Range> scale;
@@ -24,16 +22,15 @@ struct FalseColourOptions {
     std::optional<std::vector<float>> isolines;  ///< If empty, round values.
 
     void add_to(CLI::App& app);
-    /// @throws UsageError for options that have no effect or contradict each other.
+    /// @throws UsageError for options without effect or in conflict.
     void check() const;
-    /// Returns the name and unit for a legend and metadata.
+    /// Returns the quantity with its unit.
     std::string label() const;
-    /// Draws values in false colours, with a legend below if wanted.
-    /// @param values  Measured numbers in the first channel.
+    /// Draws false colours, with a legend below if wanted. @param values  Numbers in the first channel.
     Image draw(const Image& values, bool has_legend) const;
 };
 
-/// Returns the luminance of each pixel, in all channels.
+/// Returns the luminance in all channels.
 Image luminances(const Image& light);
 
 }  // namespace interflect::command

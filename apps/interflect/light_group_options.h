@@ -15,7 +15,7 @@ struct LightGroupOptions {
     std::vector<LightGroup> groups;
 
     void add_to(CLI::App& app);
-    /// Sets the scene's groups. @throws InputError for a group without sources.
+    /// @throws InputError for a group without sources.
     void set_groups(Scene& scene) const;
 };
 
@@ -23,7 +23,7 @@ struct DimmingOptions {
     std::vector<Dimmed> factors;
 
     void add_to(CLI::App& app);
-    /// @throws InputError listing the groups, for a group that the solution lacks.
+    /// @throws InputError listing the groups, for an unknown group.
     void dim(SolvedScene& solved) const;
     /// @throws UsageError if groups are dimmed but `scene` is not a solution.
     void require_solution(const std::filesystem::path& scene) const;

@@ -10,15 +10,15 @@
 
 namespace interflect::command {
 
-/// Reports long work on stderr every few seconds: name, time so far and memory in use.
+/// Reports long work on stderr every few seconds: name, time and memory in use.
 class LongWork {
   public:
-    /// @param what  Name of the work: "reading scene.obj".
+    /// @param what  "reading scene.obj", for example.
     explicit LongWork(std::string what);
     ~LongWork();
     LongWork(const LongWork&) = delete;
     LongWork& operator=(const LongWork&) = delete;
-    /// Restarts the pause before the next report, after a progress bar has moved.
+    /// Restarts the pause before the next report.
     void postpone();
 
   private:

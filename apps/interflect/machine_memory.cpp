@@ -16,7 +16,7 @@ namespace interflect::command {
 
 namespace {
 
-/// Returns the path of the process's control group (version 2), or an empty string.
+/// Returns the path of the process's control group (version 2), or "".
 std::string control_group() {
     std::ifstream file("/proc/self/cgroup");
     for (std::string line; std::getline(file, line);)
@@ -24,7 +24,7 @@ std::string control_group() {
     return {};
 }
 
-/// Returns the smallest memory limit of the control group and its ancestors.
+/// Returns the smallest limit of the control group and its ancestors.
 std::size_t control_group_memory() {
     const std::filesystem::path root = "/sys/fs/cgroup";
     std::size_t least = std::numeric_limits<std::size_t>::max();

@@ -5,7 +5,7 @@
 
 namespace interflect::command {
 
-/// Returns the memory of the machine, at most the limit of its control groups [bytes].
+/// Returns the memory of the machine or its control groups, whichever is smaller [bytes].
 std::size_t machine_memory();
 
 /// Returns the memory in use and half of the free address space (ulimit -v) [bytes]: arrays and stacks reserve their
@@ -24,11 +24,11 @@ std::size_t free_memory();
 /// Refuses work before it allocates memory.
 /// @param bytes   Peak of the whole process.
 /// @param what    Name of the work: "a picture of 640 x 360 pixels".
-/// @param remedy  Advice: "a smaller --size needs less"; may be empty.
+/// @param remedy  Advice, such as "a smaller --size needs less"; may be empty.
 /// @throws std::runtime_error with these three if `bytes` exceeds usable_memory().
 void require_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 
-/// The same for additional bytes.
+/// The same for bytes in addition to memory_in_use().
 void require_free_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 
 }  // namespace interflect::command

@@ -46,7 +46,7 @@ void require_replaceable(const PendingFile& file, bool force, const std::string&
                      "has other " + content + " than the scene's: expected --force to replace them");
 }
 
-/// Writes the images of a scene beside it. @return  Their files, to be committed.
+/// @return  Files of the images, to be committed.
 std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions& output,
                                         const std::vector<std::string>& names) {
     std::vector<PendingFile> files;
@@ -58,7 +58,7 @@ std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions&
     return files;
 }
 
-/// Makes a scene and writes it with its views and textures. Opens the files first.
+/// Writes a scene with its views and textures. Opens the files before the work.
 void write(const OutputOptions& output, const std::function<Scene()>& make) {
     const fs::path& path = output.path;
     if (path.extension() != ".mgf")
@@ -76,7 +76,6 @@ void write(const OutputOptions& output, const std::function<Scene()>& make) {
                  scene.views.size());
 }
 
-/// Adds a kind of scene.
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help,
                    const std::function<Scene()>& make) {
     const auto output = std::make_shared<OutputOptions>();
@@ -88,7 +87,6 @@ CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string&
     return kind;
 }
 
-/// Adds a kind of random scene.
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help, std::uint64_t& seed,
                    const std::function<Scene()>& make) {
     CLI::App& kind = add_kind(parent, name, help, make);

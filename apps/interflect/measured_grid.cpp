@@ -29,10 +29,10 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                  count, points.size(), what, x.x, x.y, x.z);
 }
 
-/// Points traced again for the error of the solution: total, and minimum per grid.
+/// Points traced again for the solution's error: total, and minimum per grid.
 constexpr std::size_t most_compared = 256, least_of_grid = 8;
 
-/// Compares each grid with path tracing at evenly spread points, with the samples of the gathering.
+/// Traces paths at evenly spread points of each grid, with the gathering's number of samples.
 void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const std::vector<MeasuringPoint>& points,
                         const std::vector<MeasuredIrradiance>& measured, PathOptions options,
                         std::vector<MeasuredGrid>& grids) {

@@ -11,7 +11,6 @@
 
 namespace interflect::command {
 
-/// Spacing and boundary strip of measuring grids.
 struct GridArguments {
     std::optional<double> spacing;  ///< [m]
     std::string boundary;           ///< [m]; may be empty.
@@ -32,11 +31,10 @@ struct MeasuringPlaces {
     GridArguments grid;
 
     void add_to(CLI::App& app);
-    /// Minimum number of places.
     enum class Least { none, one };
     /// @throws UsageError for too few places and for options without effect.
     void check(Least least = Least::one) const;
-    /// Returns one grid per place; single points share a grid. @throws InputError as find_surface() and area_grid().
+    /// Returns a grid per place; single points share one. @throws InputError as find_surface() and area_grid().
     std::vector<MeasuringGrid> grids(const Scene& scene) const;
 };
 

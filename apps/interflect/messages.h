@@ -9,12 +9,11 @@
 
 namespace interflect::command {
 
-// All text output is escaped(), so names in files cannot control the terminal.
+// Output is escaped(), so names in files cannot control the terminal.
 
-/// Sends spdlog's messages to stderr. Keeps only line breaks before indented lines: lists of faults.
+/// Sends spdlog's messages to stderr. Line breaks remain only before indented lines.
 void log_to_stderr();
 
-/// Prints one line of results to stdout.
 template <class... Arguments>
 void print_line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::print("{}\n", escaped(fmt::format(format, std::forward<Arguments>(arguments)...)));

@@ -17,7 +17,7 @@
 
 namespace interflect::command {
 
-// Each parses a whole text or throws std::invalid_argument with the expected and the found text.
+// Each parses a whole text or throws std::invalid_argument with expected and found text.
 
 /// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand.
 std::int64_t parse_count(const std::string& text);
@@ -98,7 +98,7 @@ inline constexpr float automatic_mesh_size = 0, whole_patches = -1;
 /// Invalid combination of options (exit code 2). The message names them.
 using UsageError = CLI::ValidationError;
 
-/// Calls `check` and converts its InputError to a usage error of the option `name`.
+/// Calls `check` and converts its InputError to a UsageError of option `name`.
 template <class Check>
 auto check_option(const std::string& name, const Check& check) {
     try {
@@ -108,10 +108,10 @@ auto check_option(const std::string& name, const Check& check) {
     }
 }
 
-/// Accepts a finite number from `low` to `high`. CLI::Range accepts NaN and prints bounds with 300 digits.
+/// Accepts finite numbers. CLI::Range also accepts NaN, and prints bounds with 300 digits.
 CLI::Validator number_between(double low, double high);
 
-/// Adds an option parsed by a function above; errors name the option.
+/// Adds an option with a function above as parser; errors name the option.
 template <class Value, class Parsed>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Parsed (*parse)(const std::string&),
                         const std::string& help) {
@@ -125,7 +125,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Pa
     return app.add_option_function<std::string>(name, set, help);
 }
 
-/// Adds an option that may be repeated; `parse` parses each text.
+/// Adds an option that may be repeated.
 template <class Value>
 CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>& values,
                       Value (*parse)(const std::string&), const std::string& help) {
@@ -139,7 +139,7 @@ CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>
     return app.add_option_function<std::vector<std::string>>(name, add, help)->allow_extra_args(false);
 }
 
-/// Adds an option that accepts a few words, which the help lists. Target is Value or std::optional<Value>.
+/// Adds an option with a few words, listed in the help. Target is Value or std::optional<Value>.
 template <class Value, class Target>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& value,
                         const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {

@@ -34,7 +34,6 @@ namespace {
 
 enum class ProbedQuantity { surface, horizontal, vertical, cylindrical, semicylindrical, ugr };
 
-/// Method that computes the light.
 enum class ProbedLight {
     gather,  ///< Final gathering from a solution.
     path,    ///< Path tracing without a solution.
@@ -94,13 +93,12 @@ void check_direction(const ProbeArguments& options) {
         throw UsageError("--direction: expected a direction that is not vertical (z)");
 }
 
-/// Returns the lines of sight; default: along the axes x and y.
+/// Returns the given directions, by default both ways along x and y.
 std::vector<V3f> lines_of_sight(const ProbeArguments& options) {
     if (options.directions.empty()) return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
     return {options.directions.begin(), options.directions.end()};
 }
 
-/// Returns the receiver at a point of a grid.
 MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& grid, const ProbeArguments& options) {
     V3f faces(0);
     if (!options.directions.empty()) faces = V3f(Imath::V3d(options.directions[0].x, options.directions[0].y, 0));

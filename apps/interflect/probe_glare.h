@@ -9,28 +9,27 @@
 
 namespace interflect::command {
 
-/// Ratings of observers at the points of a grid, each in several directions. Only those that were reached.
+/// Ratings at the points of a grid, in several directions, without those not reached.
 struct RatedGrid {
     MeasuringGrid grid;
     std::vector<Observer> observers;
     std::vector<GlareRating> ratings;
     std::size_t missing = 0;  ///< Ratings that were not reached.
 
-    /// Returns the index of the largest rating; requires at least one.
+    /// Returns the index of the largest of at least one rating.
     std::size_t worst() const;
 };
 
-/// Rates the glare at all grids with a progress bar. Warns about sources for which UGR is not defined.
+/// Rates all grids with a progress bar. Warns about sources outside the range of UGR.
 /// @param solution  As in rate_glare().
 /// @throws Stopped if no observer was reached.
 std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
                                   const PathOptions& options);
 
-/// Writes all ratings as a table.
 void write_ratings(PendingFile& output, const std::vector<RatedGrid>& grids);
 
-/// Prints the worst rating of each grid and its sources to stdout.
+/// Prints the worst rating of each grid and its sources.
 void print_ratings(const std::vector<RatedGrid>& grids, bool json);
 
 }  // namespace interflect::command

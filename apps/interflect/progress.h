@@ -8,7 +8,6 @@
 
 namespace interflect::command {
 
-/// Progress of long work.
 struct WorkDone {
     double fraction = 0;  ///< In [0, 1].
     double seconds = 0;
@@ -16,7 +15,7 @@ struct WorkDone {
     std::optional<double> error;  ///< Estimated relative error, if any; infinite while unknown.
 };
 
-/// Shows progress on stderr: overwrites one line on a terminal, otherwise prints occasional lines and the last.
+/// Overwrites a line on a terminal; otherwise prints occasional lines and the last.
 class ProgressBar {
   public:
     ProgressBar();
@@ -31,12 +30,12 @@ class ProgressBar {
     std::string not_shown_;     // a later line
 };
 
-/// Returns whether stderr is a terminal, where lines can be overwritten.
+/// Returns whether lines of stderr can be overwritten.
 bool stderr_is_terminal();
-/// Prints to stderr and flushes it; ignores errors.
+/// Flushes stderr; ignores errors.
 void print_progress(const std::string& text);
 
-/// Returns the completed share of the work, in [0, 1], by the limit that will be reached first.
+/// Returns the completed share, in [0, 1], by the limit that comes first.
 double fraction_done(const SolveOptions& options, const IterationReport& report);
 
 /// "3.5 s", "2 min 10 s", "1 h 5 min".

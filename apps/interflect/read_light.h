@@ -8,12 +8,11 @@
 
 namespace interflect::command {
 
-/// Reads a solution, reported by LongWork.
 SolvedScene read_light_of(const std::filesystem::path& solution);
 
-/// Reads a solution and dims it, or reads a scene, which has no elements yet.
+/// Reads and dims a solution, or reads a scene, without elements.
 /// @param command       Its options are refused if they have no effect on a solution.
-/// @param traces_paths  Whether rays are traced after solving: --seed and --until then have an effect.
+/// @param traces_paths  Accepts --seed and --until, since rays are traced after solving.
 /// @throws InputError for an unreadable file and for options without effect.
 SolvedScene read_scene_or_solution(const SceneOptions& scene, const DimmingOptions& dimming, const CLI::App& command,
                                    bool traces_paths);

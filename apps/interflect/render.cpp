@@ -43,7 +43,6 @@ namespace interflect::command {
 
 namespace {
 
-/// Method that computes the light in the picture.
 enum class PictureShading {
     gather,  ///< Final gathering from a solution.
     smooth,  ///< The solution itself, see Shading.
@@ -81,7 +80,7 @@ struct RenderArguments {
     int rows() const { return size.height - legend_rows; }
 };
 
-/// Returns the requested view, the scene's first view, or an overview.
+/// Returns the requested view, the scene's first, or an overview.
 View view_to_draw(const Scene& scene, const RenderArguments& options) {
     if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
     const std::vector<View> views = options.view.views(scene);
@@ -93,7 +92,7 @@ View view_to_draw(const Scene& scene, const RenderArguments& options) {
     return overview(scene);
 }
 
-/// The picture to write, and its metadata.
+/// A picture with its metadata.
 struct Picture {
     Image image;
     std::string quantity = "radiance [cd/m^2]";
@@ -115,7 +114,7 @@ float exposure_of(const Image& light, const RenderArguments& options) {
     return options.exposure.stops + (automatic ? automatic_exposure(light) : 0);
 }
 
-/// Draws numbers: in false colours for display formats, otherwise unchanged.
+/// Uses false colours for display formats only.
 Picture picture_of_numbers(const Image& values, const RenderArguments& options) {
     Picture picture;
     picture.quantity = options.false_colour.label();
@@ -123,7 +122,7 @@ Picture picture_of_numbers(const Image& values, const RenderArguments& options) 
     return picture;
 }
 
-/// Draws light: tone-mapped for display formats, otherwise unchanged.
+/// Uses tone mapping for display formats only.
 Picture picture_of_light(const Image& light, const RenderArguments& options) {
     Picture picture;
     picture.exposure = exposure_of(light, options);
@@ -175,12 +174,11 @@ Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const
     return picture;
 }
 
-/// Returns the label of the false colours.
 std::string label(const RenderArguments& options) {
     return options.false_colour.measured ? options.false_colour.label() : label_of(options.shown);
 }
 
-/// Returns the height of the legend [pixels]; 0 if there is no room for it.
+/// Returns the height of the legend [pixels], or 0 if it does not fit.
 int legend_rows(const RenderArguments& options) {
     const auto [width, height] = options.size;
     if (!is_for_people(options) || !options.is_in_false_colours()) return 0;
@@ -189,7 +187,7 @@ int legend_rows(const RenderArguments& options) {
     return 0;
 }
 
-/// Draws a quantity: in false colours for display formats, otherwise unchanged.
+/// Uses false colours for display formats only.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
     const CameraSampling sampling{options.size.width, options.rows(), options.render.samples, options.render.seed};
@@ -219,7 +217,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     const View view = view_to_draw(solved.scene, options);
     Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses views without a picture
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    // A plan shows the whole scene equally, so importance has no benefit.
+    // A plan shows the whole scene equally: importance has no benefit.
     const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
     const SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
@@ -234,7 +232,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     options.render.irradiance = options.shows_irradiance();
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
-    // A signal that has ended the solver would also end gathering before its first ray.
+    // A signal that ended the solver would end gathering before its first ray.
     const bool needs_paths = options.path.layers || !options.path.error_image.empty();
     const bool gathers = traces_paths(options.shading) && (needs_paths || !is_stop_requested());
     if (traces_paths(options.shading) && !gathers)
@@ -268,7 +266,7 @@ void require_memory_for_elements(Size size) {
                         "a smaller --size needs less");
 }
 
-/// Warns about tone options without effect. @throws UsageError for a display luminance that no operator uses.
+/// Warns about options without effect. @throws UsageError for a display luminance that no operator uses.
 void check_tone_options(const RenderArguments& options, const CLI::App& command) {
     if (command.get_option("--display-luminance")->count() > 0 && !is_absolute(options.tonemap))
         throw UsageError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");

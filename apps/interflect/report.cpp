@@ -49,7 +49,7 @@ struct ReportArguments {
 
 constexpr int picture_samples = 16;  // enough for a filtered picture
 
-/// Returns the floors of objects. Omits those smaller than a hundredth of the total, such as doorsteps.
+/// Returns the floors of objects, except those below 1% of the area, such as doorsteps.
 std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
     constexpr double least_share = 0.01;
     std::vector<PlanarArea> rooms = divide_by_object(scene, floor);
@@ -57,7 +57,6 @@ std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
     return rooms;
 }
 
-/// Returns a grid over the floor of each room.
 std::vector<MeasuringGrid> room_grids(const Scene& scene, const std::vector<PlanarArea>& rooms,
                                       const ReportArguments& options, double height) {
     std::vector<MeasuringGrid> grids;
@@ -68,7 +67,7 @@ std::vector<MeasuringGrid> room_grids(const Scene& scene, const std::vector<Plan
     return grids;
 }
 
-/// Measures the working planes of the rooms, then the other places.
+/// Measures working planes of rooms, then other places.
 std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCaster& ray_caster,
                                         const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
     std::vector<MeasuringGrid> grids = room_grids(solved.scene, rooms, options, options.working_plane);
@@ -108,7 +107,7 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
     return {view.name, tone_map(light, automatic_exposure(light)), colours.draw(luminances(draw()), true)};
 }
 
-/// Returns the requested views, the scene's views, or an overview.
+/// Returns the requested views, the scene's, or an overview.
 std::vector<View> views_to_draw(const Scene& scene, const ReportArguments& options) {
     constexpr std::size_t most = 4;
     std::vector<View> views = options.view.views(scene);

@@ -19,17 +19,15 @@ struct SurfaceFacts {
     double reflectance = 0, transmittance = 0, specular_reflectance = 0;
 };
 
-/// Light sources of one kind.
 struct LightFacts {
     std::string name;                 ///< Material, photometric file or kind of light.
     std::string kind;                 ///< "surface", or kind_name().
-    std::size_t count = 0;            ///< Number of luminaires, or of emitting objects.
-    bool far_away = false;            ///< A sky or sun, whose flux is that towards the scene.
+    std::size_t count = 0;            ///< Luminaires, or emitting objects.
+    bool far_away = false;            ///< Sky or sun; `flux` is that towards the scene.
     double flux = 0;                  ///< Total [lm].
     std::optional<double> luminance;  ///< [cd/m^2], if equal in all directions.
 };
 
-/// Facts about a scene that need no measurement.
 struct SceneFacts {
     Imath::Box3d bounds;                 ///< World coordinates [m].
     std::vector<SurfaceFacts> surfaces;  ///< Sorted by area.

@@ -13,10 +13,9 @@ namespace interflect::command {
 
 namespace {
 
-// Units of a figure; figure_side is its longer side.
+// Units of a figure: its longer side is figure_side.
 constexpr double figure_side = 1000, dimension_room = 46, legend_room = 92, font_size = 15;
 
-/// Maps world coordinates to a figure.
 struct Frame {
     const ReportPlan& plan;
     double unit;  // per metre
@@ -48,7 +47,7 @@ double bar_length(const ReportPlan& plan) {
     return power;
 }
 
-/// Returns the picture above a line of dimensions: scale bar, width and height.
+/// Draws the picture above its scale bar and dimensions.
 std::string begin(const Frame& frame, const Image& picture, double room_below) {
     const double below = frame.height + dimension_room;
     std::string svg = fmt::format(

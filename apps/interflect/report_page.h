@@ -13,13 +13,11 @@
 
 namespace interflect::command {
 
-/// A view, and its illuminance in false colours with a legend.
 struct ReportPicture {
     std::string view;
     Image picture, illuminance;  ///< Display values.
 };
 
-/// Content of a report.
 struct ReportContent {
     std::string title, date;
     double working_plane = 0;  ///< z in the world [m].
@@ -33,7 +31,7 @@ struct ReportContent {
     int samples = 0, picture_samples = 0;  ///< Gathered directions per measuring point, and per pixel.
 };
 
-/// Returns a self-contained HTML page that prints on A4. Escapes all names.
+/// Returns a self-contained page for A4 with escaped names.
 std::string report_page(const ReportContent& content, const SolvedScene& solved);
 
 }  // namespace interflect::command

@@ -41,7 +41,6 @@ Raster raster_around(const Imath::Box2d& box) {
     return raster;
 }
 
-/// Returns the corners of a floor's faces in plan.
 std::vector<std::vector<V2d>> faces_of(const Scene& scene, const PlanarArea& floor) {
     std::vector<std::vector<V2d>> faces;
     for (const std::uint32_t i : floor.patches) {
@@ -61,7 +60,7 @@ bool is_inside(const V2d& p, const std::vector<V2d>& face) {
     return true;
 }
 
-/// Returns whether the centre of each pixel lies over the floor, [row * width + column].
+/// Returns whether pixel centres lie over the floor, [row * width + column].
 std::vector<bool> floor_mask(const Raster& raster, const std::vector<std::vector<V2d>>& faces) {
     std::vector<bool> mask(static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height));
     for (const std::vector<V2d>& face : faces) {
@@ -82,8 +81,7 @@ std::vector<bool> floor_mask(const Raster& raster, const std::vector<std::vector
     return mask;
 }
 
-/// Illuminance in cells of a floor. extend() fills cells beside it with the mean of their neighbours, for interpolation
-/// up to the walls.
+/// Illuminance in cells of a floor. extend() fills neighbouring cells with means, for interpolation up to the walls.
 class CellValues {
   public:
     explicit CellValues(const MeasuringGrid& grid)
@@ -127,7 +125,7 @@ class CellValues {
     std::vector<bool> is_known_;
 };
 
-/// Computes the illuminance at every pixel over the floor [lx]; 0 elsewhere.
+/// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere.
 Image illuminance_over(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                        const PlanarArea& floor, double height, const PathOptions& options, const Raster& raster,
                        const std::vector<bool>& mask) {
@@ -152,7 +150,7 @@ Image illuminance_over(const Scene& scene, const Solution& solution, const RayCa
     return values;
 }
 
-/// Draws the scene below a height, seen from above. Outlines separate pixels with different heights or normals.
+/// Draws lines between pixels of different height or normal, seen from above, below a height.
 Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Raster& raster, double height) {
     struct Seen {
         float z = -1e30f;

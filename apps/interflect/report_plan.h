@@ -11,16 +11,15 @@
 
 namespace interflect::command {
 
-/// Plan of a floor with its objects, and of the illuminance on a plane above it. x points right, y up.
+/// Plan of a floor, and of the illuminance on a plane above it. x points right, y up.
 struct ReportPlan {
-    Imath::V2d low{0, 0}, high{0, 0};  ///< Corners of the pictures in the world [m].
+    Imath::V2d low{0, 0}, high{0, 0};  ///< World corners of the pictures [m].
     Image outlines;                    ///< Outlines of objects, black on white.
     Image illuminance;                 ///< The outlines over false colours with isolines.
     ColourScale scale;                 ///< Scale of the false colours [lx].
 };
 
-/// Draws a plan with a progress bar; Ctrl-C ends it early.
-/// @param height   World z of the plane [m].
+/// Draws a plan with a progress bar; stop_flag() ends it early. @param height  World z of the plane [m].
 /// @param options  Options per measuring point; width and height are ignored.
 ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const PlanarArea& floor,
                      double height, const PathOptions& options);

@@ -10,7 +10,6 @@
 
 namespace interflect::command {
 
-/// Heading in the help.
 inline constexpr const char* path_group = "Gathering and path tracing";
 
 /// Options of `render --shading gather` and `path` only.
@@ -25,7 +24,7 @@ struct PathTracerArguments {
     /// @throws UsageError for an error image in an 8-bit format.
     void check() const;
     /// @throws UsageError for fewer than two --samples, whose variance gives the error, and for --max-samples below
-    /// --samples or without --until.
+    /// that or without --until.
     static void check_samples(const CLI::App& app, int samples);
 };
 
@@ -35,9 +34,8 @@ std::vector<ImageLayer> layers_of(const PathTracing& traced);
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.
 void require_memory_for_paths(Size size);
 
-/// Traces paths with a progress bar, logs the outcome, and writes the image of the standard error if requested. Ctrl-C
-/// ends it early with a partial result.
-/// @param solution  Source of final gathering; null for path tracing.
+/// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
+/// with a partial result. @param solution  Null for path tracing, otherwise for final gathering.
 PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                             PathOptions options, const PathTracerArguments& arguments);
 

@@ -20,11 +20,11 @@ namespace interflect::command {
 
 namespace {
 
-/// Memory of a patch while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere
-/// with 200 divisions and for glTF instances of one triangle.
+/// Memory while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere with 200
+/// divisions and for glTF instances of one triangle.
 constexpr std::size_t bytes_per_patch = 300;
 
-/// Returns the number of patches that fit into memory. @param present  Patches already in memory.
+/// @param present  Patches already in memory.
 std::uint64_t patches_in_memory(std::size_t present = 0) { return present + free_memory() / bytes_per_patch; }
 
 }  // namespace

@@ -14,13 +14,10 @@
 
 namespace interflect::command {
 
-/// Heading of skies and the sun in the help.
 inline constexpr const char* daylight_group = "Daylight";
 
-/// For the help.
 inline constexpr const char* scene_formats = "Scene file (.gltf, .glb, .obj, .ply, .stl, .rad, .mgf)";
 
-/// A scene and how to read it.
 struct SceneOptions {
     std::filesystem::path path;
     ReadOptions read;
@@ -28,7 +25,6 @@ struct SceneOptions {
     Daylight daylight;
 
     void add_to(CLI::App& app, const std::string& what = std::string(scene_formats) + ", or maze:ROOMS[:furniture]");
-    /// Loads the scene and logs its warnings.
     Scene load() const;
 
   private:
@@ -37,13 +33,12 @@ struct SceneOptions {
     Imath::V3d zenith_{0, 0, 1};
 };
 
-/// Division of a scene before it is solved.
 struct MeshOptions {
     bool contact_cuts = true;
     float size = automatic_mesh_size;  ///< [m], automatic_mesh_size or whole_patches.
 
     void add_to(CLI::App& app);
-    /// Cuts faces where others meet them, unless switched off, and logs the warnings.
+    /// Cuts faces where others meet them, unless switched off.
     Scene cut(Scene scene, const ReadOptions& read) const;
     /// Cuts the scene, then divides patches to the mesh size.
     /// @param refines  The method divides patches itself; `auto` then leaves them whole.
@@ -58,14 +53,13 @@ struct ViewOptions {
     float fov = 45;
 
     void add_to(CLI::App& app);
-    /// Returns the requested views, if any. @throws InputError for a view that is missing or shows no picture.
+    /// @throws InputError for a view that is missing or shows no picture.
     std::vector<View> views(const Scene& scene) const;
 };
 
-/// Returns the files that these options name.
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view);
 
-/// Headings of the solver options in the help; `render --shading path` refuses these options.
+/// Headings in the help; `render --shading path` refuses these options.
 inline constexpr const char* solver_group = "Solver";
 inline constexpr const char* limits_group = "Limits";
 inline constexpr const char* refinement_group = "Refinement";
@@ -85,7 +79,7 @@ struct LimitOptions {
 
 struct SolverOptions {
     int threads = 0;         ///< 0: all threads of the machine.
-    std::size_t memory = 0;  ///< Limit of the process [bytes]; 0: nine tenths of the machine's.
+    std::size_t memory = 0;  ///< Limit of the process [bytes]; 0: 9/10 of the machine's.
     std::filesystem::path stats;
 
     void add_to(CLI::App& app);
@@ -109,12 +103,10 @@ struct SolverOptions {
     std::optional<ImportanceUse> importance_;
 };
 
-/// Adds --method.
 void add_method(CLI::App& app, std::optional<Method>& method);
 
 void add_threads(CLI::App& app, int& threads);
 
-/// Logs the warnings of reading a scene.
 void log_warnings(const Warnings& warnings);
 
 }  // namespace interflect::command

@@ -8,10 +8,9 @@
 
 namespace interflect::command {
 
-/// Content of a picture.
 enum class Shown {
     light,              ///< Radiance seen by the camera.
-    mesh,               ///< The same with the borders of the elements.
+    mesh,               ///< With the borders of elements.
     irradiance,         ///< Luminance of H.
     importance,         ///< psi.
     direct_importance,  ///< v, the part of psi directly from the camera.
@@ -20,17 +19,16 @@ enum class Shown {
     error,              ///< Relative standard error of H.
 };
 
-/// Adds --show.
 void add_show(CLI::App& app, Shown& shown);
 
 /// Returns whether `shown` is a number per element, drawn in false colours.
 constexpr bool is_quantity(Shown shown) { return shown != Shown::light && shown != Shown::mesh; }
 
-/// Draws such a number. @throws InputError if the solution lacks it.
+/// @throws InputError if the solution lacks the quantity.
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                               const CameraSampling& sampling, const PictureMonitor& monitor);
 
-/// Returns its name and unit, for the metadata of a picture.
+/// Returns name and unit for metadata.
 std::string label_of(Shown shown);
 
 }  // namespace interflect::command

@@ -19,7 +19,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);  // required in signal ha
 
 void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
-/// Ends the process as the signal does without a handler.
+/// Ends the process as without a handler.
 void end_process(int signal) {
     remove_temporary_files();
     if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar

@@ -4,17 +4,17 @@
 
 namespace interflect::command {
 
-/// Must be called first. SIGINT (Ctrl-C), SIGTERM and SIGHUP then remove temporary files before they end the process.
-/// An ignored SIGHUP, as under nohup, stays ignored. Writing to a closed pipe, or beyond the limit of file sizes, fails
+/// Must be called first. SIGINT (Ctrl-C), SIGTERM and SIGHUP then remove temporary files before they end the process;
+/// an ignored SIGHUP, as under nohup, stays ignored. Writing to a closed pipe or beyond the limit of file sizes fails
 /// instead of ending the process.
 void handle_signals();
 
 /// From now on the first of these signals sets a flag and prints a message; the second ends the process. Call it before
-/// work that can end early; it also holds while the results are written.
+/// work that can end early and whose results are then written.
 void stop_on_signal();
 const std::atomic<bool>& stop_flag();
 
-/// From now on the first signal ends the process again.
+/// The first signal ends the process again.
 void end_on_signal();
 
 bool is_stop_requested();

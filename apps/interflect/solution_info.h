@@ -4,7 +4,7 @@
 
 namespace interflect::command {
 
-/// Prints the content and the options of a solution file, as JSON or as text.
+/// Prints the content and options of a solution file as JSON or text.
 void print_solution_info(const std::filesystem::path& path, bool json);
 
 }  // namespace interflect::command

@@ -8,7 +8,7 @@
 
 namespace interflect::command {
 
-/// The file of --stats, if given: JSON lines, a header and one line per iteration.
+/// The file of --stats, if given: JSON lines, one header and one line per iteration.
 class StatsFile {
   public:
     /// Must precede long work. @param stats  Empty: no file.

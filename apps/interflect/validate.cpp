@@ -28,10 +28,10 @@ struct ValidateArguments {
     bool json = false, strict = false;
 };
 
-/// Cost of solving with the default options.
+/// Cost of solving with default options.
 struct Prediction {
     std::size_t memory = 0;      ///< With one element per patch [bytes].
-    double rays_per_second = 0;  ///< 0 if the scene emits no light.
+    double rays_per_second = 0;  ///< 0 without emitted light.
     double rays = 0, seconds = 0;
 };
 
