@@ -58,7 +58,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// What the solver traces when the light has already spread through the scene and the mesh is there.
+/// A step of the solver with converged light, its mesh and rays.
 struct Workload {
     Workload(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options)
         : materials(scene, ray_caster),
@@ -81,7 +81,7 @@ struct Workload {
 
     Materials materials;
     Solution solution;
-    std::shared_ptr<ElementForest> forest;  // the solution's, which no step makes larger
+    std::shared_ptr<ElementForest> forest;  // the solution's; no step refines it
     TransportStep step;
     SampleStreams streams;
     std::vector<Ray> rays;
@@ -89,15 +89,15 @@ struct Workload {
 
 struct Measurement {
     double ceiling = 0, solver = 0;                  // [rays/s], of one round
-    std::array<double, interfaces.size()> embree{};  // [rays/s], each interface
-    // Shares of the solver's time, each measured alone: rays are made, traced, taken to the leaves that they hit, or
-    // from there to the elements that the oracle chooses; the rest is what every iteration does for each element.
+    std::array<double, interfaces.size()> embree{};  // [rays/s], per interface
+    // Shares of the solver's time, each measured alone: generating rays, tracing, finding the hit leaves, and choosing
+    // elements with the oracle. The rest is work per element of every iteration.
     double making_rays = 0, tracing = 0, receiving = 0, refinement = 0;
 
     double sweeps() const { return std::max(0.0, 1 - making_rays - tracing - receiving - refinement); }
 };
 
-/// Traces as the solver does: batches of rays, which become hits.
+/// Traces batches, as the solver does.
 void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
     constexpr std::size_t batch_rays = 4096;
     parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
@@ -106,7 +106,7 @@ void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
     });
 }
 
-/// One step of transport, on the mesh that is there and without making it finer.
+/// Runs a step of transport without refinement.
 void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_oracle) {
     TransportStep step = work.step;
     step.oracle.refines = with_oracle && work.step.oracle.refines;
@@ -114,7 +114,7 @@ void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_or
     transport(work.materials, *work.forest, ray_caster, std::move(step), streams);
 }
 
-/// Everything in one run, one after the other, since the speed of a machine changes with its load.
+/// Measures everything in one run, since a machine's speed changes with its load.
 Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workload& work) {
     Measurement m;
     const auto count = static_cast<double>(work.rays.size());
@@ -141,7 +141,6 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     return m;
 }
 
-/// Medians over the rounds.
 struct BenchResult {
     explicit BenchResult(const std::vector<Measurement>& rounds) {
         const auto median_of = [&](const auto& figure) {
@@ -161,7 +160,7 @@ struct BenchResult {
                    {"sweeps", median_of([](const Measurement& m) { return m.sweeps(); })}}};
     }
 
-    double ratio, ceiling, solver;  // of the solver over the ceiling; [rays/s]
+    double ratio, ceiling, solver;  // solver / ceiling; [rays/s]
     std::array<double, interfaces.size()> embree;
     std::array<std::pair<const char*, double>, 5> shares;  // of the solver's time
 };

@@ -11,7 +11,7 @@ namespace interflect::command {
 
 namespace {
 
-/// Gives the file a second name, so that one checkpoint is there at every moment.
+/// Adds a second name, so one complete checkpoint always exists.
 void keep_previous(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return;

@@ -7,17 +7,15 @@
 
 namespace interflect::command {
 
-/// Where the state of a run is saved while it goes on, so that `resume` can go on with it.
 struct Checkpoints {
-    std::filesystem::path file;  ///< Empty: nowhere.
+    std::filesystem::path file;  ///< Empty: no checkpoints.
     double every = 60;           ///< [s]
 
-    /// @param what  Said of the file.
+    /// @param what  Help text of --checkpoint.
     void add_to(CLI::App& app, const std::string& what);
-    /// To be called before long work begins. @throws InputError where the file cannot be written.
+    /// Must precede long work. @throws InputError if the file cannot be written.
     void require_writable() const;
-    /// Saves the run; the last checkpoint is kept beside it as NAME.previous.h5. Where that fails a warning is logged,
-    /// and the run goes on.
+    /// Saves the run and keeps the last checkpoint as NAME.previous.h5. Failures only log a warning.
     void save(Solver& solver) const;
 };
 

@@ -4,10 +4,9 @@
 
 namespace interflect::command {
 
-/// Exit codes of the command line contract.
 enum ExitCode { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, interrupted = 130 };
 
-// Each adds one subcommand; `exit_code` is set when it ends other than done and other than by an exception.
+// Each adds a subcommand, which sets `exit_code` unless it ends with `done` or an exception.
 void add_info(CLI::App& app);
 void add_solve(CLI::App& app, int& exit_code);
 void add_resume(CLI::App& app, int& exit_code);

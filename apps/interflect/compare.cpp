@@ -63,7 +63,7 @@ void print_text(const ImageDifference& d, double field_of_view) {
     if (d.non_finite_pixels > 0) fmt::print("pixels that are not finite {}\n", d.non_finite_pixels);
 }
 
-/// As asked for, else that of the reference, else that of the image, else the default.
+/// Returns the value of --fov, otherwise of the reference, of the image, or the default.
 double field_of_view(const CompareArguments& options) {
     if (options.field_of_view) return *options.field_of_view;
     const std::optional<float> image = read_field_of_view(options.image);

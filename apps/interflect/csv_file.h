@@ -7,13 +7,12 @@
 
 namespace interflect::command {
 
-/// A table that is written line by line and gets its name when it is complete.
+/// A table written line by line; commit() renames it.
 class CsvFile {
   public:
-    /// @param header  The first line.
     CsvFile(PendingFile& file, const std::string& header);
     void add_line(const std::string& line);
-    /// @throws std::runtime_error where it could not be written.
+    /// @throws std::runtime_error if writing failed.
     void commit();
 
   private:
@@ -21,7 +20,7 @@ class CsvFile {
     std::ofstream stream_;
 };
 
-/// A field (RFC 4180), escaped() and quoted where it must be.
+/// Returns a field (RFC 4180), escaped(), and quoted if necessary.
 std::string csv_field(const std::string& text);
 
 }  // namespace interflect::command

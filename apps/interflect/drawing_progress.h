@@ -8,15 +8,15 @@
 
 namespace interflect::command {
 
-/// While a picture is drawn: a progress bar, once that takes more than a second. Until its end a signal ends the
-/// process at once, since half a picture is of no use.
+/// Progress bar of a picture, shown after one second. Meanwhile a signal ends the process, since half a picture is
+/// useless.
 class DrawingProgress {
   public:
     DrawingProgress();
     ~DrawingProgress();
     DrawingProgress(const DrawingProgress&) = delete;
     DrawingProgress& operator=(const DrawingProgress&) = delete;
-    /// To be handed to one drawing at a time; refers to this.
+    /// Serves one drawing at a time; refers to this.
     PictureMonitor monitor();
 
   private:

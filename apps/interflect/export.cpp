@@ -43,10 +43,9 @@ struct ExportArguments {
     int threads = 0;
 };
 
-/// Where the help lists them.
 constexpr const char* lightmap_group = "Lightmaps";
 
-/// As `render` chooses it for the scene's first view, else for an overview.
+/// Computes the exposure of `render` for the first view or an overview.
 float automatic_exposure_of(const SolvedScene& solved) {
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     const View view = solved.scene.views.empty() ? overview(solved.scene) : solved.scene.views.front();
@@ -84,14 +83,13 @@ void run_scene(const ExportArguments& arguments) {
     log_warnings(exported.warnings);
 }
 
-/// Whether the export traces rays and reports its progress.
 bool traces_rays(const std::filesystem::path& output, const ExportOptions& options) {
     const std::string extension = lower_case_extension(output);
     return (options.lightmap && options.lightmap->shading == LightmapShading::gather) || extension == ".json" ||
            extension == ".exr";
 }
 
-/// Before the first rays a signal ends the process. Later it stops the rays, and a usable result is kept.
+/// Before the first rays a signal ends the process. Later it stops the rays and keeps a usable result.
 std::vector<std::filesystem::path> write(const std::filesystem::path& path, const SolvedScene& solved,
                                          ExportOptions options) {
     LongWork work(fmt::format("exporting {}", path.string()));

@@ -18,7 +18,7 @@ ColourScale scale_for(const Image& values, const FalseColourOptions& options) {
     return options.logarithmic ? fit_scale(std::move(numbers), spacing) : fit_round_scale(std::move(numbers));
 }
 
-/// Round values within the scale, but for its ends: there is nothing beyond them to be told apart.
+/// Returns round values inside the scale, without its ends.
 std::vector<float> automatic_isolines(const ColourScale& scale) {
     constexpr int most = 10;
     std::vector<float> values = round_values(scale, most);

@@ -7,10 +7,10 @@
 
 namespace interflect::command {
 
-/// Text as HTML shows it, also within the quotes of an attribute; control characters are escaped().
+/// Escapes text for HTML and quoted attributes; control characters are escaped().
 std::string html_text(std::string_view text);
 
-/// A picture within a page: a data URL of a PNG file. @param image  As a display shows it.
+/// Returns a data URL of a PNG. @param image  Display values.
 std::string data_url(const Image& image);
 
 }  // namespace interflect::command

@@ -42,7 +42,7 @@ struct Summary {
     double area = 0;      // of faces, one side of each [m^2]
     RgbD emitted_power{0, 0, 0};
     std::map<std::uint32_t, Emitter> emitters;  // by material
-    std::map<std::string, int> lights;          // that are no surfaces, by kind
+    std::map<std::string, int> lights;          // luminaires, by kind
 };
 
 Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
@@ -70,7 +70,6 @@ Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
     return s;
 }
 
-/// Files that were included from outside the scene's own folder.
 std::vector<std::string> outside_files(const Scene& scene, const fs::path& scene_path) {
     const fs::path folder = fs::weakly_canonical(scene_path).parent_path();
     std::vector<std::string> outside;
@@ -115,7 +114,7 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
             {"warnings", warnings}};
 }
 
-/// "-0.15 to 6": the ends of an interval, without digits that are rounding error in a scene of that size.
+/// Formats "-0.15 to 6" without rounding errors of a scene of this size.
 std::string interval(double low, double high, double scene_size) {
     const int decimals = std::clamp(static_cast<int>(std::ceil(4 - std::log10(scene_size))), 0, 30);
     const auto rounded = [&](double x) {

@@ -25,14 +25,14 @@ namespace {
 constexpr std::int64_t rays_traced = 1 << 16;
 constexpr std::uint64_t leak_seed = 1;
 constexpr float least_leak = 1e-3f, most_leak = 0.05f;
-/// How far the rays beside one that escapes are from it, of the scene's diagonal.
+/// Distance from an escaping ray to its parallels, relative to the scene's diagonal.
 constexpr float distance_beside = 0.02f;
 constexpr std::size_t rays_beside = 8;
 
-/// Systematic samples of the leaves, in proportion to the power that leaves them.
+/// Leaves sampled systematically in proportion to their power.
 struct Sources {
     std::vector<std::uint32_t> leaves;
-    double power = 0;  ///< Total power of the leaves, the sum of the channels.
+    double power = 0;  ///< Sum of channels and leaves.
 
     double power_of_each() const { return power / static_cast<double>(leaves.size()); }
 };
@@ -60,7 +60,6 @@ Sources sources(const Scene& scene, const RayCaster& ray_caster, const Solution&
     return result;
 }
 
-/// A ray of light that a leaf reflects or emits.
 Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
              PointBlock& points) {
     const std::uint32_t patch = forest.patch(leaf);
@@ -71,7 +70,7 @@ Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& r
     return ray;
 }
 
-/// Whether most of the rays around a ray, parallel to it, hit something.
+/// Returns whether most parallels of a ray hit something.
 bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distance) {
     const V3f& d = ray.direction;
     const V3f across = (std::abs(d.x) < 0.5f ? V3f(1, 0, 0) : V3f(0, 1, 0)).cross(d).normalized(),
@@ -87,12 +86,11 @@ bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distanc
            static_cast<std::ptrdiff_t>(rays_beside);
 }
 
-/// Light, and the faces that cause it.
 struct LightByFace {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // by object and material
     double sum = 0, reflected = 0;
 
-    /// @param received  How often the light is received, the first time included.
+    /// @param received  How often the light is received, including the first time.
     void add(const Patch& face, double arriving, double received) {
         power[{face.object, face.material}] += arriving * received;
         sum += arriving * received;
@@ -105,13 +103,13 @@ struct LightByFace {
     }
 };
 
-/// Compares the hits of light rays with the hits of rays in the opposite direction.
+/// Compares the hits of light rays and of their reverses.
 class WaysBack {
   public:
     WaysBack(const Scene& scene, const RayCaster& ray_caster)
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
-    /// @param source  The patch that the ray leaves; none for a luminaire.
+    /// @param source  The patch that the ray leaves, or `none` for a luminaire.
     void add(const Ray& ray, std::uint32_t source, double power) {
         Hit hit = trace(ray);
         if (hit.patch == none) return;
@@ -148,7 +146,7 @@ class WaysBack {
     }
     V3f normal(std::uint32_t patch) const { return PatchGeometry(scene_, scene_.patches[patch]).normal(); }
 
-    /// The patch that hides the start of a light ray from a place on `patch`; none if it is visible.
+    /// Returns the patch that hides the start of a light ray from `place`, or `none`.
     std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, std::uint32_t patch) const {
         constexpr float rounding = 1e-4f, offsets = 8;
         const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
@@ -159,8 +157,8 @@ class WaysBack {
         return is_seen ? none : back.patch;
     }
 
-    /// Number of times that light is received from `place` on, by one random walk. The walk ends at a line of sight
-    /// that works in one direction only; so light inside a closed solid counts 0.
+    /// Samples how often light is received from `place` on, by a random walk. It ends at one-way lines of sight, so
+    /// light inside closed solids counts 0.
     double spread(V3f place, std::uint32_t patch) {
         constexpr float longest_walk = 1000;
         float sum = 0;
@@ -196,7 +194,7 @@ void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solutio
                  from.power_of_each());
 }
 
-/// As many rays of each part as its power asks for, rounded up.
+/// Traces rays of each part in proportion to its power, rounded up.
 void add_luminaires(const Scene& scene, WaysBack& ways) {
     const Emission emission(scene);
     const double total = channel_sum(emission.total_power());

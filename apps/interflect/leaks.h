@@ -6,35 +6,33 @@
 
 namespace interflect::command {
 
-/// How the rays of light leave a scene.
 struct Escapes {
-    std::int64_t rays = 0;     ///< That were traced.
-    std::int64_t escaped = 0;  ///< Of these.
-    std::int64_t through_gaps =
-        0;  ///< Of these: most rays beside them, 2% of the scene's diagonal away, hit something.
+    std::int64_t rays = 0;
+    std::int64_t escaped = 0;       ///< Rays that left the scene.
+    std::int64_t through_gaps = 0;  ///< Escaped rays with hits of most parallel rays, 2% of the scene's diagonal away.
 
     double share() const { return rays > 0 ? static_cast<double>(escaped) / static_cast<double>(rays) : 0; }
 };
 
-/// Traces 2^16 rays that start in proportion to the radiosity of a solution.
+/// Traces 2^16 rays in proportion to the power of a solution's leaves.
 Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
 
-/// Whether a scene that looks closed leaks: more than 0.1% of the rays escape, less than 5% (a room with a door or a
-/// window open loses more), and most of those that do pass through gaps.
+/// Returns whether an apparently closed scene leaks: 0.1% to 5% of the rays escape, most through gaps. A room with an
+/// open door or window loses more.
 bool leaks(const Escapes& escapes);
 
-/// Error of a solution that one-sided faces cause. The solver follows light; path tracing and gathering trace rays in
-/// the opposite direction, which see different sides. Extra light passes through backs to places from which the fronts
-/// hide the source. Missing light is stopped by fronts, although places behind them see the source through the backs.
-/// Shares are relative to the light that all surfaces receive.
+/// Error of a solution due to one-sided faces. Light and the rays of path tracing and gathering have opposite
+/// directions and see different sides. Extra light passes through backs to places from which the fronts hide the
+/// source. Missing light stops at fronts, although places behind them see the source through the backs. Shares are
+/// relative to all received light.
 struct OneWayLight {
-    double share = 0;                        ///< Extra minus missing light, both with their interreflection.
-    double reflected_share = 0;              ///< Interreflection only: the error of light gathered from the solution.
-    std::uint32_t object = 0, material = 0;  ///< The faces that cause most of the error.
+    double share = 0;                        ///< Extra minus missing light, both with interreflection.
+    double reflected_share = 0;              ///< Interreflection only: the error of gathered light.
+    std::uint32_t object = 0, material = 0;  ///< Faces that cause most of the error.
 };
 
-/// Traces 2^16 rays from surfaces and 2^16 from luminaires, each in both directions. Closed solids whose faces look
-/// outwards cause no error: no light leaves them along a line of sight.
+/// Traces 2^16 rays from surfaces and from luminaires, in both directions. Closed solids with faces outwards cause no
+/// error: no light leaves them along a line of sight.
 OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
 
 }  // namespace interflect::command

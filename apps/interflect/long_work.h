@@ -10,15 +10,15 @@
 
 namespace interflect::command {
 
-/// Reports work of unknown length on stderr every few seconds: its name, its time so far and the memory in use.
+/// Reports long work on stderr every few seconds: name, time and memory in use.
 class LongWork {
   public:
-    /// @param what  The work: "reading scene.obj".
+    /// @param what  "reading scene.obj", for example.
     explicit LongWork(std::string what);
     ~LongWork();
     LongWork(const LongWork&) = delete;
     LongWork& operator=(const LongWork&) = delete;
-    /// Restarts the pause before the next report, after a progress bar has moved.
+    /// Restarts the pause before the next report.
     void postpone();
 
   private:

@@ -16,7 +16,7 @@ namespace interflect::command {
 
 namespace {
 
-/// The path of the process's control group (version 2) within their file system; empty where there is none.
+/// Returns the path of the process's control group (version 2), or "".
 std::string control_group() {
     std::ifstream file("/proc/self/cgroup");
     for (std::string line; std::getline(file, line);)
@@ -24,13 +24,13 @@ std::string control_group() {
     return {};
 }
 
-/// The least limit of memory of the control group and those that it is in.
+/// Returns the smallest limit of the control group and its ancestors.
 std::size_t control_group_memory() {
     const std::filesystem::path root = "/sys/fs/cgroup";
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (std::filesystem::path group = root / control_group();; group = group.parent_path()) {
         std::size_t bytes = 0;
-        if (std::ifstream(group / "memory.max") >> bytes) least = std::min(least, bytes);  // else it says "max"
+        if (std::ifstream(group / "memory.max") >> bytes) least = std::min(least, bytes);  // otherwise "max"
         if (group == root || !group.has_relative_path()) return least;
     }
 }

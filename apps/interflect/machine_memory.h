@@ -5,26 +5,26 @@
 
 namespace interflect::command {
 
-/// Memory that the process may take [bytes]: what the machine has, less what its control groups allow.
+/// Returns the memory of the machine or its control groups, whichever is smaller [bytes].
 std::size_t machine_memory();
 
-/// Memory for which it may have addresses [bytes]: what it uses and half of what a limit (ulimit -v)
-/// leaves, since arrays are reserved at their largest, as are stacks; the largest number where there is no limit.
+/// Returns the memory in use and half of the free address space (ulimit -v) [bytes]: arrays and stacks reserve their
+/// largest size. Without a limit, returns the largest number.
 std::size_t addressable_memory();
 
-/// Resident memory of this process [bytes].
+/// Returns the resident memory of this process [bytes].
 std::size_t memory_in_use();
 
-/// Limit of the process [bytes]: nine tenths of machine_memory(), but at most addressable_memory().
+/// Returns nine tenths of machine_memory(), at most addressable_memory() [bytes].
 std::size_t usable_memory();
 
-/// Usable memory that is not in use yet [bytes].
+/// Returns the usable memory that is not in use [bytes].
 std::size_t free_memory();
 
 /// Refuses work before it allocates memory.
 /// @param bytes   Peak of the whole process.
-/// @param what    The work: "a picture of 640 x 360 pixels".
-/// @param remedy  Advice: "a smaller --size needs less"; may be empty.
+/// @param what    Name of the work: "a picture of 640 x 360 pixels".
+/// @param remedy  Advice, such as "a smaller --size needs less"; may be empty.
 /// @throws std::runtime_error with these three if `bytes` exceeds usable_memory().
 void require_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 

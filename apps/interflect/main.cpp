@@ -15,7 +15,6 @@
 
 namespace {
 
-/// What is said about wrong usage: the fault, and where help is.
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {
     const auto chosen = app->get_subcommands();
     std::string command = app->get_name(), message = error.what();
@@ -64,14 +63,14 @@ int run(int argc, char** argv) {
     return exit_code;
 }
 
-/// Large arrays go back to the system when they have served. By default glibc keeps them in its heap once one as large
-/// has been freed, and what that then takes depends on what lies between them.
+/// Returns freed large arrays to the system. By default glibc keeps them after the first such free, and fragmentation
+/// then determines the memory in use.
 void return_large_arrays() {
     constexpr int large = 4 << 20;  // [bytes]
     mallopt(M_MMAP_THRESHOLD, large);
 }
 
-/// Reports an allocation that failed although no prediction had refused the work.
+/// Reports a failed allocation that was not predicted.
 int run_out_of_memory() {
     spdlog::error(
         "there is not enough memory: the limits of this process (its machine, ulimit -v, control groups) leave {} MiB. "

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct OutputOptions {
     fs::path path;
-    bool force = false;  // replaces views that differ
+    bool force = false;  // replaces views and images that differ
 };
 
 std::string file_content(const fs::path& path) {
@@ -36,8 +36,8 @@ std::string file_content(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// The files beside a scene were not named by whoever asks for it: they may be someone's own.
-/// @param content  What is in the file.
+/// Refuses to replace files that the command line did not name: they may be the user's own.
+/// @param content  Kind of content.
 void require_replaceable(const PendingFile& file, bool force, const std::string& content) {
     if (force || !fs::exists(file.final_path()) ||
         file_content(file.final_path()) == file_content(file.temporary_path()))
@@ -46,7 +46,7 @@ void require_replaceable(const PendingFile& file, bool force, const std::string&
                      "has other " + content + " than the scene's: expected --force to replace them");
 }
 
-/// Writes the images of a scene beside it. @return Their files, to be committed.
+/// @return  Files of the images, to be committed.
 std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions& output,
                                         const std::vector<std::string>& names) {
     std::vector<PendingFile> files;
@@ -58,7 +58,7 @@ std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions&
     return files;
 }
 
-/// Makes a scene and writes it with its views and textures. Files are opened before the work begins.
+/// Writes a scene with its views and textures. Opens the files before the work.
 void write(const OutputOptions& output, const std::function<Scene()>& make) {
     const fs::path& path = output.path;
     if (path.extension() != ".mgf")
@@ -76,7 +76,6 @@ void write(const OutputOptions& output, const std::function<Scene()>& make) {
                  scene.views.size());
 }
 
-/// Adds one kind of scene, with the option that every kind has.
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help,
                    const std::function<Scene()>& make) {
     const auto output = std::make_shared<OutputOptions>();
@@ -88,7 +87,6 @@ CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string&
     return kind;
 }
 
-/// The same, for scenes that are drawn at random.
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& help, std::uint64_t& seed,
                    const std::function<Scene()>& make) {
     CLI::App& kind = add_kind(parent, name, help, make);
@@ -104,7 +102,7 @@ CLI::Option* add_number(CLI::App& kind, const std::string& name, std::uint32_t& 
 void add_maze(CLI::App& parent) {
     struct Options {
         MazeOptions maze;
-        std::int64_t patches = 0;  // 0: as many as the rooms have
+        std::int64_t patches = 0;  // 0: determined by the rooms
     };
     const auto options = std::make_shared<Options>();
     MazeOptions& maze = options->maze;

@@ -17,7 +17,7 @@ namespace interflect::command {
 
 namespace {
 
-/// @param is_meant  Whether the warning is about the point of this index.
+/// @param is_meant  Selects points by index.
 void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                     const std::function<bool(std::size_t)>& is_meant) {
     std::size_t count = 0, first = 0;
@@ -29,10 +29,10 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                  count, points.size(), what, x.x, x.y, x.z);
 }
 
-/// Points that are traced again for the error of the solution: all grids together, and at least of each grid.
+/// Points traced again for the solution's error: total, and minimum per grid.
 constexpr std::size_t most_compared = 256, least_of_grid = 8;
 
-/// Compares each grid with path tracing of points that are spread evenly over it, with the samples of the gathering.
+/// Traces paths at evenly spread points of each grid, with the gathering's number of samples.
 void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const std::vector<MeasuringPoint>& points,
                         const std::vector<MeasuredIrradiance>& measured, PathOptions options,
                         std::vector<MeasuredGrid>& grids) {

@@ -22,7 +22,7 @@ std::string escaped_lines(std::string_view text) {
     return result + escaped(text);
 }
 
-/// The message itself, in the pattern of a logger.
+/// Pattern flag for the escaped message.
 class EscapedMessage : public spdlog::custom_flag_formatter {
   public:
     static constexpr char flag = '*';

@@ -15,7 +15,7 @@ namespace {
     throw std::invalid_argument("expected " + expected + ", found '" + text + "'");
 }
 
-/// Reads a finite number from the front of `text` and removes it; false where there is none.
+/// Reads and removes a finite number; returns whether it succeeds.
 bool take_number(std::string_view& text, double& number) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -30,7 +30,7 @@ bool take(std::string_view& text, char c) {
     return true;
 }
 
-/// Reads three numbers that are finite in single precision too.
+/// Reads three numbers, finite also in single precision.
 bool take_vector(std::string_view& text, Imath::V3d& v) {
     return take_number(text, v.x) && take(text, ',') && take_number(text, v.y) && take(text, ',') &&
            take_number(text, v.z) && is_finite(V3f(v));

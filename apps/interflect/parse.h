@@ -17,13 +17,13 @@
 
 namespace interflect::command {
 
-// Each reads a whole text or throws std::invalid_argument, which says what was expected and what was found.
+// Each parses a whole text or throws std::invalid_argument with expected and found text.
 
 /// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand.
 std::int64_t parse_count(const std::string& text);
-/// The same, of what a machine can hold.
+/// The same, at most 4G.
 std::size_t parse_element_count(const std::string& text);
-/// The same, of the rays that one iteration may have.
+/// The same, at most most_rays_per_iteration.
 std::int64_t parse_iteration_size(const std::string& text);
 /// "1.5G" -> 1.5 * 2^30 [bytes]: with k, M, G or T for powers of 1024.
 std::size_t parse_memory(const std::string& text);
@@ -31,7 +31,7 @@ std::size_t parse_memory(const std::string& text);
 double parse_duration(const std::string& text);
 /// "cm" -> 0.01, "0.0254" -> 0.0254: a length [m], from 1e-9 to 1e9.
 double parse_unit(const std::string& text);
-/// "42" -> 42: a whole number of 64 bits, >= 0.
+/// "42" -> 42: an integer of 64 bits, >= 0.
 std::uint64_t parse_seed(const std::string& text);
 /// "2%" or "0.02" -> 0.02, above 0 and below 1.
 double parse_share(const std::string& text);
@@ -40,19 +40,19 @@ Imath::V3d parse_vector(const std::string& text);
 /// "x=3" -> {(3, 0, 0), (1, 0, 0)}, "-z=1" -> {(0, 0, 1), (0, 0, -1)}, "1,2,3,0,1,1" -> {(1, 2, 3), (0, 1, 1)}.
 struct Section {
     Imath::V3d point{0, 0, 0};      // [m]
-    Imath::V3d direction{1, 0, 0};  // of the view; has a length
+    Imath::V3d direction{1, 0, 0};  // of view; not zero
 };
 Section parse_section(const std::string& text);
-/// "0,0,1:2,0,1:5" -> from (0, 0, 1) to (2, 0, 1) with 5 points, from 2 to 10^6; 11 where the text tells none.
+/// "0,0,1:2,0,1:5" -> from (0, 0, 1) to (2, 0, 1) with 5 points, from 2 to 10^6; default 11.
 struct Line {
     Imath::V3d a{0, 0, 0}, b{0, 0, 0};  // [m]
     int count = 11;
 };
 Line parse_line(const std::string& text);
-/// "lamp.ies@1,2,3" -> that file at that place; then, with commas between, the point that it is aimed at, and `turn`,
-/// `lumens` and `maintenance` with '=' and a number, each as in PlacedLuminaire.
+/// "lamp.ies@1,2,3" -> file and position. An aim point, `turn`, `lumens` and `maintenance` (PlacedLuminaire) may
+/// follow, such as ",4,5,0,turn=90".
 PlacedLuminaire parse_luminaire(const std::string& text);
-/// "desk=lamps.desk*" -> the group "desk" of the sources that match "lamps.desk*".
+/// "desk=lamps.desk*" -> group "desk" of the sources that match "lamps.desk*".
 LightGroup parse_light_group(const std::string& text);
 /// "desk=0.3" -> {"desk", 0.3}: a factor from 0 to 10^12.
 struct Dimmed {
@@ -60,7 +60,7 @@ struct Dimmed {
     float factor = 1;
 };
 Dimmed parse_dimmed(const std::string& text);
-/// "overcast", "clear:9000" -> that CIE sky, with that horizontal illuminance [lx]; "perez:600,120" -> the sky of these
+/// "overcast", "clear:9000" -> CIE sky, with its horizontal illuminance [lx]; "perez:600,120" -> Perez sky with these
 /// irradiances [W/m^2].
 struct Sky {
     std::optional<Daylight::CieSky> cie{};
@@ -77,8 +77,8 @@ struct Size {
     std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 Size parse_size(const std::string& text);
-/// "2" -> {2, absolute}; "auto", "auto+1", "auto-0.5" -> {0, 1, -0.5 relative to the automatic one} [stops], from -100
-/// to 100.
+/// "2" -> {2, absolute}; "auto", "auto+1", "auto-0.5" -> 0, 1, -0.5 relative to the automatic exposure [stops], from
+/// -100 to 100.
 struct Exposure {
     float stops = 0;
     bool relative = true;
@@ -89,16 +89,16 @@ struct Range {
     float low = 0, high = 1;
 };
 Range parse_range(const std::string& text);
-/// "auto" -> none, "100,300,500" -> these: numbers above 0 to 10^12.
+/// "auto" -> empty, "100,300,500" -> these: numbers above 0 to 10^12.
 std::vector<float> parse_isolines(const std::string& text);
 /// "0.05" -> 0.05, above 0; "auto" -> automatic_mesh_size; "none" -> whole_patches.
 float parse_mesh_size(const std::string& text);
 inline constexpr float automatic_mesh_size = 0, whole_patches = -1;
 
-/// A combination of options without meaning: exit code 2. The message names the options.
+/// Invalid combination of options (exit code 2). The message names them.
 using UsageError = CLI::ValidationError;
 
-/// Calls `check`; a fault that it finds is a wrong value of the option `name`.
+/// Calls `check` and converts its InputError to a UsageError of option `name`.
 template <class Check>
 auto check_option(const std::string& name, const Check& check) {
     try {
@@ -108,10 +108,10 @@ auto check_option(const std::string& name, const Check& check) {
     }
 }
 
-/// Accepts a finite number from `low` to `high`. (CLI::Range lets NaN pass, and prints bounds with 300 digits.)
+/// Accepts finite numbers. CLI::Range also accepts NaN, and prints bounds with 300 digits.
 CLI::Validator number_between(double low, double high);
 
-/// Adds an option whose text goes through one of the functions above; a fault is reported with the option's name.
+/// Adds an option with a function above as parser; errors name the option.
 template <class Value, class Parsed>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Parsed (*parse)(const std::string&),
                         const std::string& help) {
@@ -125,7 +125,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, Pa
     return app.add_option_function<std::string>(name, set, help);
 }
 
-/// Adds an option that may be repeated, each text of which goes through `parse`.
+/// Adds an option that may be repeated.
 template <class Value>
 CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>& values,
                       Value (*parse)(const std::string&), const std::string& help) {
@@ -139,8 +139,7 @@ CLI::Option* add_each(CLI::App& app, const std::string& name, std::vector<Value>
     return app.add_option_function<std::vector<std::string>>(name, add, help)->allow_extra_args(false);
 }
 
-/// Adds an option that takes one of a few words and sets the Target, a Value or std::optional<Value>; the help lists
-/// them.
+/// Adds an option with a few words, listed in the help. Target is Value or std::optional<Value>.
 template <class Value, class Target>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& value,
                         const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {

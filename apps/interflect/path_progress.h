@@ -6,8 +6,7 @@
 
 namespace interflect::command {
 
-/// Calls `work`, whose rays a progress bar shows and the stop_flag() ends early.
-/// @return How long it took [s].
+/// Calls `work` with a monitor that shows a progress bar and obeys stop_flag(). @return  Duration [s].
 double with_path_progress(const std::function<void(const PathMonitor&)>& work);
 
 }  // namespace interflect::command

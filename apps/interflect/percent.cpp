@@ -14,7 +14,7 @@ std::string percent(double share) {
     const double hundredths = 100 * share;
     if (hundredths > largest) return fmt::format("over {}%", largest);
     if (!(hundredths > 0)) return "0%";
-    // That of 9.96 is 10, which needs no decimal.
+    // 9.96 rounds to 10, which needs no decimal.
     const double leading_digit = std::floor(std::log10(hundredths * 1.005));
     return fmt::format("{:.{}f}%", hundredths, std::clamp(1 - static_cast<int>(leading_digit), 0, most_decimals));
 }

@@ -4,8 +4,7 @@
 
 namespace interflect::command {
 
-/// 0.0123 -> "1.2%", 3.5 -> "350%": two digits that count, never with an exponent; "over 9999%" from there on, "-" for
-/// what is not known.
+/// 0.0123 -> "1.2%", 3.5 -> "350%": two significant digits without exponent; above, "over 9999%"; "-" if not finite.
 std::string percent(double share);
 
 }  // namespace interflect::command

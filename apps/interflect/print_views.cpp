@@ -6,7 +6,7 @@ namespace interflect::command {
 
 namespace {
 
-/// The fewest digits that tell a coordinate from its neighbours, where it was a float; else ten.
+/// Uses the fewest digits that identify a float, or ten digits for other numbers.
 std::string text_of_coordinate(double x) {
     const auto single = static_cast<float>(x);
     return static_cast<double>(single) == x ? fmt::format("{}", single) : fmt::format("{:.10g}", x);

@@ -9,10 +9,9 @@
 
 namespace interflect::command {
 
-/// Prints a line a view.
 void print_views(const std::vector<View>& views);
 
-/// Three numbers, short.
+/// Formats four digits per number.
 template <class Vector>
 std::string text_of(const Vector& v) {
     return fmt::format("{:.4g} {:.4g} {:.4g}", v.x, v.y, v.z);

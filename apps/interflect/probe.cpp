@@ -34,10 +34,9 @@ namespace {
 
 enum class ProbedQuantity { surface, horizontal, vertical, cylindrical, semicylindrical, ugr };
 
-/// Where the light comes from.
 enum class ProbedLight {
     gather,  ///< Final gathering from a solution.
-    path,    ///< Path tracing, with no solution.
+    path,    ///< Path tracing without a solution.
 };
 
 struct ProbeArguments {
@@ -94,13 +93,12 @@ void check_direction(const ProbeArguments& options) {
         throw UsageError("--direction: expected a direction that is not vertical (z)");
 }
 
-/// Lines of sight: along the four axes of a plan unless they were told.
+/// Returns the given directions, by default both ways along x and y.
 std::vector<V3f> lines_of_sight(const ProbeArguments& options) {
     if (options.directions.empty()) return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
     return {options.directions.begin(), options.directions.end()};
 }
 
-/// What measures at a point of a grid.
 MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& grid, const ProbeArguments& options) {
     V3f faces(0);
     if (!options.directions.empty()) faces = V3f(Imath::V3d(options.directions[0].x, options.directions[0].y, 0));

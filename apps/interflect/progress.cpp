@@ -14,8 +14,8 @@ namespace interflect::command {
 namespace {
 
 constexpr int bar_width = 24;
-constexpr double seconds_between_lines = 2;  // where stderr is no terminal
-constexpr double least_fraction = 1e-5;      // of the work; below, the time left is not known
+constexpr double seconds_between_lines = 2;  // if stderr is not a terminal
+constexpr double least_fraction = 1e-5;      // of the work; below, the remaining time is unknown
 
 }  // namespace
 

@@ -8,15 +8,14 @@
 
 namespace interflect::command {
 
-/// How far long work is.
 struct WorkDone {
     double fraction = 0;  ///< In [0, 1].
     double seconds = 0;
     std::int64_t rays = 0;
-    std::optional<double> error;  ///< Estimated relative error, if it has one; infinite where not known yet.
+    std::optional<double> error;  ///< Estimated relative error, if any; infinite while unknown.
 };
 
-/// Shows it on stderr: one line that is written over on a terminal, else a line now and then, and the last one.
+/// Overwrites a line on a terminal; otherwise prints occasional lines and the last.
 class ProgressBar {
   public:
     ProgressBar();
@@ -31,12 +30,12 @@ class ProgressBar {
     std::string not_shown_;     // a later line
 };
 
-/// Whether stderr is a terminal, where lines can be overwritten.
+/// Returns whether lines of stderr can be overwritten.
 bool stderr_is_terminal();
-/// Prints to stderr and flushes it; ignores faults.
+/// Flushes stderr; ignores errors.
 void print_progress(const std::string& text);
 
-/// Share of the work that is done, by whichever limit comes first, in [0, 1].
+/// Returns the completed share, in [0, 1], by the limit that comes first.
 double fraction_done(const SolveOptions& options, const IterationReport& report);
 
 /// "3.5 s", "2 min 10 s", "1 h 5 min".

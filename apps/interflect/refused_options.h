@@ -5,14 +5,14 @@
 
 namespace interflect::command {
 
-// Each throws InputError for an option of `render` that was given and has no effect.
+// Each refuses options that were given but have no effect.
 
-/// What path tracing does not take: options of solving, and of what only a solution has.
+/// Refuses options of solving and of solutions, for path tracing. @throws UsageError
 void refuse_solver_options(const CLI::App& command);
-/// What only path tracing takes.
+/// Refuses options of path tracing. @throws UsageError
 void refuse_path_options(const CLI::App& command);
-/// Options of reading, dividing and solving a scene, where a solution is given. @param traces_paths  --shading path,
-/// which has a seed and a target of its own.
+/// Refuses options of reading, dividing and solving a scene, for a solution. @throws InputError
+/// @param traces_paths  Accepts --seed and --until, which path tracing uses.
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths);
 
 }  // namespace interflect::command

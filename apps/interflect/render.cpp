@@ -43,12 +43,11 @@ namespace interflect::command {
 
 namespace {
 
-/// Where the light in the picture comes from.
 enum class PictureShading {
     gather,  ///< Final gathering from a solution.
-    smooth,  ///< A solution as it is, see Shading.
+    smooth,  ///< The solution itself, see Shading.
     flat,
-    path,  ///< Path tracing, with no solution.
+    path,  ///< Path tracing without a solution.
 };
 
 bool traces_paths(PictureShading shading) {
@@ -73,15 +72,15 @@ struct RenderArguments {
     float display_luminance = usual_display_luminance;
     Shown shown = Shown::light;
     FalseColourOptions false_colour;
-    int legend_rows = 0;  // of the picture, at its foot
+    int legend_rows = 0;  // at the foot of the picture
 
     bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
     bool shows_irradiance() const { return false_colour.measured == Measured::illuminance; }
-    /// Of the view, above the legend [pixels].
+    /// Height of the view, above the legend [pixels].
     int rows() const { return size.height - legend_rows; }
 };
 
-/// The one view to draw: as asked for, else the scene's first, else an overview.
+/// Returns the requested view, the scene's first, or an overview.
 View view_to_draw(const Scene& scene, const RenderArguments& options) {
     if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
     const std::vector<View> views = options.view.views(scene);
@@ -93,14 +92,14 @@ View view_to_draw(const Scene& scene, const RenderArguments& options) {
     return overview(scene);
 }
 
-/// What goes to the file, and what is said of it.
+/// A picture with its metadata.
 struct Picture {
     Image image;
     std::string quantity = "radiance [cd/m^2]";
-    std::optional<float> exposure;  // none where it has no meaning
+    std::optional<float> exposure;  // empty if it has no meaning
     std::int64_t non_finite_pixels = 0;
-    bool is_dark = false;  // no light is seen
-    PathTracing traced{};  // what its layers are taken from
+    bool is_dark = false;  // no light is visible
+    PathTracing traced{};  // source of the layers
 };
 
 bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
@@ -109,13 +108,13 @@ bool is_black(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
 }
 
-/// [stops]. Operators that need absolute luminance choose the brightness themselves: automatic is 0 there.
+/// Returns the exposure [stops]. Operators for absolute luminance choose the brightness, so automatic is 0.
 float exposure_of(const Image& light, const RenderArguments& options) {
     const bool automatic = options.exposure.relative && !is_absolute(options.tonemap);
     return options.exposure.stops + (automatic ? automatic_exposure(light) : 0);
 }
 
-/// In false colours for people, as numbers in formats to measure with.
+/// Uses false colours for display formats only.
 Picture picture_of_numbers(const Image& values, const RenderArguments& options) {
     Picture picture;
     picture.quantity = options.false_colour.label();
@@ -123,7 +122,7 @@ Picture picture_of_numbers(const Image& values, const RenderArguments& options) 
     return picture;
 }
 
-/// Tone-mapped in formats for people.
+/// Uses tone mapping for display formats only.
 Picture picture_of_light(const Image& light, const RenderArguments& options) {
     Picture picture;
     picture.exposure = exposure_of(light, options);
@@ -132,7 +131,7 @@ Picture picture_of_light(const Image& light, const RenderArguments& options) {
     return picture;
 }
 
-/// @param light  Radiance, or irradiance where that is to be shown.
+/// @param light  Radiance, or irradiance if that is shown.
 Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
     Picture picture = options.false_colour.measured ? picture_of_numbers(luminances(light), options)
                                                     : picture_of_light(light, options);
@@ -145,7 +144,7 @@ PathOptions path_options(const RenderArguments& options) {
     PathOptions result;
     result.width = options.size.width;
     result.height = options.rows();
-    constexpr int gathered_samples = 16;  // which a filter makes look even
+    constexpr int gathered_samples = 16;  // enough for a filtered picture
     result.samples =
         options.samples.value_or(options.shading == PictureShading::gather ? gathered_samples : result.samples);
     result.until = options.solver.until();
@@ -154,7 +153,7 @@ PathOptions path_options(const RenderArguments& options) {
     return result;
 }
 
-/// @param solution  Null: by path tracing.
+/// @param solution  Null for path tracing.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
     PathTracing traced = run_path_tracer(scene, solution, ray_caster, view, path_options(options), options.path);
@@ -175,12 +174,11 @@ Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const
     return picture;
 }
 
-/// What false colours stand for.
 std::string label(const RenderArguments& options) {
     return options.false_colour.measured ? options.false_colour.label() : label_of(options.shown);
 }
 
-/// Rows of the picture that its legend takes; 0 where there is no room for one.
+/// Returns the height of the legend [pixels], or 0 if it does not fit.
 int legend_rows(const RenderArguments& options) {
     const auto [width, height] = options.size;
     if (!is_for_people(options) || !options.is_in_false_colours()) return 0;
@@ -189,7 +187,7 @@ int legend_rows(const RenderArguments& options) {
     return 0;
 }
 
-/// In false colours for people, as numbers in formats to measure with.
+/// Uses false colours for display formats only.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
     const CameraSampling sampling{options.size.width, options.rows(), options.render.samples, options.render.seed};
@@ -217,9 +215,9 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming, command, traces_paths(options.shading));
     const View view = view_to_draw(solved.scene, options);
-    Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses what defines no picture
+    Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses views without a picture
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    // A plan shows all of the scene alike: nothing is gained by importance.
+    // A plan shows the whole scene equally: importance has no benefit.
     const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
     const SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
@@ -234,7 +232,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     options.render.irradiance = options.shows_irradiance();
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
-    // A signal that has ended the solver would end gathering before its first ray.
+    // A signal that ended the solver would end gathering before its first ray.
     const bool needs_paths = options.path.layers || !options.path.error_image.empty();
     const bool gathers = traces_paths(options.shading) && (needs_paths || !is_stop_requested());
     if (traces_paths(options.shading) && !gathers)
@@ -247,7 +245,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     if (!solved_before) stats.write(solved.scene, solved.solution);
 }
 
-/// Draws the light that path tracing finds; of a solution file the scene alone counts.
+/// Draws the light by path tracing; uses only the scene of a solution file.
 void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
     Scene scene = read_scene_or_solution(options.scene, options.dimming, command, true).scene;
     if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
@@ -262,13 +260,13 @@ void run_paths(const RenderArguments& options, const CLI::App& command, PendingF
 
 /// @throws std::runtime_error if a picture of elements does not fit into memory.
 void require_memory_for_elements(Size size) {
-    constexpr std::size_t bytes_per_pixel = 64;  // 56 were measured: light, its picture and that in false colours
+    constexpr std::size_t bytes_per_pixel = 64;  // measured: 56 for light, picture and false colours
     require_free_memory(size.pixels() * bytes_per_pixel,
                         fmt::format("a picture of {} x {} pixels", size.width, size.height),
                         "a smaller --size needs less");
 }
 
-/// Curves and exposure are for light on a display. @throws UsageError for a display that no operator asks about.
+/// Warns about options without effect. @throws UsageError for a display luminance that no operator uses.
 void check_tone_options(const RenderArguments& options, const CLI::App& command) {
     if (command.get_option("--display-luminance")->count() > 0 && !is_absolute(options.tonemap))
         throw UsageError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");
@@ -293,12 +291,12 @@ void check_false_colours(const RenderArguments& options) {
                      options.output.string());
 }
 
-/// Everything that can be refused is refused before the first ray.
+/// Refuses all invalid options before the first ray.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     check_option("--output", [&] { return require_image_format(options.output); });
     if (options.shown != Shown::light && options.shading == PictureShading::gather)
-        options.shading = PictureShading::smooth;  // of elements
+        options.shading = PictureShading::smooth;  // shows elements
     if (options.shading == PictureShading::path)
         refuse_solver_options(command);
     else if (!traces_paths(options.shading))

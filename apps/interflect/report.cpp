@@ -47,9 +47,9 @@ struct ReportArguments {
     int threads = 0;
 };
 
-constexpr int picture_samples = 16;  // which a filter makes look even
+constexpr int picture_samples = 16;  // enough for a filtered picture
 
-/// Rooms: the floors of objects; those smaller than a hundredth of all are doorsteps and the like.
+/// Returns the floors of objects, except those below 1% of the area, such as doorsteps.
 std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
     constexpr double least_share = 0.01;
     std::vector<PlanarArea> rooms = divide_by_object(scene, floor);
@@ -57,7 +57,6 @@ std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
     return rooms;
 }
 
-/// A grid over the floor of each room.
 std::vector<MeasuringGrid> room_grids(const Scene& scene, const std::vector<PlanarArea>& rooms,
                                       const ReportArguments& options, double height) {
     std::vector<MeasuringGrid> grids;
@@ -68,12 +67,12 @@ std::vector<MeasuringGrid> room_grids(const Scene& scene, const std::vector<Plan
     return grids;
 }
 
-/// The working planes of the rooms, then what else is to be measured.
+/// Measures working planes of rooms, then other places.
 std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCaster& ray_caster,
                                         const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
     std::vector<MeasuringGrid> grids = room_grids(solved.scene, rooms, options, options.working_plane);
     MeasuringPlaces places = options.places;
-    places.grid.boundary.clear();  // rooms have walls, desks have none
+    places.grid.boundary.clear();  // the strip is for rooms, which have walls
     for (MeasuringGrid& grid : places.grids(solved.scene)) grids.push_back(std::move(grid));
     std::vector<MeasuringPoint> points;
     for (const MeasuringGrid& grid : grids)
@@ -108,7 +107,7 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
     return {view.name, tone_map(light, automatic_exposure(light)), colours.draw(luminances(draw()), true)};
 }
 
-/// Those asked for, else the scene's, else an overview.
+/// Returns the requested views, the scene's, or an overview.
 std::vector<View> views_to_draw(const Scene& scene, const ReportArguments& options) {
     constexpr std::size_t most = 4;
     std::vector<View> views = options.view.views(scene);
@@ -153,7 +152,7 @@ void write(PendingFile& output, const std::string& page) {
     output.commit();
 }
 
-/// Half a report is none: a signal ends it, and nothing is written.
+/// A signal ends it without output, since half a report is useless.
 void run(const ReportArguments& options) {
     const ThreadLimit threads(options.threads);
     const std::string extension = lower_case_extension(options.output);

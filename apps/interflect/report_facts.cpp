@@ -65,7 +65,7 @@ bool is_far_away(const Luminaire& luminaire) {
            !std::holds_alternative<MeasuredLight>(luminaire.kind);
 }
 
-/// Luminaires of one photometric file are one entry, as are unmeasured lights of one kind.
+/// Adds one entry per photometric file or kind of unmeasured light.
 void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
     const Emission emission(scene);
     std::vector<double> flux(scene.luminaires.size());

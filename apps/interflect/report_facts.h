@@ -12,28 +12,26 @@
 
 namespace interflect::command {
 
-/// All surfaces of a material. Photometric: of colours the luminance.
+/// All surfaces of a material. Colours are luminances.
 struct SurfaceFacts {
     std::string material;
-    double area = 0;  ///< Of the fronts of two-sided faces [m^2].
+    double area = 0;  ///< One side of two-sided faces [m^2].
     double reflectance = 0, transmittance = 0, specular_reflectance = 0;
 };
 
-/// Light sources of one kind.
 struct LightFacts {
-    std::string name;                 ///< Of the material, the photometric file or the light.
+    std::string name;                 ///< Material, photometric file or kind of light.
     std::string kind;                 ///< "surface", or kind_name().
-    std::size_t count = 0;            ///< Luminaires; of surfaces the objects that emit.
-    bool far_away = false;            ///< A sky or sun, whose flux is what comes towards the scene.
-    double flux = 0;                  ///< Of all [lm].
-    std::optional<double> luminance;  ///< [cd/m^2], where it is the same in all directions.
+    std::size_t count = 0;            ///< Luminaires, or emitting objects.
+    bool far_away = false;            ///< Sky or sun; `flux` is that towards the scene.
+    double flux = 0;                  ///< Total [lm].
+    std::optional<double> luminance;  ///< [cd/m^2], if equal in all directions.
 };
 
-/// What there is to tell of a scene before any light is measured.
 struct SceneFacts {
-    Imath::Box3d bounds;                 ///< In the world [m].
-    std::vector<SurfaceFacts> surfaces;  ///< By area.
-    std::vector<LightFacts> lights;      ///< By flux.
+    Imath::Box3d bounds;                 ///< World coordinates [m].
+    std::vector<SurfaceFacts> surfaces;  ///< Sorted by area.
+    std::vector<LightFacts> lights;      ///< Sorted by flux.
     PowerBalance balance;
 };
 

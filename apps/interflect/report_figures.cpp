@@ -13,13 +13,12 @@ namespace interflect::command {
 
 namespace {
 
-// In units of the figures: figure_side are their longer side.
+// Units of a figure: its longer side is figure_side.
 constexpr double figure_side = 1000, dimension_room = 46, legend_room = 92, font_size = 15;
 
-/// Maps the world to a figure.
 struct Frame {
     const ReportPlan& plan;
-    double unit;  // a metre
+    double unit;  // per metre
     double width, height;
 
     explicit Frame(const ReportPlan& p)
@@ -40,7 +39,7 @@ std::string text(double x, double y, const char* anchor, const std::string& word
                        anchor, size, words);
 }
 
-/// 1, 2 or 5 times a power of ten, at most a quarter of the plan's width [m].
+/// Returns 1, 2 or 5 times a power of ten, at most a quarter of the plan's width [m].
 double bar_length(const ReportPlan& plan) {
     const double longest = (plan.high.x - plan.low.x) / 4, power = std::pow(10, std::floor(std::log10(longest)));
     for (const double factor : {5.0, 2.0})
@@ -48,7 +47,7 @@ double bar_length(const ReportPlan& plan) {
     return power;
 }
 
-/// The picture below a line of dimensions: width, height and a scale bar.
+/// Draws the picture above its scale bar and dimensions.
 std::string begin(const Frame& frame, const Image& picture, double room_below) {
     const double below = frame.height + dimension_room;
     std::string svg = fmt::format(
@@ -93,7 +92,7 @@ std::string illuminance_figure(const ReportPlan& plan) {
 }
 
 std::string values_figure(const ReportPlan& plan, std::span<const MeasuredGrid> areas) {
-    constexpr double widest_digits = 2.6;  // of four digits and a gap, in heights of the font
+    constexpr double widest_digits = 2.6;  // width of four digits and a gap, in font heights
     constexpr double smallest = 7, largest = 19;
     const Frame frame(plan);
     Image pale = plan.outlines;

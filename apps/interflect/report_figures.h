@@ -10,10 +10,10 @@ namespace interflect::command {
 
 // Figures of a report, as SVG within HTML.
 
-/// The plan in false colours with its legend, dimensions and a scale bar.
+/// Draws the plan with legend, dimensions and a scale bar.
 std::string illuminance_figure(const ReportPlan& plan);
 
-/// The plan's outlines with the numbers at measuring points; dots where there are too many to be read.
+/// Draws outlines with the values at measuring points, or with dots if values would be illegible.
 std::string values_figure(const ReportPlan& plan, std::span<const MeasuredGrid> areas);
 
 }  // namespace interflect::command

@@ -45,7 +45,7 @@ footer { border-top: 0.5pt solid var(--line); margin-top: 8mm; padding-top: 2mm;
 
 std::string file_name(const std::string& path) { return html_text(std::filesystem::path(path).filename().string()); }
 
-/// A row of a table: the first cells are names, the others numbers.
+/// The first cells are names, the others numbers.
 std::string row(const std::vector<std::string>& cells, std::size_t names = 1, const char* tag = "td") {
     std::string text = "<tr>";
     for (std::size_t i = 0; i < cells.size(); ++i)
@@ -59,7 +59,7 @@ std::string table(const char* id, const std::vector<std::string>& heads, const s
                        row(heads, names, "th"), rows);
 }
 
-/// Lux and lumens: three digits or whole numbers.
+/// Formats lux or lumens: three digits or whole numbers.
 std::string number(double value) {
     if (!std::isfinite(value)) return "–";
     return std::abs(value) >= 100 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);

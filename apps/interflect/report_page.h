@@ -13,27 +13,25 @@
 
 namespace interflect::command {
 
-/// A view of the scene: as it looks, and its illuminance in false colours with their legend.
 struct ReportPicture {
     std::string view;
-    Image picture, illuminance;  ///< As a display shows them.
+    Image picture, illuminance;  ///< Display values.
 };
 
-/// All that a report tells.
 struct ReportContent {
     std::string title, date;
     double working_plane = 0;  ///< z in the world [m].
     std::vector<PlanarArea> rooms;
     SceneFacts facts;
     ReportPlan plan;
-    std::vector<MeasuredGrid> areas;  ///< The working planes of the rooms come first.
-    std::optional<double> exterior;   ///< Illuminance outside, where there are daylight factors [lx].
-    std::vector<RatedGrid> glare;     ///< Empty unless asked for.
+    std::vector<MeasuredGrid> areas;  ///< Begins with the working planes of the rooms.
+    std::optional<double> exterior;   ///< Exterior illuminance for daylight factors [lx].
+    std::vector<RatedGrid> glare;     ///< Empty unless requested.
     std::vector<ReportPicture> pictures;
-    int samples = 0, picture_samples = 0;  ///< Gathered directions a measuring point, and a pixel.
+    int samples = 0, picture_samples = 0;  ///< Gathered directions per measuring point, and per pixel.
 };
 
-/// One page of HTML that needs no other file and prints on A4. Names are escaped.
+/// Returns a self-contained page for A4 with escaped names.
 std::string report_page(const ReportContent& content, const SolvedScene& solved);
 
 }  // namespace interflect::command

@@ -19,11 +19,11 @@ using V2d = Imath::V2d;
 
 constexpr int plan_pixels = 1400;      // of the longer side of the pictures
 constexpr double plan_margin = 0.25;   // around the floor [m]
-constexpr double plan_points = 6000;   // on the floor, about: measuring points that isolines are drawn from
-constexpr double cut_above_plane = 1;  // where the plan cuts walls, above the working plane [m]
+constexpr double plan_points = 6000;   // approximate number of measuring points on the floor, for isolines
+constexpr double cut_above_plane = 1;  // height of the cut above the working plane [m]
 const Rgb blank(1, 1, 1);
 
-/// Pixels of a plan in the world.
+/// Pixels of a plan in world coordinates.
 struct Raster {
     V2d low{0, 0}, high{0, 0};  // [m]
     int width = 0, height = 0;
@@ -41,7 +41,6 @@ Raster raster_around(const Imath::Box2d& box) {
     return raster;
 }
 
-/// The corners of a floor's faces, seen from above.
 std::vector<std::vector<V2d>> faces_of(const Scene& scene, const PlanarArea& floor) {
     std::vector<std::vector<V2d>> faces;
     for (const std::uint32_t i : floor.patches) {
@@ -61,7 +60,7 @@ bool is_inside(const V2d& p, const std::vector<V2d>& face) {
     return true;
 }
 
-/// Whether each pixel's middle lies over the floor, [row * width + column].
+/// Returns whether pixel centres lie over the floor, [row * width + column].
 std::vector<bool> floor_mask(const Raster& raster, const std::vector<std::vector<V2d>>& faces) {
     std::vector<bool> mask(static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height));
     for (const std::vector<V2d>& face : faces) {
@@ -82,8 +81,7 @@ std::vector<bool> floor_mask(const Raster& raster, const std::vector<std::vector
     return mask;
 }
 
-/// Illuminance in cells of a floor; cells beside it have the mean of their neighbours on it, so that it can be
-/// interpolated up to the walls.
+/// Illuminance in cells of a floor. extend() fills neighbouring cells with means, for interpolation up to the walls.
 class CellValues {
   public:
     explicit CellValues(const MeasuringGrid& grid)
@@ -108,7 +106,7 @@ class CellValues {
             if (count > 0) values_[cell] = sum / count, is_known_[cell] = true;
         }
     }
-    /// Bilinear between the middles of cells. @param p  In the world.
+    /// Interpolates bilinearly between the centres of cells. @param p  World position.
     float at(const Imath::V3d& p) const {
         const Imath::V3d d = p - grid_.corner;
         const double x = std::clamp(grid_.along_row.dot(d) / grid_.column_spacing - 0.5, 0.0, grid_.columns - 1.0),
@@ -127,7 +125,7 @@ class CellValues {
     std::vector<bool> is_known_;
 };
 
-/// Illuminance at every pixel over the floor [lx]; elsewhere 0.
+/// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere.
 Image illuminance_over(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                        const PlanarArea& floor, double height, const PathOptions& options, const Raster& raster,
                        const std::vector<bool>& mask) {
@@ -152,8 +150,7 @@ Image illuminance_over(const Scene& scene, const Solution& solution, const RayCa
     return values;
 }
 
-/// What is seen from above, of what lies below a height: outlines are where neighbouring pixels see surfaces that do
-/// not go on into each other.
+/// Draws lines between pixels of different height or normal, seen from above, below a height.
 Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Raster& raster, double height) {
     struct Seen {
         float z = -1e30f;
@@ -174,7 +171,7 @@ Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Rast
                 seen[static_cast<std::size_t>(row) * width + c] = {
                     rays[c].origin.z - hits[c].distance, PatchGeometry(scene, scene.patches[hits[c].patch]).normal()};
     }
-    constexpr float step = 0.02f;  // in height that shows [m]
+    constexpr float step = 0.02f;  // visible difference in height [m]
     constexpr float crease = 0.9f;
     const auto differ = [](const Seen& a, const Seen& b) {
         return std::abs(a.z - b.z) > step * (1 + 4 * (1 - std::min(a.normal.z, b.normal.z))) ||

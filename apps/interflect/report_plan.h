@@ -11,17 +11,16 @@
 
 namespace interflect::command {
 
-/// A plan of the floor and what stands on it, and of the illuminance on a plane over it. x goes right, y up.
+/// Plan of a floor, and of the illuminance on a plane above it. x points right, y up.
 struct ReportPlan {
-    Imath::V2d low{0, 0}, high{0, 0};  ///< Corners of the pictures in the world [m].
-    Image outlines;                    ///< Outlines of things, black on white.
-    Image illuminance;                 ///< The same over false colours with isolines.
-    ColourScale scale;                 ///< Of these [lx].
+    Imath::V2d low{0, 0}, high{0, 0};  ///< World corners of the pictures [m].
+    Image outlines;                    ///< Outlines of objects, black on white.
+    Image illuminance;                 ///< The outlines over false colours with isolines.
+    ColourScale scale;                 ///< Scale of the false colours [lx].
 };
 
-/// Draws it, with a progress bar; Ctrl-C ends it early.
-/// @param floor    What the plan shows. @param height  Of the plane, z in the world [m].
-/// @param options  Of each measuring point; width and height mean nothing.
+/// Draws a plan with a progress bar; stop_flag() ends it early. @param height  World z of the plane [m].
+/// @param options  Options per measuring point; width and height are ignored.
 ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const PlanarArea& floor,
                      double height, const PathOptions& options);
 

@@ -31,7 +31,7 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
             percent(escapes.share()));
 }
 
-/// One-sided faces can stop light and let paths of the opposite direction through, or the reverse.
+/// Warns if one-sided faces stop light but not reversed paths, or the reverse.
 void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
     constexpr double least_share = 0.02, least_reflected = 0.01;
     const OneWayLight found = find_one_way_light(scene, ray_caster, solution);
@@ -47,7 +47,7 @@ void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, cons
         has_name ? scene.objects[found.object] : scene.name, scene.materials[found.material].name);
 }
 
-/// What is emitted is absorbed or escapes; what is left over tells how far to trust the solution.
+/// Compares emitted with absorbed and escaped power; the difference indicates the solution's error.
 std::string text_of_balance(const Scene& scene, const Solution& solution) {
     const PowerBalance balance = power_balance(scene, solution);
     if (!(channel_sum(balance.emitted) > 0)) return {};
@@ -82,7 +82,7 @@ void log_outcome(const Scene& scene, const Solution& solution) {
                      last.elements);
 }
 
-/// With as many elements at most as memory and addresses are there for. @param memory  As asked for, or 0.
+/// Limits the elements to the available memory. @param memory  Requested limit [bytes], or 0.
 SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, SolveOptions options, std::size_t memory) {
     if (options.refinement.max_elements < scene.patches.size())
         throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
@@ -108,7 +108,7 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
                    const Checkpoints& checkpoints) {
     warn_of_covered_emission(scene, ray_caster);
     const SolveOptions options = within_limits(scene, ray_caster, asked_for, memory);
-    const std::shared_ptr<void> unowned;  // they outlive the solver
+    const std::shared_ptr<void> unowned;  // both outlive the solver
     return run_to_end(Solver(std::shared_ptr<const Scene>(unowned, &scene),
                              std::shared_ptr<const RayCaster>(unowned, &ray_caster), options),
                       checkpoints);

@@ -20,11 +20,11 @@ namespace interflect::command {
 
 namespace {
 
-/// Memory of a patch while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere
-/// with 200 divisions and for glTF instances of one triangle.
+/// Memory while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere with 200
+/// divisions and for glTF instances of one triangle.
 constexpr std::size_t bytes_per_patch = 300;
 
-/// Number of patches that fit into memory. @param present  Patches that are in memory already.
+/// @param present  Patches already in memory.
 std::uint64_t patches_in_memory(std::size_t present = 0) { return present + free_memory() / bytes_per_patch; }
 
 }  // namespace
@@ -208,7 +208,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back({"command line", *eye, *look_at, up, fov});
-    for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses what defines no picture
+    for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses views without a picture
     return views;
 }
 

@@ -28,7 +28,6 @@ Quantity described(Shown shown) {
     }
 }
 
-/// One value an element.
 std::vector<float> values_of(Shown shown, const Solution& solution) {
     const ElementForest& forest = *solution.forest;
     std::vector<float> values(forest.size(), 0.0f);

@@ -8,29 +8,27 @@
 
 namespace interflect::command {
 
-/// What a picture shows.
 enum class Shown {
-    light,              ///< What the camera sees.
-    mesh,               ///< The same, with the borders of the elements.
-    irradiance,         ///< H, luminance of.
+    light,              ///< Radiance seen by the camera.
+    mesh,               ///< With the borders of elements.
+    irradiance,         ///< Luminance of H.
     importance,         ///< psi.
-    direct_importance,  ///< v, the part of psi straight from the camera.
-    level,              ///< How often a patch was divided to get to the leaf.
-    rays,               ///< That started on a leaf, per area.
-    error,              ///< Estimated standard error of H, relative.
+    direct_importance,  ///< v, the part of psi directly from the camera.
+    level,              ///< Subdivision level of the leaf.
+    rays,               ///< Rays started on the leaf, per area.
+    error,              ///< Relative standard error of H.
 };
 
-/// Adds --show.
 void add_show(CLI::App& app, Shown& shown);
 
-/// Whether it is a number that each element has, to be drawn in false colours.
+/// Returns whether `shown` is a number per element, drawn in false colours.
 constexpr bool is_quantity(Shown shown) { return shown != Shown::light && shown != Shown::mesh; }
 
-/// A picture of such a number. @throws InputError where the solution does not have it.
+/// @throws InputError if the solution lacks the quantity.
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                               const CameraSampling& sampling, const PictureMonitor& monitor);
 
-/// Its name and unit, for the metadata of a picture.
+/// Returns name and unit for metadata.
 std::string label_of(Shown shown);
 
 }  // namespace interflect::command

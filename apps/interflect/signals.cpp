@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::array<int, 3> stop_signals = {SIGINT, SIGTERM, SIGHUP};
 std::atomic<bool> first_only_stops{false}, stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may use it
+static_assert(std::atomic<bool>::is_always_lock_free);  // required in signal handlers
 
 void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
-/// As the signal would have without a handler.
+/// Ends the process as without a handler.
 void end_process(int signal) {
     remove_temporary_files();
     if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar

@@ -4,20 +4,19 @@
 
 namespace interflect::command {
 
-/// To be called first of all. From then on SIGINT (Ctrl-C), SIGTERM and SIGHUP, unless it is ignored as under nohup,
-/// remove temporary files before they end the process; writing to a closed pipe, or more than a file may hold, fails
-/// instead of ending it.
+/// Must be called first. SIGINT (Ctrl-C), SIGTERM and SIGHUP then remove temporary files before they end the process;
+/// an ignored SIGHUP, as under nohup, stays ignored. Writing to a closed pipe or beyond the limit of file sizes fails
+/// instead of ending the process.
 void handle_signals();
 
-/// From now on the first of SIGINT, SIGTERM and SIGHUP sets a flag, and says so; only the second ends the process. To
-/// be called before work that can be ended early, and then holds for the writing of its results too.
+/// From now on the first of these signals sets a flag and prints a message; the second ends the process. Call it before
+/// work that can end early and whose results are then written.
 void stop_on_signal();
 const std::atomic<bool>& stop_flag();
 
-/// From now on the first signal ends the process again.
+/// The first signal ends the process again.
 void end_on_signal();
 
-/// Whether the flag is set.
 bool is_stop_requested();
 
 }  // namespace interflect::command

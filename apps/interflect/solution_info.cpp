@@ -17,7 +17,7 @@ namespace {
 
 const IterationReport& result_of(const SolvedScene& solved) { return solved.solution.iterations.back(); }
 
-/// Files before version 4 tell neither options nor files nor what wrote them.
+/// Files before version 4 lack options, files and the version of Interflect.
 bool knows_provenance(const SolvedScene& solved) { return !solved.interflect_version.empty(); }
 
 Json to_json(const SolvedScene& solved) {
@@ -49,7 +49,7 @@ Json to_json(const SolvedScene& solved) {
     return json;
 }
 
-/// The options that differ from the method's defaults.
+/// Lists the options that differ from the method's defaults.
 std::string text_of_options(const SolveOptions& options) {
     const Json json = json_of(options);
     SolveOptions defaults;

@@ -4,7 +4,7 @@
 
 namespace interflect::command {
 
-/// Prints what is in a solution file and how it was found; as JSON, or for people.
+/// Prints the content and options of a solution file as JSON or text.
 void print_solution_info(const std::filesystem::path& path, bool json);
 
 }  // namespace interflect::command

@@ -75,7 +75,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         const SolveOptions solve_options = options->solver.resolved(views);
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
         options->groups.set_groups(scene);
-        // What was asked for comes first: `render` takes the first view of a solution.
+        // Requested views come first: `render` draws the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         StatsFile stats(options->solver.threads, options->solver.stats, scene);
         const RayCaster ray_caster = make_ray_caster(scene);

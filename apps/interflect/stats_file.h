@@ -8,13 +8,13 @@
 
 namespace interflect::command {
 
-/// The file that --stats names, where it names one: JSON lines, a header and one line for each iteration.
+/// The file of --stats, if given: JSON lines, one header and one line per iteration.
 class StatsFile {
   public:
-    /// To be made before long work begins. @param stats  Empty: none is written. @throws InputError where the file
-    /// cannot be written, or is read.
+    /// Must precede long work. @param stats  Empty: no file.
+    /// @throws InputError if the file cannot be written, UsageError if it is a file of the scene.
     StatsFile(int threads, const std::filesystem::path& stats, const Scene& scene);
-    /// To be called when the result itself is safe.
+    /// Must follow the writing of the result.
     void write(const Scene& scene, const Solution& solution);
 
   private:

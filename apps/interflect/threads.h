@@ -6,7 +6,7 @@
 
 namespace interflect::command {
 
-/// Limits the threads that work at the same time, while it lives; 0 sets no limit.
+/// Limits concurrent threads during its lifetime; 0 sets no limit.
 class ThreadLimit {
   public:
     explicit ThreadLimit(int threads) {

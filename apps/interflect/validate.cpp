@@ -28,14 +28,14 @@ struct ValidateArguments {
     bool json = false, strict = false;
 };
 
-/// What solving with the default options would take.
+/// Cost of solving with default options.
 struct Prediction {
-    std::size_t memory = 0;      ///< With an element for each patch [bytes].
-    double rays_per_second = 0;  ///< 0: nothing emits light.
+    std::size_t memory = 0;      ///< With one element per patch [bytes].
+    double rays_per_second = 0;  ///< 0 without emitted light.
     double rays = 0, seconds = 0;
 };
 
-/// Solves for a second.
+/// Solves for one second.
 Prediction predict(const Scene& scene, const RayCaster& ray_caster) {
     Prediction result;
     result.memory = memory_need(scene, ray_caster).with(scene.patches.size());

@@ -14,8 +14,8 @@ namespace interflect::command {
 namespace {
 
 constexpr int check_rows = 36;
-constexpr double all = 1;                 // as a share
-constexpr int most_check_columns = 1024;  // of a picture that is very wide
+constexpr double all = 1;
+constexpr int most_check_columns = 1024;  // for very wide pictures
 
 std::vector<Ray> camera_rays(const Scene& scene, const View& view, float aspect) {
     const int columns = std::clamp(static_cast<int>(static_cast<float>(check_rows) * aspect), 1, most_check_columns);
@@ -33,7 +33,7 @@ std::vector<Hit> hits_of(const RayCaster& ray_caster, const std::vector<Ray>& ra
     return hits;
 }
 
-/// From the eye to beyond all of the scene [m].
+/// Returns a distance beyond the whole scene [m].
 float beyond_all(const Scene& scene, const V3f& eye) {
     float farthest = 1;
     for (const V3f& v : scene.vertices) farthest = std::max(farthest, (v - eye).length());
@@ -47,8 +47,8 @@ FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& 
     const std::vector<Hit> hits = hits_of(ray_caster, rays);
     const float beyond = beyond_all(scene, rays.front().origin);
 
-    // On its way back to the eye a ray meets the fronts of those faces whose backs let it through.
-    constexpr float almost = 0.9999f;  // all of the way: not the face that was hit
+    // Reversed rays hit fronts of one-sided faces whose backs let rays pass.
+    constexpr float almost = 0.9999f;  // excludes the face that was hit
     std::vector<Ray> backwards;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const float distance = hits[i].patch == none ? beyond : almost * hits[i].distance;
@@ -69,7 +69,7 @@ FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& 
 
 void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
     const FirstMet met = first_met(scene, ray_caster, view, aspect);
-    if (view.extent > 0) {  // around a plan there is nothing, and cut walls show their backs
+    if (view.extent > 0) {  // plans may have empty surroundings, and cut walls show backs
         if (met.nothing == all) spdlog::warn("{}: nothing of the scene lies beyond the cut", view.name);
         return;
     }

@@ -21,17 +21,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view signature = "interflect checksums\n";
-/// What lies around the ranges that were named.
+/// Range name of all other bytes.
 constexpr const char* structure = "structure";
-/// The block ends with its own checksum: eight hexadecimal digits and a line break.
+/// Eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
 
-/// What the block ends with: the checksum of the rest of it.
+/// Returns the block's last line: the checksum of the rest.
 std::string own_checksum(std::string_view block) {
     return text_of_crc32(crc32(block.substr(0, checked_length))) + "\n";
 }
 
-/// The checksum of a range of the file; none where the file ends before.
+/// Returns nullopt if the file ends before the range.
 std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& range) {
     std::array<char, 1 << 18> buffer;
     std::uint32_t checksum = 0;
@@ -46,16 +46,15 @@ std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& r
     return checksum;
 }
 
-/// Of "/scene/textures/12" the group "/scene/textures"; of names that do not end in a number, the names.
+/// Reduces "/scene/textures/12" to "/scene/textures".
 std::string_view checked_name(std::string_view name) {
     const std::size_t last = name.find_last_not_of("0123456789");
     const bool is_numbered = last + 1 < name.size() && name[last] == '/';
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Neighbours in the file that are arrays of one group, named by their numbers, become one range with what lies between
-/// them: there may be more of them than the block has room for.
-/// @param ranges  In the order of the file.
+/// Merges neighbouring numbered arrays of one group into one range, since the block may not have room for all.
+/// @param ranges  In file order.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {
@@ -68,7 +67,7 @@ std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges
     return joined;
 }
 
-/// The ranges, and what lies around them, in the order of the file: every byte of [checksum_block_size, size) once.
+/// Fills the gaps between the ranges. The result covers [checksum_block_size, size) once, in file order.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
     ranges = with_numbered_joined(ranges);
@@ -94,7 +93,6 @@ std::string read_block(std::ifstream& file) {
     return block;
 }
 
-/// Takes a word from the front of a line.
 std::string_view next_word(std::string_view& line) {
     const std::string_view word = line.substr(0, line.find(' '));
     line.remove_prefix(std::min(word.size() + 1, line.size()));
@@ -115,7 +113,6 @@ struct CheckedRange {
     std::string_view checksum;
 };
 
-/// The lines of an undamaged block.
 std::vector<CheckedRange> parse(std::string_view block) {
     std::string_view lines = block.substr(signature.size(), checked_length - signature.size());
     std::vector<CheckedRange> ranges;

@@ -14,12 +14,11 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Since this version names are escaped, and options, result, files and the version of Interflect are there.
+/// First version with escaped names, options, result, files and version of Interflect.
 constexpr int first_with_options = 4;
-/// Since this version files have checksums, and every iteration is told.
+/// First version with checksums of the input files and all iterations.
 constexpr int first_with_history = 5;
 
-/// Every file that was read, with its checksum where that is known.
 Json json_of_files(const Scene& scene) {
     Json files = Json::array();
     for (std::size_t i = 0; i < scene.files.size(); ++i) {
@@ -70,7 +69,7 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
     }
     if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
     const auto webs = webs_of(json.value("photometric_webs", Json::array()));
-    MapImages maps;  // without their texels
+    MapImages maps;  // texels are not stored
     for (Texture& image : textures_of(json.value("environment_maps", Json::array())))
         maps.push_back(std::make_shared<Texture>(std::move(image)));
     if (json.contains("luminaires"))
@@ -82,7 +81,7 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
     if (json.contains("files")) read_files(json.at("files"), format_version, scene);
 }
 
-/// Of old files only the number of rays is known.
+/// Reads the result; old files contain only the number of rays.
 void read_result(const Json& json, int format_version, Solution& solution) {
     IterationReport& last = solution.iterations.emplace_back();
     if (format_version >= first_with_history && json.at("history").get<std::vector<std::string>>() != report_columns())

@@ -7,12 +7,12 @@
 
 namespace interflect::inline detail {
 
-/// What a solution file holds besides long arrays, as JSON text: docs/solution-file.md lists its keys.
-/// @throws std::runtime_error where a number is not finite.
+/// Returns all content of a solution file except long arrays, as JSON (docs/solution-file.md).
+/// @throws std::runtime_error if a number is not finite.
 std::string describe(const Scene& scene, const Solution& solution, int format_version);
 
-/// Sets what describe() told. @return Whether the file has importance.
-/// @throws std::exception where something is missing, unknown or of another version.
+/// Parses describe() into `solved`. @return  Whether the file contains importance.
+/// @throws std::exception for missing or unknown values and for other versions.
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version, SolvedScene& solved);
 
 }  // namespace interflect::inline detail

@@ -23,7 +23,7 @@ struct PositionHash {
     }
 };
 
-/// As smooth surfaces join vertices.
+/// Merging distance [m], the same as for smooth surfaces.
 float joining_distance(const Scene& scene) {
     constexpr float relative = 0x1p-20f;
     float largest = 0;
@@ -97,7 +97,7 @@ void ElementMesh::join_near_points() {
         }
     });
     for (std::uint32_t i = 0; i < joined.size(); ++i) {
-        joined[i] = joined[joined[i]];  // the first of a chain has its number already
+        joined[i] = joined[joined[i]];  // joined[i] <= i, and smaller indices are already resolved
         if (joined[i] == i) tree_.push_back({Imath::Box3f(points_[i]), i});
     }
     arrange_box_tree(tree_);
@@ -136,7 +136,7 @@ std::vector<MeshCorner> ElementMesh::outline(std::uint32_t leaf) const {
     std::vector<MeshCorner> outline;
     for (std::size_t c = 0; c < count; ++c) {
         const MeshCorner& next = corners[(c + 1) % count];
-        if (corners[c].point == next.point) continue;  // an edge of no length
+        if (corners[c].point == next.point) continue;  // zero-length edge
         outline.push_back(corners[c]);
         add_points_on_edge(corners[c], next, outline);
     }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t rays_of_patch = 64;
 /// Rays that start within the ray offset of an edge can leave a closed solid.
 constexpr std::size_t stray_rays = 2;
-/// Solids and gaps are narrower than that, rooms wider [m].
+/// Solids and gaps are narrower, rooms wider [m].
 constexpr float room_width = 0.5f;
 
 class Surroundings {
@@ -49,8 +49,8 @@ class Surroundings {
         return hit.patch == none || !is_dark_[hit.patch] ||
                scene_.materials[scene_.patches[hit.patch].material].transmittance != Rgb(0);
     }
-    /// Traces the reverse of a ray from its hit point. Fronts of one-sided faces stop it, their backs do not.
-    /// @return  Distance from the origin of the ray to the end of its reverse [m]; about 0 where nothing stopped it.
+    /// Traces the reverse of a ray from its hit point. Only fronts of one-sided faces stop it.
+    /// @return  Distance from the ray's origin to the end of the reverse [m]; about 0 if nothing stopped it.
     float distance_from_patch(const Ray& ray, const Hit& hit, float distance) const {
         const float start = hit.patch == none ? distance : distance - ray_caster_.ray_offset(hit.patch);
         const Ray back{ray.origin + start * ray.direction, -ray.direction};

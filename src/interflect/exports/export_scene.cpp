@@ -21,7 +21,7 @@ struct SceneFormat {
 };
 constexpr std::array<SceneFormat, 4> scene_formats{{
     {".rad", radiance_description, quotable, ""},
-    {".xml", mitsuba_description, xml_text, "$"},  // which begins a parameter
+    {".xml", mitsuba_description, xml_text, "$"},  // begins a parameter
     {".pbrt", pbrt_description, quotable, ""},
     {".py", blender_description, quotable, ""},
 }};

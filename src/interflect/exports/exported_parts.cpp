@@ -46,7 +46,7 @@ std::vector<std::string> plain_names(const std::vector<std::string>& names, cons
 }
 
 std::vector<std::string> material_names(const Scene& scene) {
-    constexpr std::size_t most = 64;  // characters; file systems limit names to 255 bytes, stem included
+    constexpr std::size_t most = 64;  // file systems limit names to 255 bytes, stem included
     std::vector<std::string> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
     return plain_names(names, "material", most);
@@ -68,7 +68,7 @@ std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const
 
 void require_nameable(const std::filesystem::path& path, std::string_view excluded) {
     const std::string stem = path.stem().string();
-    std::string without_backslashes = stem;  // which escaped() may change
+    std::string without_backslashes = stem;  // escaped() may change backslashes
     std::erase(without_backslashes, '\\');
     if (escaped(without_backslashes) == without_backslashes && stem.find_first_of(excluded) == stem.npos) return;
     throw InputError(path, 0,

@@ -17,7 +17,6 @@ std::string rgb(const char* name, const Rgb& value) {
     return fmt::format("<rgb name=\"{}\" value=\"{}\"/>", name, triple(value, ", "));
 }
 
-/// A value of a material: an image where it has one.
 std::string texture(const char* name, const std::string& file) {
     return fmt::format("<texture type=\"bitmap\" name=\"{}\"><string name=\"filename\" value=\"{}\"/></texture>", name,
                        file);
@@ -48,7 +47,7 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
     std::string transform = look_at(V3f(view.eye), V3f(view.look_at), view.up);
     std::string lens =
         fmt::format("    <string name=\"fov_axis\" value=\"y\"/>\n    <float name=\"fov\" value=\"{}\"/>\n", view.fov);
-    if (view.extent > 0) {  // an orthographic sensor shows [-1, 1] across
+    if (view.extent > 0) {  // orthographic sensors cover [-1, 1] horizontally
         const float half =
             view.extent / 2 * static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
         transform = fmt::format("<scale x=\"{0}\" y=\"{0}\"/>", half) + transform;
@@ -114,7 +113,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
     return "";
 }
 
-/// Of a point of an 'envmap': its left edge is -z, +x a quarter of the way to the right, its upper edge +y.
+/// Returns the direction of a point of an 'envmap': left edge -z, +x a quarter to the right, upper edge +y.
 V3f envmap_direction(float x, float y) {
     const float azimuth = 2 * pi * x, polar = pi * y;
     return {std::sin(azimuth) * std::sin(polar), std::cos(polar), -std::cos(azimuth) * std::sin(polar)};

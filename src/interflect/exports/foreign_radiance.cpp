@@ -1,4 +1,4 @@
-// Radiance (Ward 1994): units are W/(m^2 sr), and photometric values are 179 lm/W times the radiometric ones.
+// Radiance (Ward 1994) uses W/(m^2 sr); photometric values are 179 lm/W times the radiometric ones.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace for_radiance {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-constexpr float efficacy = 179;        // [lm/W], Radiance's own
-constexpr float lamp_radius = 0.005f;  // of the sphere that a point of light becomes [m]
+constexpr float efficacy = 179;        // by definition of Radiance [lm/W]
+constexpr float lamp_radius = 0.005f;  // of spheres that replace point lights [m]
 
 std::string numbers(const V3f& v) { return "3 " + triple(v); }
 
@@ -53,7 +53,7 @@ std::string polygon(const ForeignMesh& mesh, std::size_t face, bool is_reversed,
 }
 
 std::string mesh_text(ForeignScene& scene, const ForeignMesh& mesh) {
-    constexpr float offset = 1e-4f;  // between the two sides of a face that both emit [m]
+    constexpr float offset = 1e-4f;  // between the sides of a face that both emit [m]
     std::string text = surface_text(scene, mesh);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         text += polygon(mesh, face, false, 0);
@@ -88,7 +88,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, cons
     return "";
 }
 
-/// The options -vh and -vv are full angles; of an orthographic view they are its size.
+/// -vh and -vv are full angles, or sizes of orthographic views.
 std::string view_text(const ForeignScene& scene, const View& view) {
     const float aspect = static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
     const float half = std::tan(view.fov / 360 * pi);

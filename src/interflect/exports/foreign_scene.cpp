@@ -22,7 +22,6 @@ Backs backs_of(const Scene& scene, const Patch& patch) {
     return scene.materials[scene.patches[patch.other_side].material].exitance == Rgb(0) ? Backs::reflect : Backs::emit;
 }
 
-/// The meshes of a scene while its patches are added.
 class Meshes {
   public:
     explicit Meshes(const Scene& scene) : scene_(scene), names_(material_names(scene)) {}
@@ -65,7 +64,7 @@ class Meshes {
     const Scene& scene_;
     const std::vector<std::string> names_;
     std::map<std::pair<std::uint32_t, Backs>, std::size_t> numbers_;
-    std::vector<Vertices> vertices_;  // of each mesh, by their numbers in the scene
+    std::vector<Vertices> vertices_;  // per mesh, by vertex of the scene
 };
 
 std::vector<View> local_views(const Scene& scene) {

@@ -13,7 +13,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-// Of the glTF 2.0 specification.
+// Constants of glTF 2.0.
 constexpr int float_type = 5126, uint32_type = 5125;
 constexpr int vertex_target = 34962, index_target = 34963;
 constexpr int linear_filter = 9729, mipmapped_filter = 9987, clamp_to_edge = 33071, repeat = 10497;
@@ -102,7 +102,7 @@ int GltfDocument::add_texture(const Image& image, const std::string& name, bool 
     const int view = add_buffer_view(codecs::encode_png(image, opacity));
     const int source = add("images", {{"name", escaped(name)}, {"mimeType", "image/png"}, {"bufferView", view}});
     const int wrap = repeats ? repeat : clamp_to_edge;
-    // The texels of neighbouring charts would mix in the smaller images of a mipmap.
+    // Mipmaps would mix the texels of neighbouring charts.
     const int sampler = add("samplers", {{"magFilter", linear_filter},
                                          {"minFilter", repeats ? mipmapped_filter : linear_filter},
                                          {"wrapS", wrap},

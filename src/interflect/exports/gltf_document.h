@@ -12,32 +12,30 @@
 
 namespace interflect::inline detail {
 
-/// A glTF 2.0 file that is being written: its JSON, and the one buffer that everything binary is in.
+/// A glTF 2.0 file under construction, with one binary buffer.
 class GltfDocument {
   public:
     GltfDocument();
 
-    /// What else the file says; callers add to it. Its arrays have indices, see add().
+    /// Everything except the buffer; callers may add to it.
     Json json;
 
-    /// Adds an object to one of the arrays of the JSON, such as "materials". @return  Its index.
+    /// Appends an object to an array such as "materials". @return  Its index.
     int add(const char* array, Json object);
-    /// Names an extension that the file uses.
     void use_extension(const char* name);
 
-    /// Add an accessor of vertex attributes, or of a triangle list's indices. @return  Its index.
-    int add_positions(std::span<const V3f> values);  ///< With bounds, which positions must have.
+    /// Add an accessor of vertex attributes or indices. @return  Its index.
+    int add_positions(std::span<const V3f> values);  ///< Adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
 
-    /// Adds an image as PNG with 8 bit sRGB, and a texture that shows it; values are clamped to [0, 1].
-    /// @param opacity  Of each pixel, in [0, 1], for the alpha channel; none: there is none.
-    /// @param repeats  Whether it repeats beyond [0, 1]; else its edge goes on.
-    /// @return         The texture's index.
+    /// Adds a texture and its image: 8-bit sRGB PNG, clamped to [0, 1]. @return  Index of the texture.
+    /// @param opacity  Alpha per pixel, in [0, 1]; no alpha channel if empty.
+    /// @param repeats  Repeats beyond [0, 1], with mipmaps; otherwise edge texels extend.
     int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 
-    /// The file as GLB, or as JSON with the buffer within. @throws InputError beyond 4 GiB.
+    /// Return the file as GLB, or as JSON with embedded buffer. glb() throws InputError beyond 4 GiB.
     std::string glb() const;
     std::string gltf() const;
 

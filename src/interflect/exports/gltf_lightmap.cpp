@@ -25,22 +25,22 @@ struct MappedVertex {
     V2f coordinate, lightmap_coordinate;
 };
 
-/// The triangles of one object, material and image of the lightmap.
+/// Triangles of one object, material and lightmap image.
 using MappedPrimitive = WeldedVertices<MappedVertex>;
 using MappedPrimitives = std::map<std::tuple<std::uint32_t, std::uint32_t, int>, MappedPrimitive>;
 
-/// How the images are in the file: a texel of 1 stands for `scale`, in their own unit.
+/// A texel of 1 in the file stands for `scale`, in the unit of `content`.
 struct Encoding {
     LightmapContent content;
     float exposure;
     float scale = 1;
 
-    /// What a renderer multiplies a texel by, for values that a display shows.
+    /// Factor from texels to display values.
     float intensity() const { return scale * std::exp2(exposure); }
 };
 
-/// Bright enough for all texels, but no more than eight times what makes a white surface white: 8 bits then still have
-/// steps that nobody sees in the dark.
+/// Covers all texels, but at most eight times the irradiance at which white surfaces appear white, so the steps of 8
+/// bits remain invisible in the dark.
 float scale_of(const std::vector<Image>& images, LightmapContent content, float exposure) {
     if (content == LightmapContent::radiance) return std::exp2(-exposure);
     constexpr float headroom = 8;
@@ -55,7 +55,7 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page) {
     return fmt::format("{}.lightmap-{}", path.stem().string(), page);
 }
 
-/// Groups are numbered: their names may be no names of files.
+/// Uses numbers: group names may be invalid in file names.
 std::string name_of_image(const std::filesystem::path& path, std::size_t page, std::size_t group) {
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
@@ -92,7 +92,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, Ele
     return primitives;
 }
 
-/// Lightmaps of radiance are the only images, and have the only coordinates.
+/// Uses TEXCOORD_0 for lightmaps of radiance, since their materials have no other texture.
 Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, const std::vector<V3f>& points,
                      bool is_textured, LightmapContent content) {
     Json attributes;
@@ -103,11 +103,11 @@ Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, c
     const auto lightmap_coordinates = primitive.values([](const MappedVertex& v) { return v.lightmap_coordinate; });
     const bool has_both = content == LightmapContent::irradiance;
     add("TEXCOORD_0", has_both && is_textured ? coordinates : lightmap_coordinates);
-    if (has_both) add("TEXCOORD_1", lightmap_coordinates);  // which there may not be without TEXCOORD_0
+    if (has_both) add("TEXCOORD_1", lightmap_coordinates);  // requires TEXCOORD_0
     return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
 }
 
-/// What a material emits: a factor of at most 1, and a strength.
+/// Adds emission as a factor of at most 1 and a strength.
 void add_emission(GltfDocument& document, Json& json, GltfTextures& textures, const Material& material,
                   float exposure) {
     const Rgb emitted = material.exitance * (std::exp2(exposure) / std::numbers::pi_v<float>);
@@ -131,7 +131,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
     } else {
         json["pbrMetallicRoughness"] = textures.diffuse(material);
         if (material.transmittance_texture != none) textures.cut_out(json, material);
-        // Without it there is a specular layer, which takes light from the diffuse one.
+        // The default specular layer takes light from the diffuse one.
         json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
         document.use_extension("KHR_materials_specular");
         json["extensions"]["MOZ_lightmap"] = {
@@ -157,8 +157,7 @@ Json description_of(const Lightmap& lightmap, const Encoding& encoding, const st
               {"covered", lightmap.covered}}}};
 }
 
-/// Writes the unclamped images of each light group beside the file.
-/// @return  The groups, each with its name and images, for the description.
+/// Adds the unclamped images of each light group. @return  Their names, for the description.
 Json add_groups(const std::filesystem::path& path, const Lightmap& lightmap, const std::vector<std::string>& names,
                 const std::string& extension, const std::string& quantity, std::vector<ExportedFile>& files) {
     Json groups = Json::array();

@@ -8,9 +8,9 @@
 
 namespace interflect::inline detail {
 
-/// Adds a solved scene with its light in lightmaps (make_lightmap). Lightmaps of irradiance are the extension
-/// MOZ_lightmap of diffuse materials, at TEXCOORD_1; those of radiance are the base colour of unlit ones.
-/// @param path  Of the file that the document becomes. @return  The unclamped images, to be written beside it.
+/// Adds a solved scene with lightmaps: irradiance as MOZ_lightmap of diffuse materials, at TEXCOORD_1, or radiance as
+/// base colour of unlit materials.
+/// @param path  Path of the glTF file. @return  The unclamped images beside it.
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesystem::path& path, const Scene& scene,
                                        const Solution& solution, const ExportOptions& options);
 

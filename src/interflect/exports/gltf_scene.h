@@ -10,34 +10,33 @@
 
 namespace interflect::inline detail {
 
-/// The primitives of glTF meshes, by object of the scene.
+/// Primitives by object of the scene.
 using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
 
-/// Adds the nodes: below a root, which turns `up` to y and moves the scene's origin where it is in the world, each
-/// object with its mesh, and each view with its camera.
+/// Adds a root node, which rotates `up` to +y and restores the scene's origin, with the objects and views as children.
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up);
 
-/// Adds a scene's textures, each once.
+/// Adds each texture once.
 class GltfTextures {
   public:
     GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
 
-    /// Diffuse reflection as pbrMetallicRoughness, with the image of the reflectance where there is one.
+    /// Returns pbrMetallicRoughness with the reflectance and its image, if any.
     Json diffuse(const Material& material);
-    /// Gives a material holes, by the alpha of its base colour's texture, which it then has in any case.
-    /// @param json  What has been made of the material. @param material  It has a texture of transmittance.
-    /// @param peak  What the reflectance is divided by.
+    /// Stores transmittance as alpha of the base colour's texture, which it adds.
+    /// @param json  Material to complete. @param material  Has a texture of transmittance.
+    /// @param peak  Divisor of the reflectance.
     void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
-    /// A reference to a texture of the scene, divided by `peak`.
+    /// Returns a reference to the texture divided by `peak`.
     Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
 
   private:
     GltfDocument& document_;
     const Scene& scene_;
-    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // by texture, and whether it was divided
+    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // by texture and whether divided
 };
 
-/// Texture coordinates from the upper left corner of an image, as glTF has them.
+/// Moves the origin to the upper left corner, as in glTF.
 inline V2f gltf_coordinate(const V2f& coordinate) { return {coordinate.x, 1 - coordinate.y}; }
 
 }  // namespace interflect::inline detail

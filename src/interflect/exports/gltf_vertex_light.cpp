@@ -17,7 +17,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Whether the image of a material stays in the file, so that vertices hold only what it is multiplied by.
+/// Returns whether the file keeps the material's image; its vertices then store the factor of the image.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }
@@ -28,8 +28,8 @@ struct LitVertex {
     V2f coordinate;
 };
 
-/// The largest of each channel of a material's image; 1 where it is 0. The file has the image divided by it, so that
-/// vertices, which hold at most 1, are no darker than they need be.
+/// Returns the largest value per channel of a material's image, 1 for black channels. The image in the file is divided
+/// by it, so vertex colours, at most 1, use their full range.
 Rgb peak_of(const Scene& scene, const Material& material) {
     Rgb peak = material.transmittance_texture == none
                    ? largest_texel(scene.textures[material.reflectance_texture])
@@ -39,7 +39,6 @@ Rgb peak_of(const Scene& scene, const Material& material) {
     return peak;
 }
 
-/// What the vertices of a scene show.
 class VertexLight {
   public:
     VertexLight(const Scene& scene, float exposure)
@@ -62,10 +61,10 @@ class VertexLight {
   private:
     const Scene& scene_;
     float scale_;
-    std::vector<Rgb> brightest_;  // reflectance of each material that keeps its texture, at its brightest texel
+    std::vector<Rgb> brightest_;  // per material that keeps its texture: reflectance of the brightest texel
 };
 
-/// The triangles of one object and material.
+/// Triangles of one object and material.
 using LitPrimitive = WeldedVertices<LitVertex>;
 
 Json write_primitive(GltfDocument& document, const LitPrimitive& primitive, const std::vector<V3f>& points,
@@ -93,7 +92,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Scene& sc
     return document.add("materials", std::move(json));
 }
 
-/// By object and material.
+/// Keys: object and material.
 using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
 
 LitPrimitives primitives_of(const Scene& scene, const Solution& solution, ElementMesh& mesh, float exposure) {

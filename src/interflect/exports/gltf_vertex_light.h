@@ -5,8 +5,8 @@
 
 namespace interflect::inline detail {
 
-/// Adds a solved scene with the light in the vertices of its elements (ElementMesh): unlit materials, what is seen in
-/// COLOR_0, the irradiance in _IRRADIANCE.
+/// Adds a solved scene with unlit materials, display colours of vertices (ElementMesh) in COLOR_0 and irradiance in
+/// _IRRADIANCE.
 void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
                       const ExportOptions& options);
 

@@ -12,20 +12,20 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Most entries of one array that a file may claim.
+/// Maximum number of entries.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
 constexpr const char* no_properties = "cannot make properties";
 
-/// To be called before all else: errors become exceptions, not text on stderr. The handler at the process's end is left
-/// out, since it crashes where a file could not be written.
+/// Must be called first. Converts errors to exceptions and disables the exit handler, which crashes after a failed
+/// write.
 void prepare_hdf5() {
     [[maybe_unused]] static const herr_t first_of_all = H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     errno = 0;
 }
 
-/// What the system last said of a disk that takes no more; empty where it said something else.
+/// Returns the message for a full or failing disk; empty for other errors.
 std::string reason_of_disk() {
     const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
     return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
@@ -35,7 +35,6 @@ void require(herr_t status, const std::string& what) {
     if (status < 0) throw std::runtime_error("HDF5: " + what + reason_of_disk());
 }
 
-/// Memory and file type of what one array entry is made of.
 template <class T>
 hid_t native_type();
 template <>
@@ -67,7 +66,7 @@ hid_t native_type<std::byte>() {
     return H5T_NATIVE_UCHAR;
 }
 
-/// Of an array of the columns that `size` has: about 1 MB each, so that compression costs no memory to speak of.
+/// Divides arrays into chunks of about 1 MB, which limits the memory of compression.
 void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     constexpr hsize_t most_rows = hsize_t{1} << 16;
     constexpr unsigned deflate_level = 4;  // 9 takes seven times as long for 2% less
@@ -78,7 +77,7 @@ void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     require(H5Pset_deflate(properties, deflate_level), "cannot compress an array");
 }
 
-/// @param compressed_size  Of what is compressed; empty for what is not.
+/// @param compressed_size  Dimensions; empty for an uncompressed array.
 Hdf5Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                        std::span<const hsize_t> compressed_size = {}) {
     const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, no_properties);
@@ -118,10 +117,9 @@ void write_attribute_of_type(hid_t file, const std::string& group, const char* n
     require(H5Awrite(attribute, type, value), "cannot write an attribute");
 }
 
-/// Stops at links to other files.
 herr_t refuse_other_files(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) { return -1; }
 
-/// A file may say that an array is kept in other files, any of the machine.
+/// Refuses external and virtual storage, which could refer to any file of the machine.
 void require_stored_here(hid_t set, const std::string& name) {
     const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose, "an array has no properties");
     if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
@@ -147,14 +145,14 @@ std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) co
     const Hdf5Handle set(H5Dopen2(file_, name.c_str(), links_), H5Dclose, "an array is missing");
     require_stored_here(set, name);
     const Hdf5Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
-    // HDF5 sets memory aside for numbers as large as the file says they are.
+    // HDF5 allocates numbers of the size that the file claims.
     const Hdf5Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
     if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
     std::array<hsize_t, 2> size{0, 1};
     const int rank = H5Sget_simple_extent_ndims(space);
     if (rank != (columns == 1 ? 1 : 2)) throw std::runtime_error("array '" + name + "' has the wrong rank");
     H5Sget_simple_extent_dims(space, size.data(), nullptr);
-    // What a damaged file says of its arrays may be anything: no memory for more than it holds.
+    // A damaged file may claim any size: allocate at most the stored size.
     hsize_t file_size = 0;
     require(H5Fget_filesize(file_, &file_size), "cannot tell the file's size");
     if (size[1] != columns || size[0] > largest_array / columns ||
@@ -199,7 +197,7 @@ template FileRange Hdf5Writer::write(const std::string&, std::span<const char>, 
 
 template <class T>
 void Hdf5Writer::write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns) {
-    if (numbers.empty()) {  // of which there are no chunks
+    if (numbers.empty()) {  // an empty array has no chunks
         write(name, numbers, columns);
         return;
     }

@@ -14,10 +14,10 @@
 
 namespace interflect::inline detail {
 
-/// An HDF5 identifier that closes itself.
+/// Owner of an HDF5 identifier.
 class Hdf5Handle {
   public:
-    /// @param what  Says what failed where `id` is none. @throws std::runtime_error then.
+    /// @param what  Failed operation, for the std::runtime_error of an invalid `id`.
     Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what);
     ~Hdf5Handle() { close_(id_); }
     Hdf5Handle(const Hdf5Handle&) = delete;
@@ -29,16 +29,15 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
-/// The arrays of an HDF5 file, to be read. T is float, double, std::uint32_t, char or std::byte. All functions throw
-/// std::runtime_error, and claim no more memory than the file has bytes; arrays in other
-/// files (links, external storage, virtual arrays) are refused.
+/// Reads arrays of float, double, std::uint32_t, char or std::byte. Throws std::runtime_error, allocates at most the
+/// size of the file, and refuses arrays in other files (links, external or virtual storage).
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);
 
-    /// Whether there is a group or an array of this name.
+    /// Returns whether a group or an array of this name exists.
     bool has(const std::string& name) const;
-    /// An array of one dimension where `columns` is 1, else of two; row by row.
+    /// Reads rows; one-dimensional if `columns` is 1, otherwise two-dimensional.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
@@ -46,29 +45,29 @@ class Hdf5Reader {
     Hdf5Handle file_, links_;
 };
 
-/// A new HDF5 file of arrays, without time stamps, so that equal contents are equal bytes. Types and errors as above;
-/// T may be std::int64_t or std::uint8_t, too.
+/// Writes a new HDF5 file without time stamps: equal contents give equal bytes. Throws std::runtime_error. T is float,
+/// double, std::int64_t, std::uint32_t, std::uint8_t or, uncompressed, char.
 class Hdf5Writer {
   public:
-    /// @param user_block  Bytes left free at the beginning of the file.
+    /// @param user_block  Unused bytes at the beginning.
     Hdf5Writer(const std::filesystem::path& path, std::uint64_t user_block);
-    /// A file in memory, whose bytes `image` has.
+    /// Writes to memory, for image().
     Hdf5Writer();
 
-    /// Writes rows of `columns` numbers each. @return Where they are in the file.
+    /// Writes rows of `columns` numbers. @return  Position in the file.
     template <class T>
     FileRange write(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
-    /// The same in chunks, each compressed without loss (shuffle and deflate).
+    /// Compresses chunks without loss (shuffle and deflate).
     template <class T>
     void write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
-    /// Gives the group `group` an attribute: an array of whole numbers, or ASCII text of fixed length.
+    /// Add integers, or ASCII text of fixed length, to a group.
     void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
     void write_attribute(const std::string& group, const char* name, std::string_view text);
-    /// Writes the parts, one after the other, as one array.
+    /// Writes the parts as one array.
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
-    /// To be called last.
+    /// Must be the last call.
     void flush();
-    /// The bytes of the file, of one in memory. To be called last.
+    /// Returns the bytes of a file in memory. Must be the last call.
     std::string image();
 
   private:

@@ -27,14 +27,14 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Where a texel's light is evaluated.
+/// Evaluation point of a texel.
 struct TexelPlace {
     std::uint32_t patch = none;
     Parameters at;
     bool is_inside = false;  // the texel's centre is on the patch
 };
 
-/// Finds the nearest points of a chart's patches, in the plane that they are laid out in.
+/// Finder of the nearest points on a chart's patches, in its plane.
 class NearestPatch {
   public:
     explicit NearestPatch(const LightmapChart& chart) : patches_(chart.patches) {
@@ -65,7 +65,7 @@ class NearestPatch {
                 nearest = {patches_[i].patch, p};
             }
         });
-        constexpr float rounding = 1e-3f;  // of a texel
+        constexpr float rounding = 1e-3f;  // [texels]
         nearest.is_inside = least <= rounding * rounding * texel * texel;
         return nearest;
     }
@@ -94,7 +94,7 @@ V3f nearest_on_segment(const V3f& a, const V3f& b, const V3f& x) {
     return a + along * std::clamp((x - a).dot(along) / along.length2(), 0.0f, 1.0f);
 }
 
-/// On the patch, of which x is in the plane.
+/// Finds the nearest point of a patch. @param x  In the patch's plane.
 Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const V3f& x) {
     const std::array<Parameters, 4> corners = geometry.is_triangle()
                                                   ? std::array<Parameters, 4>{{{0, 0}, {1, 0}, {0, 1}, {0, 1}}}
@@ -115,7 +115,7 @@ Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const
     return geometry.parameters_of(is_inside ? x : nearest);
 }
 
-/// Further inside than the border by `distance`, where the patch is wide enough.
+/// Moves a point inwards, to at least `distance` from the border or less for narrow patches.
 Parameters inset(const PatchGeometry& geometry, Parameters p, float distance) {
     const auto& shape = geometry.shape();
     const auto share = [&](const V3f& edge) { return std::min(distance / edge.length(), 0.25f); };
@@ -126,7 +126,6 @@ Parameters inset(const PatchGeometry& geometry, Parameters p, float distance) {
     return {std::max(p.u - excess, u / 2), std::max(p.v - excess, v / 2)};
 }
 
-/// Finds the irradiance of texels.
 class IrradianceSource {
   public:
     IrradianceSource(const Scene& scene, const Solution& solution, const ExportOptions& options)
@@ -152,7 +151,7 @@ class IrradianceSource {
         return values;
     }
 
-    /// A little inside the patches: on a wall's foot rays would start in the plane of the wall.
+    /// Gathers slightly inside the patches: rays from the foot of a wall would start in its plane.
     std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
         constexpr float distance = 0.05f;  // [texels]
         std::vector<MeasuringPoint> points;
@@ -194,7 +193,7 @@ Rgb content_of(const Scene& scene, const TexelPlace& place, const Rgb& irradianc
     return radiosity / std::numbers::pi_v<float>;
 }
 
-/// The place of every texel of a chart with its gutters, row by row.
+/// Lists the texels row by row, with gutters.
 std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     const NearestPatch nearest(chart);
     const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
@@ -211,7 +210,6 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     return places;
 }
 
-/// Texels of all charts, which are evaluated together.
 class LightmapTexels {
   public:
     LightmapTexels(const LightmapOptions& options, std::size_t texels) : options_(options) {
@@ -229,7 +227,6 @@ class LightmapTexels {
             targets_.push_back({static_cast<std::size_t>(chart.page), column, row});
         }
     }
-    /// Evaluates the light of a scene and its solution in all texels.
     void evaluate(const Scene& scene, const IrradianceSource& source, std::vector<Image>& images) const {
         const std::vector<Rgb> irradiance = source.irradiance(places_, 1 / options_.texels_per_metre);
         for (std::size_t i = 0; i < places_.size(); ++i)
@@ -257,7 +254,7 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-/// Monitor of part `part` of `count` equal parts. Refers to `whole`.
+/// Converts the progress of a part to that of `whole`, to which it refers.
 PathMonitor part_of(const PathMonitor& whole, std::size_t part, std::size_t count) {
     PathMonitor monitor = whole;
     if (whole.on_progress)
@@ -268,8 +265,7 @@ PathMonitor part_of(const PathMonitor& whole, std::size_t part, std::size_t coun
     return monitor;
 }
 
-/// Evaluates each light group with all other sources dark. The total is the sum of the groups, so that gathered
-/// lightmaps agree including their noise.
+/// Evaluates each light group with all other sources dark. Gathered lightmaps and their sum agree including noise.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
     SourceGroups groups = source_groups(scene);
@@ -283,7 +279,7 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         share.groups.clear();
         ExportOptions of_group = options;
         of_group.monitor = part_of(options.monitor, g, groups.size());
-        lightmap.groups.push_back(lightmap.images);  // dark so far
+        lightmap.groups.push_back(lightmap.images);  // black
         texels.evaluate(alone, IrradianceSource(alone, share, of_group), lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
@@ -293,11 +289,11 @@ double texels_of(const LightmapChart& chart, int gutter) {
     return static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
 }
 
-/// @param texels            Of all images.
-/// @param texels_of_charts  Of all charts with their gutters.
-/// @param groups            Of the solution.
+/// @param texels            All images.
+/// @param texels_of_charts  All charts with their gutters.
+/// @param groups            Light groups of the solution.
 void require_memory(double texels, double texels_of_charts, const LightmapOptions& options, std::size_t groups) {
-    // Per texel of an image: the image, a copy to encode, and the encoded bytes.
+    // Per texel of an image: the image, a copy to encode, the encoded bytes.
     constexpr double image_bytes = sizeof(Rgb) + sizeof(Rgb) + 16, group_bytes = sizeof(Rgb) + sizeof(Rgb);
     // Per texel of a chart: its place and its light.
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + 16 + sizeof(Rgb),

@@ -25,7 +25,6 @@ namespace {
 
 int to_multiple_of_4(int size) { return (size + 3) / 4 * 4; }
 
-/// Where rectangles go in one image.
 struct Packing {
     std::vector<stbrp_rect> rectangles;
     Imath::V2i size{0, 0};
@@ -54,7 +53,7 @@ Packing pack(std::vector<stbrp_rect> rectangles, int width, int height) {
     return packing;
 }
 
-/// Each chart with its gutters, lying or standing.
+/// Returns charts with gutters, their longer sides horizontal (`lying`) or vertical.
 std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen,
                                       int gutter, bool lying) {
     std::vector<stbrp_rect> rectangles;
@@ -66,7 +65,7 @@ std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, 
     return rectangles;
 }
 
-/// The packing of least area among images of many widths; where none holds all, of the most in an image of full size.
+/// Finds the smallest packing over many widths. If all are incomplete, fills an image of full size.
 Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
                      int max_size) {
     constexpr std::size_t many_charts = 2000;
@@ -94,7 +93,7 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
     return lying.packed_area >= standing.packed_area ? lying : standing;
 }
 
-/// By 90 degrees: columns become rows. Charts are never mirrored.
+/// Rotates a chart by 90 degrees; charts are never mirrored.
 void turn(LightmapChart& chart) {
     for (FlatPatch& flat : chart.patches)
         for (Imath::V2d& corner : flat.corners) corner = {corner.y, chart.size.x - corner.x};

@@ -18,17 +18,17 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Two sides of a gap closer than this are kept apart [texels].
+/// Gaps narrower than this separate charts [texels].
 constexpr double narrow_gap = 2;
 
-/// An edge of a patch, or a part of one, across which no other patch continues it.
+/// An edge, or part of it, that no other patch continues.
 struct BorderEdge {
     std::uint32_t patch;
     V3f a, b;
-    V3f inwards;  // unit vector in the patch's plane
+    V3f inwards;  // unit vector in the plane
 };
 
-/// Of one object; each edge with the first of its group.
+/// Returns the joints within objects; each edge is paired with the first of its group.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<std::uint32_t> first(smooth.edges.count, none);
@@ -46,7 +46,7 @@ Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     return joints;
 }
 
-/// The patches on one side of each flat surface, and which of them continue which.
+/// Adjacency of patches on each side of flat surfaces, and their border edges.
 class Neighbourhood {
   public:
     Neighbourhood(const Scene& scene, const Joints& joints)
@@ -63,7 +63,7 @@ class Neighbourhood {
             if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
     }
 
-    /// Which side of which flat surface a patch is part of.
+    /// Identifies a side of a flat surface.
     std::uint64_t side(std::uint32_t p) const {
         const bool is_back = scene_.patches[p].other_side < p;
         return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
@@ -74,7 +74,7 @@ class Neighbourhood {
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
-    /// @param inner  The parts of the edge across which others continue it, in parameters along it.
+    /// @param inner  Continued parts of the edge, in parameters along it.
     void add_border(std::uint32_t edge, Intervals inner) {
         constexpr float rounding = 1e-5f;
         const Patch& patch = scene_.patches[edge / 4];
@@ -84,7 +84,7 @@ class Neighbourhood {
         const V3f inwards = PatchGeometry(scene_, patch).normal().cross(along).normalized();
         std::sort(inner.begin(), inner.end());
         inner.emplace_back(1.0f, 1.0f);
-        float end = 0;  // of what is done
+        float end = 0;  // of the processed part
         for (const auto& [low, high] : inner) {
             if (low > end + rounding) border_.push_back({edge / 4, start + end * along, start + low * along, inwards});
             end = std::max(end, high);
@@ -103,14 +103,14 @@ float distance(const V3f& x, const BorderEdge& edge) {
     return (x - edge.a - t * along).length();
 }
 
-/// Whether a gap of at most `width` lies between two edges, with their patches beyond it on either side.
+/// Returns whether a gap of at most `width` separates two edges and their patches.
 bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     constexpr float opposite = -0.5f;
     if (!(e.inwards.dot(f.inwards) < opposite)) return false;
     const V3f middles = (f.a + f.b) / 2 - (e.a + e.b) / 2;
     const float rounding = 1e-3f * width;
     if (e.inwards.dot(middles) > rounding || f.inwards.dot(middles) < -rounding) return false;
-    // Edges that only touch at a corner have no gap between them.
+    // Edges that only touch at a corner enclose no gap.
     const V3f along = (e.b - e.a).normalized();
     const float length = (e.b - e.a).length(), s = along.dot(f.a - e.a), t = along.dot(f.b - e.a);
     const float overlap = std::min(length, std::max(s, t)) - std::max(0.0f, std::min(s, t));
@@ -118,7 +118,7 @@ bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
 }
 
-/// Adds the conflicts between the patches of one side of a flat surface. @param border  All of its edges.
+/// @param border  All border edges on one side of a flat surface.
 void add_conflicts(std::span<const BorderEdge> border, float gap, ChartConflicts& conflicts) {
     const auto box_of = [](const BorderEdge& edge, float margin) {
         Imath::Box3f box(edge.a);
@@ -152,7 +152,7 @@ ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbour
     return conflicts;
 }
 
-/// Flat pieces of charts: grows each from a patch across its neighbours, as far as there is no conflict.
+/// Grows pieces of charts across neighbours without conflicts.
 std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>& shown,
                                      const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
     std::vector<std::uint32_t> chart(scene.patches.size(), none);
@@ -178,7 +178,7 @@ std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>
 
 using Points = std::vector<Imath::V2d>;
 
-/// Counter-clockwise (Andrew's monotone chain, 1979).
+/// Computes the hull counter-clockwise (Andrew's monotone chain, 1979).
 Points convex_hull(Points points) {
     std::sort(points.begin(), points.end(),
               [](const auto& a, const auto& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
@@ -198,11 +198,11 @@ Points convex_hull(Points points) {
 }
 
 struct Rectangle {
-    Imath::V2d corner, across;  // across has unit length; `down` is it turned by 90 degrees
+    Imath::V2d corner, across;  // across is a unit vector; the other axis is at 90 degrees to it
     Imath::V2d size;
 };
 
-/// The smallest around a convex polygon: it shares a side with one of its edges (Freeman and Shapira 1975).
+/// Finds the smallest rectangle, which shares a side with an edge (Freeman and Shapira 1975).
 Rectangle smallest_rectangle(const Points& hull) {
     Rectangle best;
     double least = std::numeric_limits<double>::max();
@@ -217,7 +217,7 @@ Rectangle smallest_rectangle(const Points& hull) {
             high = {std::max(high.x, q.x), std::max(high.y, q.y)};
         }
         const Imath::V2d size = high - low;
-        constexpr double rounding = 1e-6;  // equal rectangles: the first edge's
+        constexpr double rounding = 1e-6;  // the first of equal rectangles wins
         if (size.x * size.y < least * (1 - rounding)) {
             least = size.x * size.y;
             best = {x * low.x + y * low.y, x, size};
@@ -232,7 +232,7 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
-/// Of patches whose coordinates are positive, the smallest 0.
+/// @param patches  Their smallest coordinates must be 0.
 LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     LightmapChart chart{std::move(patches), {0, 0}};
     for (const FlatPatch& flat : chart.patches)
@@ -244,7 +244,7 @@ LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     return chart;
 }
 
-/// In the rectangle's frame: along it and down from its corner.
+/// Converts to the rectangle's frame: along it and down from its corner.
 FlatPatches moved_into(const Rectangle& rectangle, FlatPatches patches) {
     for (FlatPatch& flat : patches)
         for (Imath::V2d& corner : flat.corners) {
@@ -260,7 +260,6 @@ Points corners_of(const FlatPatches& patches) {
     return points;
 }
 
-/// The smallest rectangle that is not turned.
 Rectangle bounding_rectangle(const FlatPatches& patches) {
     Imath::Box2d box;
     for (const FlatPatch& flat : patches) box.extendBy(flat.box());

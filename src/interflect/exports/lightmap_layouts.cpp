@@ -13,10 +13,10 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Of the unit square: above the rounding of coordinates of 16 bits.
+/// Tolerance in the unit square: above the rounding of 16-bit coordinates.
 constexpr double layout_rounding = 0x1p-15;
 
-/// In the unit square, v downwards.
+/// Returns the layout in the unit square, v downwards.
 FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     const Patch& patch = scene.patches[p];
     FlatPatch flat{p, patch.vertex_count()};
@@ -27,8 +27,7 @@ FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     return flat;
 }
 
-/// A layout that fills less of its rectangle costs more texels than it is worth: such is an object's part of a map that
-/// many objects share.
+/// Minimum share of a layout's rectangle in use. Emptier layouts waste texels, as where many objects share a map.
 constexpr double least_filled = 0.1;
 
 bool is_mostly_empty(const FlatPatches& layout) {
@@ -62,7 +61,7 @@ bool overlaps_itself(const FlatPatches& layout) {
     });
 }
 
-/// What keeps a layout from being used; null: nothing.
+/// Returns null for a usable layout.
 const char* fault_of(const FlatPatches& layout) {
     const auto has_no_area = [](const FlatPatch& flat) {
         return std::abs(flat.signed_area()) < layout_rounding * layout_rounding;
@@ -73,7 +72,7 @@ const char* fault_of(const FlatPatches& layout) {
     return nullptr;
 }
 
-/// So that all patches together have the area that they have in space.
+/// Scales a layout to the total area of its patches in space.
 void scale(const Scene& scene, FlatPatches& layout) {
     double flat_area = 0, area = 0;
     for (const FlatPatch& flat : layout) {
@@ -91,8 +90,7 @@ std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool
     std::map<std::uint32_t, FlatPatches> layout_of_object;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
-        const bool is_second_side =
-            patch.other_side < p && shown[patch.other_side];  // of which the first has the place
+        const bool is_second_side = patch.other_side < p && shown[patch.other_side];  // the first side is in the layout
         if (shown[p] && !is_second_side && !std::isnan(scene.lightmap_coordinates[patch.vertices[0]].x))
             layout_of_object[patch.object].push_back(given_layout(scene, p));
     }

@@ -8,11 +8,10 @@
 
 namespace interflect::inline detail {
 
-/// The layouts that objects bring along (Scene::lightmap_coordinates), of their shown patches that have coordinates: to
-/// the right and down [m], so that the patches of an object have the same area in it as in space. Of a face whose two
-/// sides are shown, the first is in it. Ignored is the layout of an object of which a patch has no area in it, or two
-/// patches overlap, or that leaves most of its rectangle empty.
-/// @param warnings  Gets the objects whose layouts are ignored; may be null.
+/// Returns the objects' own layouts (Scene::lightmap_coordinates) of shown patches, x right and y down [m], with the
+/// patches' total area in space. If both sides of a face are shown, only the first is included. Ignores layouts with
+/// overlaps, patches of no area or a mostly empty rectangle.
+/// @param warnings  Receives the objects with ignored layouts; may be null.
 std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool>& shown, Warnings* warnings);
 
 }  // namespace interflect::inline detail

@@ -8,7 +8,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// @param encode  Makes the file's bytes.
 std::vector<ExportedFile> make(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                const ExportOptions& options, std::string (GltfDocument::*encode)() const) {
     GltfDocument document;

@@ -12,38 +12,38 @@
 
 namespace interflect::inline detail {
 
-/// The leaves of a solved scene as convex polygons without T-junctions (ElementMesh), with the light at their corners,
-/// as shading 'smooth' draws it. Corners at one point that agree in all but their place on the patch are one vertex.
+/// Leaves as convex polygons without T-junctions (ElementMesh), with their corner light as in shading 'smooth'. Corners
+/// with equal point, irradiance and radiosity share a vertex.
 struct LitPolygons {
     struct Vertex {
         std::uint32_t point;  ///< Index into `points`.
         Rgb irradiance;       ///< H [lm/m^2 or W/m^2].
-        Rgb radiosity;        ///< B = M + rho H [as H], textures included.
+        Rgb radiosity;        ///< B = M + rho H [unit of H], textures included.
         bool operator==(const Vertex&) const = default;
     };
 
     std::vector<V3f> points;  ///< Relative to Scene::origin [m].
     std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> leaves;   ///< Of each polygon, its element.
-    std::vector<std::uint32_t> ends;     ///< Of each polygon, where its corners end in `corners`.
+    std::vector<std::uint32_t> leaves;   ///< Element per polygon.
+    std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
     std::vector<std::uint32_t> corners;  ///< Indices into `vertices`, counter-clockwise seen from the lit side.
-    std::vector<Parameters> parameters;  ///< Of each corner, where it is on its patch.
+    std::vector<Parameters> parameters;  ///< Position per corner, on its patch.
 
     std::size_t size() const { return leaves.size(); }
     std::uint32_t begin(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
 };
 
-/// Leaves without area are left out. Cost: as ElementMesh.
+/// Omits leaves without area. Cost: as ElementMesh.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
-/// Colours for eyes: radiance times 2^exposure, within_display_range(), as 8-bit sRGB.
+/// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB.
 /// @param radiosity  [lm/m^2 or W/m^2] @param exposure  [stops]
 std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure);
 
-/// World coordinates of a point [m]: in the fewest digits that tell it from its neighbours.
+/// Formats world coordinates [m] with the fewest digits that identify them.
 std::string position_text(const Scene& scene, const V3f& point);
 
-/// Appends the bytes of a number, least significant first.
+/// Appends the least significant byte first.
 template <class Number>
 void append_bytes(std::string& bytes, Number number) {
     static_assert(std::endian::native == std::endian::little);

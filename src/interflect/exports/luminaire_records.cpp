@@ -33,7 +33,7 @@ Json record_of(const DirectionalLight& light) {
 
 Json record_of(const UniformSky& sky) { return {{"radiance", json_of(sky.radiance)}}; }
 
-/// But for the web.
+/// Omits the web.
 Json record_of(const MeasuredLight& light) {
     return {{"position", json_of(light.position)},
             {"direction", json_of(light.direction)},
@@ -48,7 +48,7 @@ Json list_of(const std::vector<float>& numbers) {
     return json;
 }
 
-/// The numbers of a sky's model, in order.
+/// Parameters in file order.
 constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &SkyModel::b, &SkyModel::c,
                                                                &SkyModel::d, &SkyModel::e, &SkyModel::g};
 
@@ -62,7 +62,7 @@ Json record_of(const SkyDome& sky) {
             {"ground", shortest_number(sky.ground)}};
 }
 
-/// But for the image.
+/// Omits the image.
 Json record_of(const EnvironmentMap& map) {
     return {{"zenith", json_of(map.zenith)}, {"north", json_of(map.north)}, {"factor", json_of(map.factor)}};
 }

@@ -8,25 +8,25 @@
 
 namespace interflect::inline detail {
 
-/// The photometric webs that luminaires share, in the order in which they are first asked for.
+/// Webs shared by luminaires, in order of first use.
 class WebTable {
   public:
     std::size_t index_of(const std::shared_ptr<const PhotometricWeb>& web);
-    Json json() const;  ///< Of all, as `photometric_webs` in the description of a solution file.
+    Json json() const;  ///< Returns `photometric_webs` of a solution file.
 
   private:
     std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
 };
-/// What WebTable::json() told. @throws Json::exception, std::runtime_error where it is none.
+/// Parses WebTable::json(). @throws Json::exception, std::runtime_error
 std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
 
-/// Images of environment maps, in the order of environment_maps().
+/// Images in the order of environment_maps().
 using MapImages = std::vector<std::shared_ptr<const Texture>>;
 
-/// A luminaire in the description of a solution file. @param webs  Gets the web that it has.
-/// @param maps  Among which is its image.
+/// Describes a luminaire for a solution file. @param webs  Receives its web.
+/// @param maps  Must contain its image.
 Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps = {});
-/// @throws Json::exception, std::runtime_error where it is none.
+/// Inverse of json_of(). @throws Json::exception, std::runtime_error
 Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,
                        const MapImages& maps = {});
 

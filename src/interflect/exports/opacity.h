@@ -4,17 +4,17 @@
 
 namespace interflect::inline detail {
 
-// A surface with holes (Material::transmittance_texture) as other renderers have it: opaque in part, and of some
-// reflectance there. A Scene has the reflectance times the opacity.
+// Other renderers expect holes (Material::transmittance_texture) as opacity and reflectance of the opaque part. A Scene
+// stores their product as reflectance.
 
-/// 1 - transmittance, of which the channels' mean is taken.
+/// Returns 1 - transmittance, averaged over the channels.
 Texture opacity_of(const Scene& scene, const Material& material);
 
-/// The texture of the reflectance divided by the opacity; black where that is 0. White, where the material has none.
-/// @param opacity  opacity_of() the material, whose size the result has.
+/// Returns the reflectance texture divided by the opacity: black where that is 0, white without texture.
+/// @param opacity  opacity_of() the material; determines the size of the result.
 Texture opaque_reflectance(const Scene& scene, const Material& material, const Texture& opacity);
 
-/// Whether a surface is all there or not at all, from point to point, as far as 8 bits tell.
+/// Returns whether every texel is fully opaque or transparent, to 8 bits.
 bool is_mask(const Texture& opacity);
 
 }  // namespace interflect::inline detail

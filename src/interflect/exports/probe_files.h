@@ -7,10 +7,10 @@
 
 namespace interflect::inline detail {
 
-/// Irradiance probes as JSON: docs/exported-scenes.md has the keys.
+/// Exports irradiance probes as JSON (docs/exported-scenes.md).
 std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, const Scene& scene,
                                            const Solution& solution, const ExportOptions& options);
-/// The same with the coefficients as the layers of an OpenEXR image, a pixel a probe, and the JSON beside it.
+/// Exports the coefficients as layers of an OpenEXR image, one pixel per probe, and the other keys as JSON beside it.
 std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, const Scene& scene,
                                           const Solution& solution, const ExportOptions& options);
 

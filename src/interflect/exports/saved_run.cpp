@@ -1,4 +1,4 @@
-// Solver::save() and Solver::open(): here, since the solver knows no file formats.
+// Solver::save() and Solver::open(), here because the solver is independent of file formats.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace interflect {
 
 namespace {
 
-/// Options that a solution file does not have: they depend on the machine that a run began on.
+/// Archives options that solution files omit because they depend on the machine.
 void archive_options(StateArchive& archive, SolveOptions& options) {
     options.refinement.max_elements =
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
@@ -25,7 +25,7 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
 
 void Solver::save(const std::filesystem::path& path) {
     PendingFile file(path);
-    Solution result = solution();  // before the archive refers to what this works on
+    Solution result = solution();  // before the archive refers to the solver's data
     result.dimming = dimming();
     StateArchive state;
     SolveOptions saved = options();
@@ -43,7 +43,7 @@ Solver Solver::open(const std::filesystem::path& path) {
         solver.archive(state);
         return solver;
     } catch (const std::bad_alloc&) {
-        throw;  // it is no fault of the file
+        throw;  // not a fault of the file
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
     }

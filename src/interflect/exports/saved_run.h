@@ -7,14 +7,13 @@
 
 namespace interflect::inline detail {
 
-/// A run that can go on.
 struct SavedRun {
-    SolvedScene solved;  ///< The sources of its scene are not dimmed; Solution::dimming says which should be.
-    StateArchive state;  ///< For reading.
+    SolvedScene solved;  ///< Sources are undimmed; apply Solution::dimming.
+    StateArchive state;  ///< Open for reading.
 };
 
-/// Reads what write_solution() wrote with a state: opens and verifies the file once. @throws InputError where it has no
-/// state, or one of another version of Interflect, and as read_solution().
+/// Opens and verifies a file with state once. @throws InputError as read_solution(), and if the state is missing or
+/// from another version of Interflect.
 SavedRun read_saved_run(const std::filesystem::path& path);
 
 }  // namespace interflect::inline detail

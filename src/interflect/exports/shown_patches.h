@@ -7,12 +7,12 @@
 
 namespace interflect::inline detail {
 
-/// Which patches a picture of the light needs: all but those that coincident faces cover wholly
-/// (RayCaster::uncovered_share), and but the dark sides of faces, of which one dark on both sides keeps its first. They
-/// would show through along the edges of what is lit, and in its place where a renderer draws both sides of a face.
-/// Patches that only dark ones surround (encased_patches()) are left out too, unless the whole scene is dark: with
-/// multisampling they show through along the edges where the faces before them touch the same surface.
-/// @param irradiance  Of every element, patches first.
+/// Returns which patches a picture of the light needs. Excludes patches fully covered by coincident faces
+/// (RayCaster::uncovered_share) and dark sides of faces; a face dark on both sides keeps its first. Dark sides would
+/// show through along lit edges, or where a renderer draws both sides. Unless the whole scene is dark, also excludes
+/// patches surrounded by dark ones (encased_patches()): with multisampling they show through where other faces touch
+/// the same surface.
+/// @param irradiance  One value per element, patches first.
 std::vector<bool> shown_patches(const Scene& scene, std::span<const Rgb> irradiance);
 
 }  // namespace interflect::inline detail

@@ -27,8 +27,8 @@ namespace interflect {
 
 namespace {
 
-/// Version 5 has every iteration, and checksums of the files that were read. Version 4 has checksums, options and
-/// result. Version 3 has an origin, contacts, and the surfaces of patches; before, the origin was 0.
+/// Version 5 adds all iterations and checksums of input files; 4 checksums, options and result; 3 an origin (before:
+/// 0), contacts and surfaces of patches.
 constexpr int format_version = 5, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
@@ -48,7 +48,7 @@ std::vector<Vector> grouped(const std::vector<float>& numbers) {
     return v;
 }
 
-/// A patch is eight numbers: four vertices, material, object, other side, surface.
+/// Four vertices, material, object, other side and surface.
 constexpr std::size_t numbers_per_patch = 8;
 
 std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
@@ -61,7 +61,7 @@ std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     return numbers;
 }
 
-/// @param each  Numbers of a patch: all of them, or one less.
+/// @param each  Numbers per patch, with or without the surface.
 std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
     std::vector<Patch> patches(numbers.size() / each);
     for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -75,7 +75,7 @@ std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::si
     return patches;
 }
 
-/// A contact is two points.
+/// Returns two points per contact.
 std::vector<V3f> contact_ends(const Scene& scene) {
     std::vector<V3f> ends;
     for (const Contact& c : scene.contacts) ends.insert(ends.end(), {c.a, c.b});
@@ -97,7 +97,7 @@ std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<s
     return forest;
 }
 
-/// What every element has one number of.
+/// A quantity with one number per element.
 struct ElementNumbers {
     const char* dataset;
     const char* name;
@@ -112,7 +112,7 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-/// Why `numbers` cannot be what the elements have `per_element` of each; empty if they can.
+/// Requires `per_element` finite, non-negative numbers per element; returns the fault or an empty string.
 std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
                      const char* what) {
     if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);
@@ -128,7 +128,7 @@ void require_none(const std::string& fault) {
     if (!fault.empty()) throw std::runtime_error(fault);
 }
 
-// What a reader may rely on, and so what a writer must hold to.
+// Invariants of files.
 
 void require_valid(const Scene& scene) {
     for (const std::string& fault : scene_faults(scene)) require_none(fault);
@@ -149,7 +149,6 @@ void require_valid(const Solution& solution) {
     if (!is_finite(solution.emitted_power)) require_none("the emitted power is not finite");
 }
 
-/// Whether a file has the eight bytes that HDF5 begins with at `offset`.
 bool has_hdf5_signature(const std::filesystem::path& path, std::uint64_t offset) {
     std::string begin(hdf5_signature.size(), '\0');
     std::ifstream file(path, std::ios::binary);
@@ -177,7 +176,7 @@ std::vector<double> history_numbers(const Solution& solution) {
     return numbers;
 }
 
-/// @param solution  Its iterations are those of the description: the last one, or a first that is empty.
+/// @param solution  Its single iteration is replaced by a non-empty history.
 void read_history(const Hdf5Reader& file, Solution& solution) {
     const std::size_t columns = report_columns().size();
     const std::vector<double> numbers = file.read<double>(history_dataset, columns);
@@ -191,7 +190,7 @@ std::string group_dataset(std::size_t group) { return fmt::format("/solution/gro
 
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
     Solution& solution = solved.solution;
-    const std::size_t named = solved.scene.light_groups.size();  // beside them there may be "other" light
+    const std::size_t named = solved.scene.light_groups.size();  // perhaps also a group of other sources
     const bool has_names =
         solution.group_names.size() == named || (named > 0 && solution.group_names.size() == named + 1);
     if (!has_names || solution.dimming.size() != solution.group_names.size())
@@ -201,7 +200,7 @@ void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
         solution.groups.push_back(grouped<Rgb>(file.read<float>(group_dataset(g), 3)));
 }
 
-/// The sources of the scene emit what the solution has scaled them to.
+/// Applies the dimming to the scene's sources and resets it to 1.
 void apply_dimming(SolvedScene& solved) {
     std::vector<float>& dimming = solved.solution.dimming;
     if (std::all_of(dimming.begin(), dimming.end(), [](float factor) { return factor == 1; })) return;
@@ -227,14 +226,14 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
 }
 
-/// A solution file whose checksums have been verified, if it has them.
+/// A file whose checksums, if any, are verified.
 struct VerifiedFile {
     bool has_checksums;
     Hdf5Reader arrays;
 };
 
 VerifiedFile verified(const std::filesystem::path& path) {
-    // HDF5 would look for its beginning farther on; a file without checksums begins with it.
+    // HDF5 also searches for its signature further on; a file without checksums begins with it.
     const bool has_checksums = !has_hdf5_signature(path, 0);
     if (has_checksums) verify_checksums(path);
     return {has_checksums, Hdf5Reader(path)};
@@ -254,7 +253,7 @@ SolvedScene read_solved_scene(const VerifiedFile& file) {
     return solved;
 }
 
-/// @return Where the arrays are in the file.
+/// @return  Positions of the arrays in the file.
 std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& description, const Scene& scene,
                                     const Solution& solution) {
     const auto write = [&]<class T>(const char* name, const std::vector<T>& numbers, std::size_t columns) {
@@ -277,10 +276,10 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 }
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
-/// Of what the arrays of a state are: to be raised whenever one of them changes.
+/// Increase it whenever an array of the state changes.
 constexpr int state_version = 2;
 
-/// Writes the arrays of a state one after the other as one, and a list of them. @return Where they are in the file.
+/// Writes a state as one array and an index. @return  Their positions in the file.
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();
     std::vector<std::span<const std::byte>> parts;
@@ -315,7 +314,7 @@ StateArchive read_state(const VerifiedFile& file) {
     return StateArchive(std::move(arrays));
 }
 
-/// An HDF5 file that begins with an empty block for checksums.
+/// Writes a file that begins with an empty block for checksums.
 std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
                                   const Solution& solution, const StateArchive* state) {
     Hdf5Writer file(path, checksum_block_size);
@@ -332,13 +331,13 @@ void require_solution_file(const std::filesystem::path& path) {
     if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
 }
 
-/// What `read` returns; what it throws becomes an InputError that names the file and begins with `fault`.
+/// Calls `read` and converts its exceptions to an InputError with the file's name and `fault`.
 template <class Read>
 auto read_or_refuse(const std::filesystem::path& path, const char* fault, const Read& read) {
     try {
         return read();
     } catch (const std::bad_alloc&) {
-        throw;  // it is no fault of the file
+        throw;  // not a fault of the file
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
     }

@@ -24,7 +24,6 @@ constexpr Choices<RefinementCriterion, 2> criteria{
 constexpr Choices<ImportanceUse, 3> uses_of_importance{
     {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}}};
 
-/// Writes fields to JSON.
 struct Writer {
     Json& json;
 
@@ -44,7 +43,6 @@ struct Writer {
     }
 };
 
-/// Sets fields from JSON.
 struct Reader {
     const Json& json;
 
@@ -69,7 +67,6 @@ struct Reader {
     }
 };
 
-/// Writes fields to a row of numbers, and their names.
 struct RowWriter {
     std::vector<std::string>& names;
     std::vector<double>& row;
@@ -85,7 +82,6 @@ struct RowWriter {
     }
 };
 
-/// Sets fields from a row of numbers.
 struct RowReader {
     std::span<const double>& left;
 
@@ -114,8 +110,8 @@ struct RowReader {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The one list of options and their names: those of the members, after the group's name where they would not say
-/// enough alone. @param access  Writer or Reader.
+/// Visits all options with their names; ambiguous names begin with their group's.
+/// @param access  Writer or Reader.
 template <class Options, class Access>
 void for_each_option(Options& options, const Access& access) {
     auto& limits = options.limits;
@@ -148,7 +144,7 @@ void for_each_option(Options& options, const Access& access) {
     access.field("beta", o.beta);
 }
 
-/// Of options as they were named before: under their present names.
+/// Renames options of older versions.
 Json with_present_names(Json json) {
     if (json.contains("time")) return json;
     json["time"] = json.at("seconds");
@@ -161,7 +157,7 @@ Json with_present_names(Json json) {
     return json;
 }
 
-/// The one list of what is told of an iteration. @param access  Writer or Reader.
+/// Visits all numbers of an iteration. @param access  Writer, Reader, RowWriter or RowReader.
 template <class Report, class Access>
 void for_each_number(Report& r, const Access& access) {
     access.field("iteration", r.iteration);

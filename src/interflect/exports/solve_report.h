@@ -9,33 +9,32 @@
 
 namespace interflect::inline detail {
 
-/// How a solution was asked for: the `options` of solution files and of `solve --stats`, under the names of the command
-/// line. A limit that was not given is null. Of SolveOptions it lacks the seed and the method's name, which stand
-/// beside it, and max_elements, which follows the memory of the machine.
+/// Returns the options of a run under the names of the command line, for solution files and `solve --stats`. Limits
+/// that were not set are null. Omits the seed and the method's name, stored beside it, and max_elements, which depends
+/// on the machine's memory.
 Json json_of(const SolveOptions& options);
 
-/// Sets what json_of() has stored. @throws nlohmann::json::exception, InputError where something is missing or unknown.
+/// Inverse of json_of(). @throws nlohmann::json::exception, InputError for missing or unknown values.
 void read_options(const Json& stored, SolveOptions& options);
 
-/// Where a run stood after an iteration, but for the time that it took: the same input gives the same text. An error
-/// that is not known is null.
+/// Returns the state of a run after an iteration, without its duration: equal input gives equal text. Unknown errors
+/// are null.
 Json json_of(const IterationReport& report);
 
-/// What json_of() told. @throws nlohmann::json::exception
+/// Inverse of json_of(). @throws nlohmann::json::exception
 IterationReport report_of(const Json& json);
 
-/// The same of every iteration as a table of numbers, for programs that plot it; an error that is not known is
-/// infinite.
+/// Return all iterations as a table of numbers, for plots. Unknown errors are infinite.
 std::vector<std::string> report_columns();
 std::vector<double> report_row(const IterationReport& report);
-/// The inverse. @param row  As many numbers as there are columns. @throws std::runtime_error for one that cannot be.
+/// Inverse of report_row(). @throws std::runtime_error for impossible numbers. @param row  One number per column.
 IterationReport report_of_row(std::span<const double> row);
 
-/// A view, with world coordinates in double precision.
+/// Keeps world coordinates in double precision.
 Json json_of(const View& view);
 View view_of(const Json& json);
 
-/// Three numbers. @throws nlohmann::json::exception
+/// @throws nlohmann::json::exception
 template <class Vector>
 Vector vector_of(const Json& json) {
     using Number = decltype(Vector::x);

@@ -8,23 +8,22 @@
 
 namespace interflect::inline detail {
 
-// Textures in a solution file: indices, names and sizes in its description, texels and coordinates as arrays.
+// Textures in a solution file: indices, names and sizes as JSON, texels and coordinates as arrays.
 
-/// Name and size of a texture, and of each.
+/// Return name and size.
 Json json_of(const Texture& texture);
 Json json_of(const std::vector<Texture>& textures);
-/// The same textures, without their texels. @throws Json::exception where they are none.
+/// Parses textures without texels. @throws Json::exception
 std::vector<Texture> textures_of(const Json& json);
 
-/// Adds the indices of a material's textures, where it has some, to its object in the description.
+/// Adds texture indices to a material's JSON.
 void add_textures(const Material& material, Json& json);
-/// The inverse. @throws Json::exception
+/// @throws Json::exception
 void read_textures(const Json& json, Material& material);
 
-/// Writes the texels of a scene's textures and environment maps, and its texture and lightmap coordinates, where there
-/// are some. @return Where they are.
+/// Writes textures, environment maps and any coordinates. @return  Positions in the file.
 std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
-/// The inverse. @param scene  Has its textures and environment maps without their texels. @throws std::runtime_error
+/// @param scene  Has textures and maps without texels. @throws std::runtime_error
 void read_textures(const Hdf5Reader& file, Scene& scene);
 
 }  // namespace interflect::inline detail

@@ -10,18 +10,18 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Pieces are compared with all that a layout has already.
+/// Limit of patches per layout: each new piece is compared with all of them.
 constexpr std::size_t most_patches_unfolded = 4096;
 
-/// How much pieces give way: edges by this share of their length.
+/// Maximum relative change of edge lengths.
 constexpr double most_stretch = 0.1;
-/// And the area between the two edges at a corner.
+/// Maximum relative change of the area between two edges at a corner.
 constexpr double most_shear = 0.2;
 
-/// Of lengths: what is below this share of them is rounding.
+/// Relative tolerance for rounding.
 constexpr double flat_rounding = 1e-4;
 
-/// Moves a plane onto itself, without mirroring.
+/// Motion of the plane without mirroring.
 struct RigidMotion {
     Imath::V2d from, to, cos_sin;
 
@@ -31,10 +31,10 @@ struct RigidMotion {
     }
 };
 
-/// Where a point of a piece is to come.
+/// A point and its target.
 using PointPair = std::pair<Imath::V2d, Imath::V2d>;
 
-/// The motion of least squares (Kabsch 1976). @param pairs  Not all in one point.
+/// Finds the least-squares motion (Kabsch 1976); nullopt if all points coincide.
 std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     RigidMotion motion{{0, 0}, {0, 0}, {0, 0}};
     for (const auto& [from, to] : pairs) {
@@ -50,7 +50,7 @@ std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     return motion;
 }
 
-/// Whether a patch has nearly kept its shape.
+/// Returns whether edges change by at most `stretch` and areas at corners by at most `shear`.
 bool is_alike(const FlatPatch& a, const FlatPatch& b, double stretch, double shear) {
     const std::size_t count = a.outline().size();
     const auto is_within = [](double x, double y, double share) { return std::abs(x - y) <= share * std::abs(x); };
@@ -91,7 +91,7 @@ class Unfolding {
     }
 
   private:
-    /// Adds neighbours of what it has until there are none that fit.
+    /// Adds neighbouring pieces while any fits.
     FlatPatches grow(std::uint32_t seed, std::uint32_t number) {
         layout_.clear();
         boxes_.clear();
@@ -122,7 +122,7 @@ class Unfolding {
         }
     }
 
-    /// Where a piece comes in the layout; none where it does not fit.
+    /// Returns nullopt if the piece does not fit.
     std::optional<FlatPatches> place(std::uint32_t piece, std::uint32_t number) const {
         if (has_conflict(piece, number)) return std::nullopt;
         bool has_seams = false;
@@ -137,7 +137,7 @@ class Unfolding {
             }
         }
         for (std::size_t i = 0; i < placed.size(); ++i) {
-            // On parts of edges there are corners in the middle of other edges, which do not give way.
+            // Partial edges have corners inside other edges and cannot deform.
             const bool fits = has_seams ? is_alike(pieces_[piece][i], placed[i], flat_rounding, flat_rounding)
                                         : is_alike(pieces_[piece][i], placed[i], most_stretch, most_shear);
             if (!fits || !has_room(placed[i])) return std::nullopt;
@@ -154,7 +154,7 @@ class Unfolding {
         });
     }
 
-    /// The points of a piece that are in the layout already.
+    /// Returns the points of a piece that the layout already contains.
     std::vector<PointPair> common_points(std::uint32_t piece, std::uint32_t number, bool& has_seams) const {
         std::vector<PointPair> pairs;
         for (const FlatPatch& flat : pieces_[piece])
@@ -182,7 +182,7 @@ class Unfolding {
         return flat.corners[start] * (1 - share) + flat.corners[end] * share;
     }
 
-    /// Whether a patch overlaps nothing in the layout, and is near in it only to what is near in space.
+    /// Returns whether a patch overlaps no other and is near only to patches near in space.
     bool has_room(const FlatPatch& flat) const {
         const Imath::Box2d box = flat.box();
         const double rounding = flat_rounding * box.size().length();
@@ -195,8 +195,7 @@ class Unfolding {
         return true;
     }
 
-    /// The line between two points of a layout is a path on the surface where the layout covers it; points further from
-    /// each other in space have what is beside the layout between them.
+    /// If points are further apart in space than in the layout, part of the line between them is outside the layout.
     bool is_apart_in_space(const FlatPatch& a, const FlatPatch& b) const {
         const double in_space = (centre(a.patch) - centre(b.patch)).length(), flat = (a.centre() - b.centre()).length();
         return in_space > (1 + most_stretch) * flat;
@@ -209,15 +208,15 @@ class Unfolding {
     const ChartConflicts& conflicts_;
     std::vector<FlatPatches> pieces_;
     double gap_;
-    std::vector<std::uint32_t> piece_of_;                // of each patch
-    std::vector<std::uint32_t> layout_of_;               // of each piece
-    std::vector<std::vector<std::uint32_t>> joints_of_;  // of each piece
+    std::vector<std::uint32_t> piece_of_;                // by patch
+    std::vector<std::uint32_t> layout_of_;               // by piece
+    std::vector<std::vector<std::uint32_t>> joints_of_;  // by piece
 
-    // The layout that grows:
+    // The current layout:
     FlatPatches layout_;
     std::vector<Imath::Box2d> boxes_;
-    std::unordered_map<std::uint32_t, Imath::V2d> position_;          // of groups of corners
-    std::unordered_map<std::uint32_t, std::size_t> place_in_layout_;  // of patches
+    std::unordered_map<std::uint32_t, Imath::V2d> position_;          // by group of corners
+    std::unordered_map<std::uint32_t, std::size_t> place_in_layout_;  // by patch
 };
 
 }  // namespace

@@ -10,18 +10,17 @@
 
 namespace interflect::inline detail {
 
-/// Of each patch those that must be in other charts.
+/// For each patch, the patches that must be in other charts.
 using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
 
-/// Edges, or parts of them, across which two patches of a smooth surface continue each other.
+/// Edges, or parts of them, that join two patches of a smooth surface.
 using Joints = std::vector<SmoothSurfaces::Seam>;
 
-/// Unfolds smooth surfaces into the plane: joins flat pieces along their common edges, as if on hinges. Exact for
-/// developable surfaces, such as cylinders and cones. Elsewhere, as on spheres, a piece gives way so that it shares its
-/// corners with the pieces around it: each edge keeps its length to a tenth, each corner its area to a fifth. Where a
-/// loop closes only with more, or where pieces would overlap, the piece begins another layout. So does one that would
-/// come closer than `gap` [m] to a piece that is further from it in space.
-/// @param corners  Of find_smooth_surfaces().
+/// Unfolds smooth surfaces into the plane by joining flat pieces at common edges. Exact for developable surfaces, such
+/// as cylinders and cones. On others, such as spheres, pieces deform to share corners: edges by up to 10%, areas at
+/// corners by up to 20%. A piece that would deform more, overlap, or come closer than `gap` [m] to a piece further away
+/// in space starts another layout.
+/// @param corners  From find_smooth_surfaces().
 /// @param joints   Between pieces. @param conflicts  Between patches.
 /// Cost: O(n) for n pieces of bounded layouts (most_patches_unfolded).
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,

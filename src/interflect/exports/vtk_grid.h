@@ -12,7 +12,7 @@
 
 namespace interflect::inline detail {
 
-/// An array of VTK: rows of `components` numbers each.
+/// Rows of `components` numbers.
 struct VtkArray {
     std::string name;
     std::size_t components;
@@ -20,28 +20,27 @@ struct VtkArray {
         numbers;
 };
 
-/// A solved scene as VTK's unstructured grid, which its files have in common: a cell is a leaf, a point what leaves
-/// share of their corners. Arrays are made one at a time, when they are asked for.
+/// A solved scene as VTK unstructured grid: cells are leaves; corners of leaves share points. Creates one array at a
+/// time, on request.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;
 
-    /// Both arguments have to outlive it. Cost: as lit_polygons().
+    /// Keeps references. Cost: as lit_polygons().
     VtkGrid(const Scene& scene, const Solution& solution)
         : scene_(scene), solution_(solution), polygons_(lit_polygons(scene, solution)) {}
 
     std::size_t point_count() const { return polygons_.vertices.size(); }
     std::size_t cell_count() const { return polygons_.size(); }
-    /// World coordinates [m]: in single precision where the scene lies at the world's origin, else in double.
+    /// Returns world coordinates [m]; double if the scene's origin is not 0.
     VtkArray points() const;
-    /// The points of all cells, one cell after the other.
+    /// Returns the points of all cells in order.
     std::vector<std::int64_t> connectivity() const;
-    /// Where each cell begins in `connectivity`, then where the last one ends.
+    /// Returns the first index of each cell in `connectivity`, then the end of the last.
     std::vector<std::int64_t> offsets() const;
-    /// VTK's numbers of the cells' types.
     std::vector<std::uint8_t> types() const;
 
-    /// Hands on every array of the points, or of the cells; the first is the one to be looked at.
+    /// Pass all arrays of points or cells to `sink`; the first is the default for display.
     void visit_point_data(const Sink& sink) const;
     void visit_cell_data(const Sink& sink) const;
 

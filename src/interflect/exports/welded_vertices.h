@@ -11,11 +11,11 @@
 
 namespace interflect::inline detail {
 
-/// The vertices of a list of triangles, each once. @tparam Vertex  Of 32-bit members alone.
+/// Triangle list with unique vertices. @tparam Vertex  32-bit members only.
 template <class Vertex>
 class WeldedVertices {
   public:
-    /// The next corner of a triangle.
+    /// Appends a corner of a triangle.
     void add(const Vertex& vertex) {
         const auto number = static_cast<std::uint32_t>(vertices_.size());
         Words words;
@@ -25,7 +25,6 @@ class WeldedVertices {
         indices_.push_back(entry->second);
     }
 
-    /// value(vertex) of each vertex.
     template <class Value>
     auto values(const Value& value) const {
         std::vector<decltype(value(std::declval<const Vertex&>()))> result;

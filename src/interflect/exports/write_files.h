@@ -7,8 +7,8 @@
 
 namespace interflect::inline detail {
 
-/// Writes files that belong together: each appears under its name when all are complete. @return  Their names.
-/// @throws InputError for a path that cannot be written; std::runtime_error where writing fails.
+/// Writes files, and renames them from temporary names when all are complete. @return  Their names.
+/// @throws InputError for an invalid path; std::runtime_error if writing fails.
 std::vector<std::filesystem::path> write_files(const std::vector<ExportedFile>& files);
 
 }  // namespace interflect::inline detail

@@ -19,14 +19,14 @@ namespace {
 
 std::string text_of_colour(const Rgb& colour) { return fmt::format("{} {} {}", colour.x, colour.y, colour.z); }
 
-/// Greys in MTL are no colours, of which PNG would have the sRGB code.
+/// MTL reads greys as linear: cancels the sRGB encoding of PNG.
 std::string opacity_png(const Texture& opacity) {
     Image image(static_cast<int>(opacity.width), static_cast<int>(opacity.height));
     for (std::size_t i = 0; i < opacity.texels.size(); ++i) image.pixels[i] = Rgb(srgb_decode(opacity.texels[i].x));
     return codecs::encode_png(image);
 }
 
-/// @param images  Of all textures; those of cut-outs are added.
+/// @param images  Images of textures; those for cut-outs are appended.
 std::string materials_text(const std::filesystem::path& path, const Scene& scene, std::vector<ExportedFile>& images) {
     const std::vector<std::string> names = material_names(scene);
     std::string text = fmt::format("# Interflect {}\n", INTERFLECT_VERSION);
@@ -57,7 +57,7 @@ std::string materials_text(const std::filesystem::path& path, const Scene& scene
     return text;
 }
 
-/// The polygons by object, then by material; in the order of the leaves within.
+/// Sorts by object, material and leaf.
 std::vector<std::uint32_t> by_object_and_material(const Scene& scene, const ElementForest& forest,
                                                   const LitPolygons& polygons) {
     std::vector<std::uint32_t> order(polygons.size());
@@ -78,7 +78,7 @@ void append_vertices(std::string& text, const Scene& scene, const LitPolygons& p
     }
 }
 
-/// Faces, each after the texture coordinates of its corners where its material has an image.
+/// Appends faces, each after the texture coordinates of its corners, if any.
 void append_faces(std::string& text, const Scene& scene, const ElementForest& forest, const LitPolygons& polygons) {
     const std::vector<std::string> materials = material_names(scene), objects = object_names(scene);
     std::uint32_t object = none, material = none, coordinates = 0;
@@ -103,7 +103,7 @@ void append_faces(std::string& text, const Scene& scene, const ElementForest& fo
 
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
-    require_nameable(path, "#\\");  // a comment; a separator of folders to some readers
+    require_nameable(path, "#\\");  // '#' begins a comment; '\' separates folders in some readers
     const LitPolygons polygons = lit_polygons(scene, solution);
     std::vector<ExportedFile> files = texture_files(path, scene);
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");

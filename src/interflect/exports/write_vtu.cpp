@@ -19,7 +19,7 @@ constexpr const char* vtk_type() {
     if constexpr (std::is_same_v<Number, std::uint8_t>) return "UInt8";
 }
 
-/// The elements of a VTK XML file, whose numbers are appended to it as they are.
+/// A VTK XML file with its numbers appended as raw bytes.
 class VtkDocument {
   public:
     void open(const std::string& tag) { xml_ += "<" + tag + ">\n"; }
@@ -53,7 +53,7 @@ void add_geometry(VtkDocument& file, const VtkGrid& grid) {
     file.open("Cells");
     const std::vector<std::int64_t> offsets = grid.offsets();
     file.add<std::int64_t>("connectivity", grid.connectivity());
-    file.add("offsets", std::span(offsets).subspan(1));  // where each cell ends
+    file.add("offsets", std::span(offsets).subspan(1));  // end of each cell
     file.add<std::uint8_t>("types", grid.types());
     file.close("Cells");
 }
