@@ -24,11 +24,11 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// An edge that more patches share is taken as a crease: no smooth surface looks so, and all pairs are compared.
+/// Edges with more patches are treated as creases: no smooth surface has them, and all pairs would be compared.
 constexpr std::size_t most_patches_at_an_edge = 64;
 
-/// Vertices closer than this share of the largest coordinate of the scene's core_bounds() are one: eight steps of a
-/// float there, more than what rounding moves a point by when it is computed from either end of an edge.
+/// Vertices closer than this share of the largest coordinate of core_bounds() are merged. It is eight float steps
+/// there, more than the rounding error of a point computed from either end of an edge.
 constexpr float weld_share = 0x1p-20f;
 
 float weld_tolerance(const Scene& scene) {
@@ -39,8 +39,8 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Finds vertices by where they are: a hash grid of cells four times as wide as the distance within which vertices are
-/// the same, so that most searches look into one cell.
+/// Hash grid that finds vertices by position. Its cells are four times as wide as the tolerance, which makes most
+/// searches visit a single cell.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -48,7 +48,7 @@ class VertexGrid {
         first_.reserve(positions_.size());
     }
 
-    /// An earlier vertex at the place of vertex `i`; where there is none, `i`, which later ones then find.
+    /// Returns an earlier vertex at the position of vertex `i`. Without one, inserts vertex `i` and returns it.
     std::uint32_t weld(std::uint32_t i) {
         const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
@@ -68,7 +68,7 @@ class VertexGrid {
 
     GridCell cell_of(const V3f& p) const {
         const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
-        constexpr double last = 0x1p62;  // what lies beyond is far from the scene
+        constexpr double last = 0x1p62;  // limit for points far from the scene
         const auto index = [&](float v) {
             return static_cast<std::int64_t>(std::clamp(std::floor(v / size), -last, last));
         };
@@ -83,12 +83,12 @@ class VertexGrid {
     }
 
     const std::vector<V3f>& positions_;
-    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;  // the latest vertex in each cell
-    std::vector<std::uint32_t> next_;                              // the one before it in the same cell
+    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;  // latest vertex in each cell
+    std::vector<std::uint32_t> next_;                              // previous vertex in the same cell
     float tolerance_;                                              // [m]
 };
 
-/// For each vertex the first one at the same place.
+/// Returns the first vertex at the same position for each vertex.
 std::vector<std::uint32_t> weld(const Scene& scene) {
     VertexGrid grid(scene);
     std::vector<std::uint32_t> welded(scene.vertices.size());
@@ -96,10 +96,10 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
     return welded;
 }
 
-/// An edge as one patch sees it; the patch's vertex order runs along it from `start` to `end`, which are corners.
+/// Edge of one patch. The patch's vertex order runs along it from corner `start` to corner `end`.
 struct PatchEdge {
-    std::uint32_t low, high;   // welded vertices, low < high: the same for every patch at the edge
-    std::uint32_t start, end;  // 4 patch + corner; start also is the number of the edge
+    std::uint32_t low, high;   // welded vertices, low < high; the same for every patch at the edge
+    std::uint32_t start, end;  // 4 patch + corner; start is also the number of the edge
     bool upwards;              // the patch runs from low to high
 
     std::uint32_t patch() const { return start / 4; }
@@ -126,7 +126,7 @@ std::vector<PatchEdge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Unit normals towards the lit side.
+/// Returns the unit normals of the patches towards their lit sides.
 std::vector<V3f> patch_normals(const Scene& scene) {
     std::vector<V3f> normals;
     normals.reserve(scene.patches.size());
@@ -134,24 +134,24 @@ std::vector<V3f> patch_normals(const Scene& scene) {
     return normals;
 }
 
-/// Numbers the sets of corners, or of edges, that patches have.
+/// Numbers the sets of corners or edges of the patches.
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     SmoothSurfaces::Groups groups;
     groups.group.assign(4 * scene.patches.size(), none);
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
-            const std::uint32_t member = 4 * p + c, first = sets.find(member);  // first <= member: numbered already
+            const std::uint32_t member = 4 * p + c, first = sets.find(member);  // first <= member: already numbered
             groups.group[member] = first == member ? groups.count++ : groups.group[first];
         }
     return groups;
 }
 
-/// Parts of a line, as intervals of the distance along it [m].
+/// Part of a line between two distances along it [m].
 struct LineInterval {
     double from, to;
 };
 
-/// What is left of `whole` beside `covered`: in ascending order, each longer than `least`.
+/// Returns the parts of `whole` outside `covered`, in ascending order, each longer than `least`.
 std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineInterval> covered, double least) {
     std::sort(covered.begin(), covered.end(),
               [](const LineInterval& a, const LineInterval& b) { return a.from < b.from; });
@@ -164,7 +164,7 @@ std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineIn
     return parts;
 }
 
-/// A straight line between two points, in double precision.
+/// Straight line between two points in double precision.
 class StraightEdge {
   public:
     StraightEdge(const V3f& from, const V3f& to) : origin_(from), direction_(Imath::V3d(to) - Imath::V3d(from)) {
@@ -177,11 +177,11 @@ class StraightEdge {
         const Imath::V3d d = Imath::V3d(x) - origin_;
         return (d - direction_ * direction_.dot(d)).length();
     }
-    /// Whether the other points lie on it, or where it goes on, within the tolerance.
+    /// Whether a and b lie on the infinite line of the edge, within the tolerance.
     bool is_collinear(const V3f& a, const V3f& b, double tolerance) const {
         return distance(a) <= tolerance && distance(b) <= tolerance;
     }
-    /// The part of it that lies between a and b, which are on its line.
+    /// Returns the part of the edge between a and b, which lie on its line.
     LineInterval part_between(const V3f& a, const V3f& b) const {
         const auto [low, high] = std::minmax({along(a), along(b)});
         return {std::max(0.0, low), std::min(length_, high)};
@@ -198,7 +198,7 @@ Imath::Box3f box_around(const V3f& a, const V3f& b, float margin) {
     return widened(box, margin);
 }
 
-/// Finds by boxes what lies along an edge: contacts, or other edges.
+/// Box tree of segments: contacts or edges.
 class SegmentTree {
   public:
     SegmentTree(std::size_t count, const auto& ends_of) {
@@ -218,7 +218,7 @@ class SegmentTree {
     std::vector<Boxed> boxes_;
 };
 
-/// The contacts of a scene, by where they are.
+/// Contacts of a scene, found by position.
 class ContactTree {
   public:
     explicit ContactTree(const Scene& scene)
@@ -227,7 +227,7 @@ class ContactTree {
           tree_(scene.contacts.size(),
                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
-    /// The parts of the segment from a to b along which there is a contact; longer than the tolerance.
+    /// Returns the parts of the segment from a to b with a contact, each longer than the tolerance.
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
@@ -246,13 +246,13 @@ class ContactTree {
     SegmentTree tree_;
 };
 
-/// Seams shorter than this share of an edge are ignored: gaps between the end of a wall and the next one.
+/// Seams shorter than this share of an edge are ignored, such as gaps between the end of a wall and the next wall.
 constexpr double least_seam_share = 1e-3;
 
-/// Where patches continue each other across parts of edges; only pairs with at least one patch of a cut surface.
+/// Finds where patches continue each other across parts of edges. Each pair has at least one patch of a cut surface.
 class SeamFinder {
   public:
-    /// @param edges  Those across which no whole patch continues.
+    /// @param edges  Edges across which no whole patch continues.
     SeamFinder(const Scene& scene, std::vector<PatchEdge> edges, const ContactTree& contacts)
         : scene_(scene),
           edges_(std::move(edges)),
@@ -260,14 +260,14 @@ class SeamFinder {
           tolerance_(weld_tolerance(scene)),
           tree_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
 
-    /// @param smooth  Whether two patches at a common edge continue each other.
+    /// @param smooth  Function that returns whether two patches at a common edge continue each other.
     std::vector<SmoothSurfaces::Seam> seams(const auto& smooth) const {
         std::vector<SmoothSurfaces::Seam> found;
         for (std::uint32_t i = 0; i < edges_.size(); ++i) {
             if (!is_piece(edges_[i])) continue;
             std::vector<std::uint32_t> others;
             tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
-                if (is_piece(edges_[j]) && j <= i) return;  // is found from the other side
+                if (is_piece(edges_[j]) && j <= i) return;  // found from the other side
                 if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
                     others.push_back(j);
             });
@@ -301,7 +301,7 @@ class SeamFinder {
             found.push_back({{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});
         }
     }
-    /// Exactly 0 or 1 at the ends.
+    /// Returns exactly 0 or 1 near the ends.
     float snapped(double parameter, double length) const {
         const double margin = tolerance_ / length;
         return static_cast<float>(parameter <= margin ? 0 : parameter >= 1 - margin ? 1 : parameter);
