@@ -4,7 +4,8 @@
 
 namespace interflect::inline detail {
 
-/// As read_image(), and of JPEG files too: what surfaces show may have lost detail, what is measured may not.
+/// Reads an image like read_image(), but also from JPEG: lost detail is acceptable in textures, but not in
+/// measurements.
 Image read_photograph(const std::filesystem::path& path, std::int64_t most_pixels);
 
 }  // namespace interflect::inline detail
