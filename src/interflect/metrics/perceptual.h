@@ -4,28 +4,27 @@
 
 namespace interflect::inline detail {
 
-/// How well the eye sees a sine grating: A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
-/// Best at 8 cycles per degree, 0.98; 0.05 for what does not vary, 0.02 at 50.
+/// Returns the contrast sensitivity for sine gratings: A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and
+/// Sakrison 1974. The maximum is 0.98 at 8 cycles per degree; A(0) = 0.05, A(50) = 0.02.
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 
-/// The perceptual distance of two pictures: the first of the models in Rushmeier et al. 1995, after Mannos and Sakrison
-/// 1974. With luminances L of the image and R of the reference, those below 0 taken for 0, and m the mean of R:
+/// Computes the perceptual distance of two pictures: the first model in Rushmeier et al. 1995, after Mannos and
+/// Sakrison 1974. L and R are the luminances of image and reference, clamped to >= 0, and m is the mean of R:
 ///
-///     d(x, y)  = (L / m)^0.33 - (R / m)^0.33                          what the eye responds to
+///     d(x, y)  = (L / m)^0.33 - (R / m)^0.33                          response of the eye
 ///     D(u, v)  = 1/N sum of d(x, y) exp(-2 pi i (u x / width + v y / height))
 ///     distance = sqrt(sum over u, v of A(f(u, v))^2 |D(u, v)|^2)
 ///
-/// So it is the root mean square of d over the pixels, after each frequency was weighted by how well it is seen. f
-/// [cycles per degree] takes the picture's height to be `field_of_view` and pixels to be square and equal in angle. As
-/// every discrete Fourier transform this one takes the picture to repeat; since d is what is transformed, only
-/// differences meet across the borders, not the picture. No window, no padding: sizes are as they are.
+/// This is the root mean square of d over the pixels after weighting each frequency by the contrast sensitivity. f
+/// [cycles per degree] assumes that the picture's height spans `field_of_view` and that pixels are square and equal in
+/// angle. The discrete Fourier transform treats d, but not the picture, as periodic. There is no window or padding.
 ///
-/// 0 for equal images; a factor common to both does not matter, nor does the size of the picture at equal pixels per
-/// degree. Where the reference is black: 0 if the image is too, else infinite.
-/// @param field_of_view  Of the view, vertical, full [degrees], in (0, 180).
-/// @throws InputError where the sizes differ, there are no pixels, or the field of view is out of range. Pixels must be
-/// finite. Cost: O(N log N) for sides that are products of small primes, O(N (width + height)) at worst; 16 bytes a
+/// The distance is 0 for equal images. It does not depend on a common factor, nor on the size of the picture at equal
+/// pixels per degree. For a black reference it is 0 if the image is black too, otherwise infinite.
+/// @param field_of_view  Full vertical angle of the view [degrees], in (0, 180).
+/// @throws InputError if the sizes differ, there are no pixels, or the field of view is out of range. Pixels must be
+/// finite. Cost: O(N log N) if the sides are products of small primes, at worst O(N (width + height)); 16 bytes per
 /// pixel.
 double perceptual_distance(const Image& image, const Image& reference, double field_of_view);
 
