@@ -34,7 +34,7 @@ struct PixelSamples {
 
 /// Traces one camera ray per sample and offset, and calls `visit` once per pixel, from any thread and in any order.
 /// The rays depend on the seed, not on the number of threads.
-/// @throws InputError if there is less than one sample or one pixel.
+/// @throws InputError for less than one sample or pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                   std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
                   const std::function<void(const PixelSamples&)>& visit);
@@ -46,7 +46,7 @@ inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, cons
     trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, monitor, visit);
 }
 
-/// Returns the surface parameters of a hit. Requires hit.patch != none.
+/// Returns the surface parameters of a hit; not for escaped rays.
 inline Parameters parameters_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     return forest.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
 }
@@ -57,7 +57,7 @@ inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, co
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));
 }
 
-/// @throws InputError unless there is one value per element. @param what  Name of the values in the message.
+/// @throws InputError unless each element has one value. @param what  Name of the values in the message.
 void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
 }  // namespace interflect::inline detail

@@ -17,8 +17,8 @@ constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2;  // [pix
 /// Squared differences are divided by this share of the noise variance: k^2 of Rousselle et al. 2012.
 constexpr float noise_share = 0.45f * 0.45f;
 constexpr float least_albedo = 0.01f;  // lower bound where light is divided by the albedo
-constexpr float normal_scale = 0.1f;   // of squared differences of normals: about 18 degrees
-constexpr float plane_scale = 1.5f;    // distance from the tangent plane, relative to the spacing of the pixels
+constexpr float normal_scale = 0.1f;   // of squared differences: about 18 degrees
+constexpr float plane_scale = 1.5f;    // distance from the tangent plane over the spacing of the pixels
 
 /// Approximates exp(-d) without a library call.
 float fall(float d) {
@@ -26,7 +26,7 @@ float fall(float d) {
     return t4 * t4;
 }
 
-/// One kind of light from half of the samples, as irradiance / pi: values per channel, their mean and its variance.
+/// One kind of light from half of the samples, as irradiance / pi: channels, their mean and its variance.
 struct Field {
     std::array<std::vector<float>, 3> value;
     std::vector<float> grey, variance;
@@ -36,7 +36,7 @@ std::size_t pixel_at(int x, int y, int width) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-/// Averages `values` over squares. The variance of a few batches is too noisy to use pixel by pixel.
+/// Averages over squares. The variance of a few batches is too noisy to use pixel by pixel.
 std::vector<float> box_mean(const std::vector<float>& values, int width, int height, int radius) {
     std::vector<float> means(values.size());
     parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
@@ -73,8 +73,7 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
     return field;
 }
 
-/// Direct and indirect light.
-using Fields = std::array<Field, 2>;
+using Fields = std::array<Field, 2>;  // direct and indirect light
 
 Fields make_fields(const SampledLight& light, const Image& albedo) {
     return {make_field(light.direct, light.direct_variance, albedo),
@@ -128,7 +127,7 @@ class Band {
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
 
-    /// Computes shape_: the geometric weight of each pixel's neighbour, from normals and tangent planes.
+    /// Computes shape_: the weight of each pixel's neighbour by normals and tangent planes.
     void compare_shapes(int dx, int dy) {
         std::fill(shape_.begin(), shape_.end(), 0.0f);
         const float steps = std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy)));
@@ -149,8 +148,8 @@ class Band {
         }
     }
 
-    /// Computes difference_: the squared difference to each pixel's neighbour beyond the expected noise, relative to
-    /// the noise. Row 0 is first_ - patch_radius.
+    /// Computes difference_: squared differences to neighbours beyond the noise, relative to it. Row 0 is first_ -
+    /// patch_radius.
     void compare_light(const Field& field, int dx, int dy) {
         constexpr float tiny = 1e-20f;
         std::fill(difference_.begin(), difference_.end(), 0.0f);

@@ -6,12 +6,12 @@
 
 namespace interflect::inline detail {
 
-/// Receiver of measured irradiance: a small plane, or a surface whose normals are distributed evenly over an arc, such
-/// as a cylinder. The irradiance is the mean over the normals.
+/// Receiver of irradiance: a small plane, or a surface with normals spread evenly over an arc, such as a cylinder. The
+/// irradiance is the mean over the normals.
 struct Gauge {
     V3f position{0, 0, 0};  // relative to the scene's origin [m]
     V3f normal{0, 0, 1};    // at the middle of the arc
-    V3f tangent{0, 0, 0};   // perpendicular to the normal, in the plane of the arc; both have unit length
+    V3f tangent{0, 0, 0};   // perpendicular to it, in the plane of the arc; both have unit length
     float half_arc = 0;     // [rad]
     float offset = 0;       // of ray origins above the position [m]
 

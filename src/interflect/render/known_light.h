@@ -12,12 +12,12 @@
 
 namespace interflect::inline detail {
 
-/// Light of a solution, used by final gathering. Bright places are sampled like emitters: LightTree chooses a patch by
-/// its reflected power, then an element below the patch is chosen in proportion to its received power. Immutable,
-/// shared by all threads. Memory: 4 bytes per element, 132 per patch.
+/// Light of a solution for final gathering, sampled like emitters: LightTree chooses a patch by reflected power, then
+/// an element below it is chosen by received power. Immutable, shared by all threads. Memory: 4 bytes per element, 132
+/// per patch.
 class KnownLight {
   public:
-    /// @param irradiance  One value per element; only leaves are used. All arguments must outlive this object.
+    /// @param irradiance  Per element; only leaves are used. All arguments must outlive this object.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
 
@@ -32,13 +32,13 @@ class KnownLight {
     /// Returns the reflected radiance rho H / pi at `place`.
     Rgb radiance(const Place& place) const;
 
-    /// Whether the solid angle A / d^2 of the leaf is at most 0.25 sr, small enough to gather its single value.
+    /// Whether the leaf's solid angle A / d^2 is at most 0.25 sr, small enough to gather its single value.
     bool is_far(const Place& place, float distance2) const {
         constexpr float largest_angle = 0.25f;
         return forest_.area(place.leaf) <= largest_angle * distance2;
     }
 
-    /// Samples a point that may illuminate x on a surface with normal n. Returns patch none if there is no such point.
+    /// Samples a point that may illuminate x on a surface with normal n; without such a point, patch is `none`.
     /// @param uniform  In (0, 1). @param u, v  In [0, 1).
     Place sample(const V3f& x, const V3f& n, double uniform, float u, float v) const;
     /// Returns the density of sample() per area at `place` [1/m^2].
@@ -49,7 +49,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> received_;  // received power of each element, summed over channels [lm or W]
+    std::vector<float> received_;  // power per element, sum over channels [lm or W]
     LightTree tree_;
 };
 

@@ -14,13 +14,13 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr std::size_t bin_count = 16;  // candidate splits of a node; more have no measurable benefit
+constexpr std::size_t bin_count = 16;  // candidate splits per node; more have no measurable benefit
 
 V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
-/// Returns the extent of a box with this half diagonal from its centre in a direction.
+/// Returns the extent of a box from its centre in a direction.
 float support(const V3f& half, const V3f& direction) { return half.dot(absolute(direction)); }
 
 /// Angle in [0, pi], by cosine and sine.
@@ -143,9 +143,8 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// Approximates the surface area orientation heuristic: power x area x solid angle. It is large where importance()
-    /// is a loose bound. A single normal counts as pi (a hemisphere weighted by the cosine), normals of all directions
-    /// as 4 pi.
+    /// Approximates the surface area orientation heuristic: power x area x solid angle, large where importance() is a
+    /// loose bound. The solid angle is pi for parallel normals and 4 pi for normals in all directions.
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
@@ -207,7 +206,7 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     const Split split = best_split(lights, centres);
     const auto middle = std::stable_partition(
         lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
-    // The outermost bins are occupied, so both halves have members unless all centres coincide.
+    // Both halves have members unless all centres coincide, because the outermost bins are occupied.
     std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
     if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
 
@@ -220,9 +219,9 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
 }
 
-// The cosines use the distance to the nearest point of the box. Otherwise a wide node that contains x, such as half the
-// lamps of a storey, would have too little weight against its neighbour. Lamps that face down illuminate a floor by h^2
-// / d^4, with their height h and distance d; the distance to the centre represents only the mean.
+// The cosines use the nearest point of the box. A wide node that contains x, such as half the lamps of a storey, then
+// outweighs its neighbour: lamps that face down at height h and distance d contribute h^2 / d^4, but the centre's
+// distance is only a mean.
 float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const V3f to_centre = node.centre - x;
     const V3f& axis = node.cone.axis;
@@ -235,7 +234,7 @@ float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const float receiving = std::min(1.0f, height * inverse);
     float emitting = std::min(1.0f, ahead * inverse);
     if (node.cone.cosine < 1) {
-        // If x is behind every patch of the box, the farthest patch has the smallest angle.
+        // If x is behind the whole box, the farthest patch has the smallest angle.
         if (ahead < 0) emitting = ahead / (std::sqrt(centre2) + std::sqrt(node.radius2));
         emitting = less(Angle::of_cosine(emitting), {node.cone.cosine, node.cone_sine}).cosine;
     }

@@ -10,12 +10,11 @@
 
 namespace interflect::inline detail {
 
-/// Samples lights in proportion to an estimate of their irradiance at a point (Conty and Kulla 2018). Each node of the
-/// binary tree contains the power, the bounding box and a cone around the normals of its lights. A walk from the root
-/// chooses a child with a probability proportional to power x cosines / squared distance. The cosines of the receiver
-/// and of the emitters are upper bounds by box and cone. The distance is measured to the centre of the box and is at
-/// least half the diagonal. Nodes that lie behind the surface or face away from the point have probability 0. Occlusion
-/// is ignored. Immutable, shared by all threads. Memory: 64 bytes per node, two nodes per light, 4 bytes per index.
+/// Samples lights by their estimated irradiance at a point (Conty and Kulla 2018). Each node of the binary tree stores
+/// power, bounding box and normal cone of its lights. The probability of a child is proportional to power x cosines /
+/// squared distance. The cosines are upper bounds; the distance is to the box's centre, at least half the diagonal.
+/// Nodes behind the surface or facing away have probability 0. Occlusion is ignored. Immutable, shared by all threads.
+/// Memory: 64 bytes per node, two nodes per light, 4 bytes per index.
 class LightTree {
   public:
     /// All directions within an angle of an axis.
@@ -27,8 +26,8 @@ class LightTree {
         V3f low, high;
         void extend(const Box& other);
     };
-    /// Bounds of a light. Its intensity in a direction is at most power / pi times the cosine of the angle between the
-    /// direction and the cone.
+    /// The intensity in a direction is at most power / pi times the cosine of the angle by which it is outside the
+    /// cone.
     struct Light {
         std::uint32_t index;
         float power;  ///< Sum over channels [W or lm].
@@ -37,17 +36,17 @@ class LightTree {
         V3f centre() const { return 0.5f * (box.low + box.high); }
     };
     struct Choice {
-        std::uint32_t index = none;  ///< none if no light can reach the point.
+        std::uint32_t index = none;  ///< Default: no light can reach the point.
         float probability = 0;
     };
 
-    /// @param index_count  Every index of a light is smaller.
+    /// @param index_count  Greater than every index.
     LightTree(std::vector<Light> lights, std::size_t index_count);
 
     /// Samples a light for the point x of a surface with normal n. @param uniform  In (0, 1). O(depth).
     Choice choose(const V3f& x, const V3f& n, double uniform) const;
 
-    /// Returns the probability that choose() returns the light of this index; 0 without such a light. O(depth).
+    /// Returns the probability that choose() returns this light; 0 for other indices. O(depth).
     float probability(std::uint32_t index, const V3f& x, const V3f& n) const;
 
     std::size_t light_count() const { return (nodes_.size() + 1) / 2; }
@@ -72,15 +71,15 @@ class LightTree {
     void build(std::uint32_t node, std::span<Light> lights);
 
     std::vector<LightNode> nodes_;     // [0] is the root; empty without lights
-    std::vector<std::uint32_t> leaf_;  // node of each index; none without a light
+    std::vector<std::uint32_t> leaf_;  // node per index
 };
 
-/// Converts patches to lights. @param geometry, power  One per patch of the scene; patches with power > 0 are lights.
+/// Converts patches with power > 0 to lights. @param geometry, power  Per patch of the scene.
 std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const PatchGeometry> geometry,
                                            std::span<const float> power);
 
-/// Returns the power that each patch emits, for sampling; sum over channels [W or lm]. For an exitance texture it is
-/// the mean plus 1% of the largest texel: every patch that may emit has a positive power.
+/// Returns each patch's emitted power for sampling, sum over channels [W or lm]. Textures use the mean plus 1% of the
+/// largest texel, which keeps the power of every emitter positive.
 std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry);
 
 }  // namespace interflect::inline detail

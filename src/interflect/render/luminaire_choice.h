@@ -10,16 +10,16 @@
 
 namespace interflect::inline detail {
 
-/// Samples a luminaire for a point by its unoccluded irradiance. A LightTree proposes a few candidates; one of these is
-/// chosen by its exact irradiance (resampled importance sampling, Talbot et al. 2005). Parallel light is always a
-/// candidate. The cost is logarithmic in the number of luminaires with a position. Immutable, shared by all threads.
+/// Samples a luminaire by its unoccluded irradiance at a point. A LightTree proposes candidates; their exact irradiance
+/// decides (resampled importance sampling, Talbot et al. 2005). Parallel light is always a candidate. The cost is
+/// logarithmic in the number of other luminaires. Immutable, shared by all threads.
 class LuminaireChoice {
   public:
     /// @param scene  Must outlive this object.
     explicit LuminaireChoice(const Scene& scene);
 
-    /// Returns the light of one luminaire at the point x of a surface with normal n. Its irradiance of the surface is
-    /// divided by the probability of the choice. The expected value is the unoccluded irradiance by all luminaires.
+    /// Returns the light of one luminaire at the point x of a surface with normal n. The surface's irradiance is
+    /// divided by the probability of the choice; its mean is the unoccluded irradiance by all luminaires.
     Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:

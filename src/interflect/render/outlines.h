@@ -15,8 +15,8 @@ struct OutlineOptions {
     Rgb colour{1, 0.35f, 0.0f};  ///< Linear Rec. 709: an orange that is visible on bright and dark surfaces.
 };
 
-/// Draws the borders of all visible leaves over a picture of `view`. A border is drawn where two points closer than the
-/// line width show different leaves. This includes silhouettes, but not the border between two pieces of one leaf.
+/// Draws the borders of visible leaves over a picture of `view`: wherever two points closer than the line width show
+/// different leaves. This includes silhouettes, but not borders between two pieces of one leaf.
 /// @param picture  Tone-mapped, linear Rec. 709 in [0, 1]. Its size is the camera's.
 /// @param samples  Samples per pixel, >= 1; three rays each.
 /// @return         The same bits for the same seed and any number of threads.

@@ -9,7 +9,7 @@
 
 namespace interflect::inline detail {
 
-/// Irradiance of every element. Final gathering ends its paths with it.
+/// Irradiance of every element, with which final gathering ends its paths.
 struct KnownIrradiance {
     const ElementForest& forest;
     std::span<const Rgb> irradiance;
@@ -17,12 +17,11 @@ struct KnownIrradiance {
 /// @throws InputError if the sizes disagree or the forest belongs to another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
-/// Peak memory of trace_picture(), including its result [bytes]. Measured with pictures of 2048 x 2048 pixels and with
-/// a sphere of 1.4 million emitting patches.
+/// Peak memory of trace_picture() with its result [bytes], measured with 2048 x 2048 pixels and with a sphere of 1.4
+/// million emitting patches.
 inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 250;
 
-/// Traces the paths of a picture, in several rounds if there is an error target. Common part of trace_paths(), gather()
-/// and measure_irradiance().
+/// Traces a picture for trace_paths(), gather() and measure_irradiance(), in rounds if it has an error target.
 /// @param start  Starts of options.width x options.height pixels.
 /// @param known  Null: paths end by Russian roulette.
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,

@@ -7,7 +7,7 @@
 
 namespace interflect::inline detail {
 
-/// Returns a direction with density cosine / pi over the hemisphere of n (Malley's method); a, b uniform in (0, 1).
+/// Samples a direction with density cosine / pi around n by Malley's method; a, b uniform in (0, 1).
 V3f cosine_direction(const V3f& n, float a, float b);
 
 /// Random numbers that continue a path at one vertex.
@@ -16,14 +16,14 @@ struct VertexSample {
     float roulette;
 };
 
-/// Random numbers of a shadow ray to an emitting patch and of one to a luminaire.
+/// Random numbers of the shadow rays to an emitting patch and to a luminaire.
 struct LightSample {
     double light;      // chooses the emitting patch
     float u, v;        // choose the point on it
-    float candidates;  // chooses candidate luminaires; `light` chooses one of these
+    float candidates;  // chooses candidate luminaires; `light` chooses among them
 };
 
-/// Random numbers with which final gathering samples bright places at a vertex.
+/// Random numbers that sample bright places in final gathering.
 struct PlaceSample {
     double patch;  // chooses the patch
     float u, v;    // choose the point on it
@@ -35,19 +35,17 @@ struct SkySample {
     float u, v;  // choose the direction
 };
 
-/// Returns Sobol' points at the first vertices of a path and pseudo-random numbers at later ones.
-/// @param batch_key  Key of the batch that contains the path.
-/// @param vertex     1 is the first vertex that the camera sees.
-/// @param index      Index of the path in its batch.
+/// Returns Sobol' points at the first vertices of a path, pseudo-random numbers at later ones.
+/// @param vertex  1 is the first vertex that the camera sees.
+/// @param index   Path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-/// @param index  Index of the shadow ray among those of the batch at this vertex; also in the functions below.
+/// @param index  Shadow ray among those of the batch at this vertex; also in the functions below.
 LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 
-/// Returns the density per solid angle of sampling the point of an emitting patch in this direction [1/sr].
-/// @param probability  Probability of choosing the patch.
-/// @param distance2    Squared distance to the point [m^2].
+/// Returns the density per solid angle of sampling this point of an emitting patch [1/sr].
+/// @param probability  Probability of the patch. @param distance2  Squared distance to the point [m^2].
 float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2);
 
 /// Balance heuristic: the weight of a sample of density p if another technique has density q.

@@ -16,15 +16,15 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Throughput below which Russian roulette ends paths. Lower values reduce the variance but lengthen paths; from 0.25
-/// to 1 the efficiency is the same.
+/// Throughput below which Russian roulette ends paths. Lower: less variance, longer paths; 0.25 to 1 are equally
+/// efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Shadow rays per vertex where direct light is gathered. Squared error times time, relative to one ray, at 16 samples
-/// and filtered: 0.63, 0.76 and 0.51 in the maze, office-graz and office2. With two rays it is 0.75, 0.82 and 0.66.
+/// Shadow rays where direct light is gathered. Squared error times time relative to one ray, at 16 samples, filtered:
+/// 0.63, 0.76, 0.51 in the maze, office-graz and office2. With two rays: 0.75, 0.82, 0.66.
 constexpr std::uint32_t gathered_shadow_rays = 4;
 
-/// Returns the origin of a ray that leaves the patch at the hit x: on its surface, raised by the ray caster's offset.
+/// Returns the origin of a ray that leaves the patch hit at x: on its surface, raised by the ray caster's offset.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
     return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);

@@ -25,7 +25,7 @@ namespace interflect::inline detail {
 /// Starts of paths, one per pixel: in the squares of a picture, or at gauges.
 struct PathStart {
     std::optional<Camera> camera;
-    float pixel_angle = 0;            // angle of a pixel's side at the picture's centre [rad]; 0 if orthographic
+    float pixel_angle = 0;            // of a pixel's side at the centre [rad]; 0 if orthographic
     std::span<const Gauge> gauges{};  // without a camera
     float pixel_size = 0;             // side of a pixel of an orthographic picture [m]
 };
@@ -43,7 +43,7 @@ struct PathScene {
     std::size_t batch_size;
     Panes panes;
     bool splits;                        // paths split at panes or mirrors
-    const KnownLight* known = nullptr;  // ends the paths; null: Russian roulette ends them
+    const KnownLight* known = nullptr;  // ends the paths; null: Russian roulette
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
@@ -61,7 +61,7 @@ struct FirstHit {
     }
 };
 
-/// One batch of a pixel and its result: sums over the batch's paths.
+/// One batch of a pixel and its result: sums over its paths.
 struct BatchOfPaths {
     std::uint32_t pixel = 0, batch = 0;
     bool done = false;
@@ -103,54 +103,48 @@ class PathWavefront {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
     };
-    /// Contribution of a shadow ray. Valid if the ray hits `patch`, or for patch none if it hits nothing within
-    /// `distance`.
+    /// Contribution of a shadow ray that hits `patch` or, without a patch, hits no surface within `distance`.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;         // from the origin of the shadow ray to the luminaire [m]
+        float distance;         // from the ray's origin to the luminaire [m]
         std::uint32_t bounces;  // number of reflections of its light
     };
 
     void start_at_camera(std::span<const BatchOfPaths> batches);
-    /// Starts paths at gauges, which gather light like a white surface: each path begins with leave().
+    /// Starts paths at gauges, which act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
     /// Traces the rays of all paths and keeps the paths that continue.
     void advance_paths();
     /// Returns the point where a path left the last surface.
     static V3f start_of(const Ray& ray, const Path& path);
-    /// Adds paths that continue straight behind panes of glass, and those that mirrors seen by the camera reflect.
+    /// Adds the paths behind panes of glass and in mirrors seen by the camera.
     void split_paths();
-    /// Adds a path that splits off from `path`, unless its throughput is negligible.
+    /// Splits off a path unless its throughput is negligible.
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
     /// Handles a hit; afterwards `ray` and `path` are the reflected ones. @return Whether the path continues.
     bool interact(const Hit& hit, Ray& ray, Path& path);
-    /// Connects `ray.origin`, on a surface with `path.normal`, to the lights, and samples the direction of the path.
+    /// Connects `ray.origin`, on a surface with `path.normal`, to the lights, and samples the next direction.
     /// @return Whether the path continues.
     bool leave(Ray& ray, Path& path);
-    /// Adds the radiance of the skies along a ray that escapes.
     void add_sky(const Ray& ray, const Path& path);
-    /// Adds the light of an emitting patch that was hit.
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
-    /// Returns the number of shadow rays for each kind of light at a vertex. More rays pay off where paths end after
-    /// the next vertex, since all other work is small there.
+    /// Returns the shadow rays per kind of light at a vertex: more if paths end after the next vertex, where all other
+    /// work is small.
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
-    /// Next event estimation with one of shadow_rays_at() rays to an emitting patch.
-    /// @param path  Its throughput includes the reflectance at x.
+    /// Adds a shadow ray to an emitting patch. The throughput of `path` includes the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const LightSample& sample);
-    /// Does the same for a luminaire.
     void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
-    /// Does the same for a sky. @param index  Index of the ray among those of the batch at this vertex.
+    /// @param index  Index of the ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
-    /// Continues shadow rays that hit panes of glass behind the panes.
+    /// Continues shadow rays behind panes of glass.
     void pass_panes();
-    /// Ends a path with the light of the solution, unless the element that its ray hit is too near.
+    /// Ends a path with the light of the solution, unless the element is too near.
     /// @return Whether it has ended.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Returns the density per solid angle with which KnownLight::sample() chooses the direction from x to a place
-    /// [1/sr].
+    /// Returns the density per solid angle of KnownLight::sample() in the direction from x to a place [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     /// Adds a shadow ray to a bright place of the solution.
@@ -161,7 +155,7 @@ class PathWavefront {
     const PathScene& s_;
     std::uint32_t vertex_ = 1;         // next vertex of the paths; the camera is vertex 0
     std::vector<std::uint64_t> keys_;  // per batch
-    std::vector<PathLight> light_;     // per path, including those that have ended
+    std::vector<PathLight> light_;     // per path, including ended ones
     std::vector<Path> paths_;          // paths that continue, parallel to rays_
     std::vector<Ray> rays_, shadow_rays_;
     std::vector<Hit> hits_;

@@ -23,7 +23,7 @@ double error_scale(const PixelStatistics& p, double picture_mean) {
     return std::max(mean_channel(p.mean), picture_mean);
 }
 
-/// Averages over the pixels within `neighbourhood_radius` along one axis of a picture.
+/// Averages within `neighbourhood_radius` along one axis of a picture.
 std::vector<double> mean_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
                                std::size_t length, std::size_t step) {
     std::vector<double> means(values.size());

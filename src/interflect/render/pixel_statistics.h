@@ -10,10 +10,9 @@
 
 namespace interflect::inline detail {
 
-/// Returns the mean of the channels.
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 
-/// Running mean and variance of one part of a pixel's light over its batches (Welford 1962).
+/// Running mean and variance of a part of a pixel's light over its batches (Welford 1962).
 struct PartStatistics {
     RgbD mean{0, 0, 0};
     double squares = 0;  // sum of squared deviations of the mean of the channels
@@ -24,11 +23,11 @@ struct PartStatistics {
         mean += difference / static_cast<double>(++batches);
         squares += mean_channel(difference) * mean_channel(value - mean);
     }
-    /// Returns the squared standard error of the mean of the channels; 0 with fewer than two batches.
+    /// Squared standard error of the mean of the channels.
     double squared_error() const { return batches > 1 ? squares / (batches - 1.0) / batches : 0; }
 };
 
-/// Running mean and variance of a pixel's whole light, and of its parts.
+/// Running mean and variance of a pixel's light and of its parts.
 struct PixelStatistics {
     RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared deviations from the mean
     RgbD emitted{0, 0, 0};                 // mean, as are the members of `first`
@@ -57,16 +56,16 @@ struct PixelStatistics {
     }
     /// Returns the mean of the channels of the reflected light.
     double reflected() const { return mean_channel(direct.mean + indirect.mean); }
-    /// Returns the variance of one batch.
+    /// Variance of one batch.
     RgbD variance() const { return batches > 1 ? squares / (batches - 1.0) : RgbD(0, 0, 0); }
     RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
 };
 
-/// Returns the root mean square over all pixels of standard error / mean. The mean of a pixel counts as at least the
-/// mean reflected light of the picture. Infinite if a pixel has fewer than two batches.
+/// Root mean square over the pixels of standard error / mean. A pixel's mean counts as at least the picture's mean
+/// reflected light. Infinite if a pixel has fewer than two batches.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
-/// Returns the total number of batches that each pixel needs for options.until, from the variance around the pixel.
+/// Returns the total batches that each pixel needs for options.until, from the variance around it.
 std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
 }  // namespace interflect::inline detail

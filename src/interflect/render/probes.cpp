@@ -41,7 +41,7 @@ Imath::Box3d bounds_of(const Scene& scene) {
     return bounds;
 }
 
-/// Adds light from one direction. @param irradiance  Irradiance of a surface that faces the light.
+/// Adds light from one direction. @param irradiance  On a surface that faces it.
 void add(IrradianceProbe& probe, const V3f& towards, const Rgb& irradiance) {
     const std::array<float, 9> basis = spherical_harmonics(towards);
     for (std::size_t k = 0; k < 9; ++k) probe.coefficients[k] += irradiance * (cosine_factors[k] * basis[k]);
@@ -121,7 +121,7 @@ class LightAround {
         }
     }
 
-    /// Returns the transmittance of the panes along a ray up to a distance; 0 if any other surface is in between.
+    /// Returns the transmittance of the panes up to a distance; 0 if another surface is in between.
     Rgb transmittance(Ray ray, float distance) const {
         Rgb through(1);
         for (int panes = 0; panes < Panes::most_in_a_row; ++panes) {
@@ -136,7 +136,7 @@ class LightAround {
         return Rgb(0);
     }
 
-    /// Returns the share of rays that pass a one-sided face from behind: such faces stop the reversed ray.
+    /// Returns the share of rays that pass a one-sided face from behind, which stops the reversed ray.
     float share_of_backs(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
         std::vector<Ray> back;
         std::vector<float> lengths;

@@ -19,24 +19,23 @@ struct Quantity {
     std::span<const float> values;  ///< One per element; only leaves are used.
     Spacing spacing = Spacing::logarithmic;
 
-    /// Returns name and unit in the form of a legend and of ImageMetadata::quantity: "irradiance [lm/m^2]".
+    /// Label in a legend and in ImageMetadata::quantity: "irradiance [lm/m^2]".
     std::string label() const { return unit.empty() ? name : name + " [" + unit + "]"; }
 };
 
 /// A picture of a quantity.
 struct QuantityPicture {
-    Image
-        values;   ///< For measurement: mean over the surfaces in each pixel, in all three channels; 0 without surfaces.
-    Image shown;  ///< For display with a legend (legend.h): false colours; escaped rays are black.
-    ColourScale scale;                   ///< Fitted to the values in the picture.
+    Image values;       ///< To measure: mean over the surfaces in each pixel, in all channels; 0 without surfaces.
+    Image shown;        ///< To display with a legend (legend.h): false colours; escaped rays are black.
+    ColourScale scale;  ///< Fitted to the values in the picture.
     std::int64_t non_finite_pixels = 0;  ///< In either image; 8-bit files show them in magenta.
     bool interrupted = false;            ///< Stopped by the caller; the remaining pixels are 0.
 };
 
 /// Draws each leaf in the false colour of its value, without shading.
-/// Draws each leaf in the false colour of its value, without shading.
 /// @param forest    Made for `scene`, like `ray_caster`.
 /// @return          The same bits for the same seed and any number of threads.
+/// @throws InputError as render() does.
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                                 const View& view, const Quantity& quantity, const CameraSampling& sampling,
                                 const PictureMonitor& monitor = {});

@@ -10,17 +10,16 @@
 
 namespace interflect::inline detail {
 
-/// Quantity of elements, such as irradiance, as a continuous function on each smooth surface. It is interpolated from
-/// the corners of leaves, linearly on triangles and bilinearly on quadrilaterals, without cracks between large and
-/// small leaves. An undivided patch without smooth neighbours has a constant value.
+/// Quantity of elements, such as irradiance, as a continuous function on each smooth surface: linear on triangles,
+/// bilinear on quadrilaterals, without cracks between levels. An undivided patch without smooth neighbours is constant.
 class SmoothField {
   public:
-    /// @param forest    Must not change while the field is used; neither must `vertices`, which belong to this forest.
-    /// @param values    One per element, in any unit; only leaves are used. A scalar is stored in all channels.
+    /// @param forest    Must not change during use, like `vertices`, which must belong to it.
+    /// @param values    Per element, in any unit; only leaves are used. Scalars are passed as grey.
     /// @throws InputError if the sizes disagree.
     SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
 
-    /// Returns the value at a point of a patch. Safe for concurrent calls.
+    /// Returns the value at a point of a patch. Thread-safe.
     Rgb at(std::uint32_t patch, Parameters p) const;
 
   private:

@@ -24,11 +24,11 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Edges with more patches are treated as creases: no smooth surface has them, and all pairs would be compared.
+/// Edges with more patches count as creases: they do not occur on smooth surfaces, and all pairs would be compared.
 constexpr std::size_t most_patches_at_an_edge = 64;
 
-/// Vertices closer than this share of the largest coordinate of core_bounds() are merged. It is eight float steps
-/// there, more than the rounding error of a point computed from either end of an edge.
+/// Vertices within this share of the largest coordinate of core_bounds() are merged: eight float steps, more than the
+/// rounding error of a point computed from either end of an edge.
 constexpr float weld_share = 0x1p-20f;
 
 float weld_tolerance(const Scene& scene) {
@@ -39,8 +39,7 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Hash grid that finds vertices by position. Its cells are four times as wide as the tolerance, which makes most
-/// searches visit a single cell.
+/// Hash grid of vertices. Its cells are four times as wide as the tolerance: most searches visit one cell.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -48,7 +47,7 @@ class VertexGrid {
         first_.reserve(positions_.size());
     }
 
-    /// Returns an earlier vertex at the position of vertex `i`. Without one, inserts vertex `i` and returns it.
+    /// Returns an earlier vertex at the position of `i`; otherwise inserts and returns `i`.
     std::uint32_t weld(std::uint32_t i) {
         const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
@@ -88,7 +87,7 @@ class VertexGrid {
     float tolerance_;                                              // [m]
 };
 
-/// Returns the first vertex at the same position for each vertex.
+/// Maps each vertex to the first one at its position.
 std::vector<std::uint32_t> weld(const Scene& scene) {
     VertexGrid grid(scene);
     std::vector<std::uint32_t> welded(scene.vertices.size());
@@ -96,10 +95,10 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
     return welded;
 }
 
-/// Edge of one patch. The patch's vertex order runs along it from corner `start` to corner `end`.
+/// Edge of one patch, from corner `start` to corner `end` in the patch's vertex order.
 struct PatchEdge {
-    std::uint32_t low, high;   // welded vertices, low < high; the same for every patch at the edge
-    std::uint32_t start, end;  // 4 patch + corner; start is also the number of the edge
+    std::uint32_t low, high;   // welded vertices, low < high; equal for all patches at the edge
+    std::uint32_t start, end;  // 4 patch + corner; start also numbers the edge
     bool upwards;              // the patch runs from low to high
 
     std::uint32_t patch() const { return start / 4; }
@@ -126,7 +125,7 @@ std::vector<PatchEdge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Returns the unit normals of the patches towards their lit sides.
+/// Returns unit normals towards the lit sides.
 std::vector<V3f> patch_normals(const Scene& scene) {
     std::vector<V3f> normals;
     normals.reserve(scene.patches.size());
@@ -134,7 +133,7 @@ std::vector<V3f> patch_normals(const Scene& scene) {
     return normals;
 }
 
-/// Numbers the sets of corners or edges of the patches.
+/// Numbers the sets of corners or edges.
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     SmoothSurfaces::Groups groups;
     groups.group.assign(4 * scene.patches.size(), none);
@@ -177,11 +176,11 @@ class StraightEdge {
         const Imath::V3d d = Imath::V3d(x) - origin_;
         return (d - direction_ * direction_.dot(d)).length();
     }
-    /// Whether a and b lie on the infinite line of the edge, within the tolerance.
+    /// Whether a and b lie on the edge's line, within the tolerance.
     bool is_collinear(const V3f& a, const V3f& b, double tolerance) const {
         return distance(a) <= tolerance && distance(b) <= tolerance;
     }
-    /// Returns the part of the edge between a and b, which lie on its line.
+    /// Returns the part between a and b, which lie on the edge's line.
     LineInterval part_between(const V3f& a, const V3f& b) const {
         const auto [low, high] = std::minmax({along(a), along(b)});
         return {std::max(0.0, low), std::min(length_, high)};
@@ -227,7 +226,7 @@ class ContactTree {
           tree_(scene.contacts.size(),
                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
-    /// Returns the parts of the segment from a to b with a contact, each longer than the tolerance.
+    /// Returns the parts of the segment with a contact, each longer than the tolerance.
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
@@ -249,7 +248,7 @@ class ContactTree {
 /// Seams shorter than this share of an edge are ignored, such as gaps between the end of a wall and the next wall.
 constexpr double least_seam_share = 1e-3;
 
-/// Finds where patches continue each other across parts of edges. Each pair has at least one patch of a cut surface.
+/// Finds continuations across parts of edges. Each pair has at least one patch of a cut surface.
 class SeamFinder {
   public:
     /// @param edges  Edges across which no whole patch continues.
@@ -260,7 +259,7 @@ class SeamFinder {
           tolerance_(weld_tolerance(scene)),
           tree_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
 
-    /// @param smooth  Function that returns whether two patches at a common edge continue each other.
+    /// @param smooth  Whether two patches at a common edge continue each other.
     std::vector<SmoothSurfaces::Seam> seams(const auto& smooth) const {
         std::vector<SmoothSurfaces::Seam> found;
         for (std::uint32_t i = 0; i < edges_.size(); ++i) {

@@ -11,8 +11,8 @@ struct SphereNode {
     float weight;  ///< [sr]
 };
 
-/// Returns 2 rows^2 directions and weights for sums over the sphere: Gauss-Legendre nodes in the cosine of the polar
-/// angle times equidistant azimuths. Exact for spherical harmonics of a degree below 2 rows.
+/// Returns 2 rows^2 directions and weights to integrate over the sphere: Gauss-Legendre in the polar cosine, equal
+/// azimuths. Exact for spherical harmonics below degree 2 rows.
 std::vector<SphereNode> sphere_quadrature(int rows);
 
 }  // namespace interflect::inline detail
