@@ -5,19 +5,19 @@
 
 namespace interflect::inline detail {
 
-/// Generates rays through the square pixels of an image. A pinhole view emits them from its eye; `fov` is the angle
-/// between the top and bottom edges. A view with an `extent` emits parallel rays from the plane through the eye.
+/// Rays through the square pixels of an image: from the eye, where `fov` spans the image's height, or, for views with
+/// an `extent`, parallel rays from the plane through the eye.
 class Camera {
   public:
-    /// Rejects every view and size that render() would reject, so it can check them before a solve.
-    /// @param origin  Scene::origin; rays are relative to it, while views are in world coordinates.
-    /// @throws InputError, naming the view, if it has a view_fault() (scene/view.h) or its pixels are too fine: below
-    ///         2^-22 rad, or for parallel rays below the resolution of the eye's coordinates. InputError if width or
-    ///         height is < 1 or there are more than most_image_pixels pixels (base/image_size.h).
+    /// Rejects all views and sizes that render() rejects, which allows a check before a solve.
+    /// @param origin  Scene::origin; rays are relative to it, views are in world coordinates.
+    /// @throws InputError, naming the view, for a view_fault() (scene/view.h) or pixels below 2^-22 rad, with parallel
+    ///         rays below the resolution of the eye's coordinates. InputError for a width or height < 1 or more than
+    ///         most_image_pixels pixels (base/image_size.h).
     Camera(const View& view, int width, int height, const Imath::V3d& origin);
 
     /// Returns the ray through a point of the image plane.
-    /// @param x, y  Distance from the top left corner [pixels]; the centre of the first pixel is (0.5, 0.5).
+    /// @param x, y  From the top left corner [pixels]; the centre of the first pixel is (0.5, 0.5).
     Ray ray(float x, float y) const {
         const V3f place = corner_ + x * pixel_right_ + y * pixel_down_;
         return is_orthographic_ ? Ray{eye_ + place, forward_} : Ray{eye_, place.normalized()};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Differences between Embree 3 and Embree 4, only for the sources of this folder.
+// Differences between Embree 3 and 4, only for this folder.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -41,7 +41,7 @@ inline RTCRayHit embree_query(const Ray& ray) {
 }
 
 #if RTC_VERSION_MAJOR >= 4
-/// Embree 4 needs no context without arguments. It has no streams, so rays are traced one by one.
+/// Embree 4 needs no context here and has no streams: rays are traced one by one.
 class EmbreeContext {
   public:
     void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
@@ -75,8 +75,7 @@ class EmbreeContext {
 };
 #endif
 
-/// Faces of one Embree geometry, by primitive number. A face is identified by its front patch; the back is the next
-/// one.
+/// Faces of one Embree geometry, by primitive number. A face is identified by its front patch; the back follows it.
 struct Faces {
     std::vector<std::uint32_t> fronts;
     bool triangles = false, two_sided = false;

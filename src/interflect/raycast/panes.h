@@ -10,24 +10,24 @@
 
 namespace interflect::inline detail {
 
-/// Continues rays straight through panes: thin glass and faces with holes (Material::transmittance). Refers to the
-/// scene and its ray caster. Immutable, shared by all threads.
+/// Continues rays straight through panes: thin glass and faces with holes (Material::transmittance). Refers to its
+/// arguments. Immutable, shared by all threads.
 class Panes {
   public:
     Panes(const Scene& scene, const RayCaster& ray_caster);
 
     bool empty() const { return !any_; }
-    /// Returns the transmittance at a hit; 0 if the ray escapes or the surface is not a pane.
+    /// Returns the transmittance at a hit; 0 for escaped rays and other surfaces.
     Rgb transmittance(const Ray& ray, const Hit& hit) const;
 
-    /// Returns the rest of a ray that has hit a pane, starting behind the pane.
+    /// Returns the rest of a ray behind the pane that it hit.
     Ray behind(const Ray& ray, const Hit& hit) const;
 
     /// Hit of a ray behind its first hit.
     struct HitBehind {
         std::uint32_t ray;  ///< Index.
         Rgb transmittance;  ///< Product over all panes before the hit.
-        Hit hit;            ///< Distance from the origin of the ray. Escaped rays also have an entry.
+        Hit hit;            ///< Distance from the ray's origin. Escaped rays also have an entry.
     };
     /// Finds all hits behind panes, sorted by ray, then by depth.
     /// @param hits  First hits of the rays. @param behind  Receives the result.
