@@ -7,8 +7,8 @@
 
 namespace interflect::inline detail {
 
-/// Maps a number, clamped to [0, 1], to a colour: violet, teal, yellow. Lightness increases evenly and equal steps look
-/// about equal, which keeps pictures readable in grey and for colour-blind viewers.
+/// Maps a number, clamped to [0, 1], to a colour: violet, teal, yellow. Lightness increases evenly and equal
+/// steps look about equal, also in grey and to colour-blind viewers.
 /// @return Linear Rec. 709 in [0, 1]; NaN for NaN.
 Rgb false_colour(float position);
 
@@ -22,23 +22,21 @@ struct ColourScale {
     float low = 0, high = 1;  ///< Values at the ends, low < high; low > 0 if logarithmic.
     Spacing spacing = Spacing::linear;
 
-    /// Returns the position of a value between `low` (0) and `high` (1), clamped to [0, 1].
+    /// Returns the position of a value in [0, 1], clamped: `low` is 0, `high` is 1.
     float position(float value) const;
 };
 
-/// Fits a scale to values. Linear: from 0, or a negative smallest value, to the largest. Logarithmic: at most six
-/// decades, ignoring the lowest and highest 0.5% such as a lamp or a dark crack. Values that are not finite are
-/// ignored, as are values <= 0 for a logarithmic scale. Without values the scale is 0 ... 1, or 0.1 ... 1 if
-/// logarithmic.
+/// Fits a scale to the finite values. Linear: from 0, or a negative smallest value, to the largest. Logarithmic: at
+/// most six decades of positive values, without the lowest and highest 0.5% (a dark crack, a lamp). Without values: 0
+/// ... 1, or 0.1 ... 1 if logarithmic.
 ColourScale fit_scale(std::vector<float> values, Spacing spacing);
 
-/// Fits a linear scale from 0 to a round number that at most the highest 2% of the positive values exceed: 1, 1.5, 2,
-/// 3, 4, 5, 6 or 8 times a power of ten. Values that are not finite are ignored; 0 ... 1 without values.
+/// Fits a linear scale from 0 to a round number that at most 2% of the positive, finite values exceed: 1, 1.5, 2, 3, 4,
+/// 5, 6 or 8 times a power of ten. Without values: 0 ... 1.
 ColourScale fit_round_scale(std::vector<float> values);
 
-/// Replaces each pixel's value by its false colour. Values of 0 become black; pixels that are not finite stay
+/// Converts the first channel of each pixel to its false colour. 0 becomes black; pixels that are not finite stay
 /// unchanged.
-/// @param values  Only the first channel is used.
 Image false_colours(const Image& values, const ColourScale& scale);
 
 }  // namespace interflect::inline detail

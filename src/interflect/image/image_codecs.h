@@ -10,14 +10,14 @@
 #include "interflect/image.h"
 #include "interflect/image_files.h"
 
-/// Encoder and decoder of each file format, only for image_files.cpp. Decoders throw std::runtime_error with the
-/// reason; the caller adds the name of the file.
+/// Encoder and decoder per file format, for image_files.cpp. Decoders throw std::runtime_error with the reason; the
+/// caller adds the file name.
 namespace interflect::inline detail::codecs {
 
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
 
-/// Bytes of all rows of a PNG before compression, and their limit: stb counts them as int and doubles its arrays.
+/// Bytes of a PNG's rows before compression, and their limit: stb counts them as int and doubles its arrays.
 constexpr std::int64_t png_bytes(int width, int height, int channels = 3) {
     return (std::int64_t{channels} * width + 1) * height;
 }

@@ -8,22 +8,22 @@
 
 namespace interflect::inline detail {
 
-/// Adds a legend below a picture: the title above a strip of the colours with round values.
+/// Adds a legend below a picture: the title and a strip of the colours with round values.
 /// @param picture  Tone-mapped, linear Rec. 709 in [0, 1].
 /// @param title    Printable ASCII: a quantity with its unit.
-/// @return         The same width, legend_height() higher. Parts without room are cut off: see legend_fits().
-/// @throws InputError if the result exceeds most_image_pixels, or if the title or the scale is invalid.
+/// @return         Same width, legend_height() higher. Parts without room are cut off: see legend_fits().
+/// @throws InputError for more than most_image_pixels or an invalid title or scale.
 Image with_legend(const Image& picture, const ColourScale& scale, const std::string& title);
 
-/// Returns the height of a legend for a picture of this width [pixels]. Text grows with the picture.
+/// Returns the height for a picture of this width [pixels]; text grows with the picture.
 int legend_height(int width);
 
 /// Whether a legend takes at most half of a picture of this size [pixels] and is not cut off.
 /// @throws InputError for a title that is not printable ASCII.
 bool legend_fits(int width, int height, const std::string& title);
 
-/// Returns at most `most` (>= 3) round values between the ends of a scale, ascending: as many 1, 2, 5 times powers of
-/// ten, or multiples of such a number, as possible.
+/// Returns the largest set of up to `most` (>= 3) round values on a scale, ascending: 1, 2, 5 times powers of ten, or
+/// multiples of such a number.
 /// @throws InputError if `most` < 3 or the scale is invalid.
 std::vector<float> round_values(const ColourScale& scale, int most);
 

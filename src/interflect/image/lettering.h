@@ -6,12 +6,12 @@
 
 namespace interflect::inline detail {
 
-// Text and rectangles in pictures. The dots of text are a whole number of pixels wide.
+// Text and rectangles in pictures. Dots of text are a whole number of pixels wide.
 
 /// Colours of text and of its background.
 inline const Rgb ink(0.8f, 0.8f, 0.8f), paper(0.01f, 0.01f, 0.01f);
 
-/// Returns the pixels per dot in a picture of this width [pixels]. Text grows with the picture.
+/// Returns the pixels per dot in a picture of this width [pixels].
 int dot_size(int picture_width);
 
 /// Fills a rectangle, clipped to the image. Right and bottom are exclusive [pixels].
@@ -19,9 +19,9 @@ void fill(Image& image, int left, int top, int right, int bottom, const Rgb& col
 
 /// Height of a capital letter or a digit [dots].
 inline constexpr int text_height = 7;
-/// Returns the width of text [pixels].
+/// [pixels]
 int text_width(std::string text, int dot);
-/// Writes printable ASCII. The position is the top left corner.
+/// Writes printable ASCII from its top left corner.
 void write_text(Image& image, int left, int top, std::string text, int dot);
 
 }  // namespace interflect::inline detail

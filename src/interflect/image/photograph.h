@@ -4,8 +4,7 @@
 
 namespace interflect::inline detail {
 
-/// Reads an image like read_image(), but also from JPEG: lost detail is acceptable in textures, but not in
-/// measurements.
+/// Like read_image(), but also reads JPEG: textures may have lost detail, measurements may not.
 Image read_photograph(const std::filesystem::path& path, std::int64_t most_pixels);
 
 }  // namespace interflect::inline detail

@@ -6,7 +6,7 @@
 
 namespace interflect::inline detail {
 
-/// Transfer function of sRGB (IEC 61966-2-1) from a linear value in [0, 1] to the encoded value.
+/// Transfer function of sRGB (IEC 61966-2-1), from a linear value in [0, 1].
 inline float srgb_encode(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }

@@ -7,9 +7,9 @@
 
 namespace interflect::inline detail {
 
-/// Pixels of a PNG or JPEG as stored in the file, still sRGB-encoded.
+/// Pixels of a PNG or JPEG as stored, sRGB-encoded.
 struct StoredImage {
-    static constexpr int channels = 4;  ///< Red, green, blue and alpha; alpha is 1 if the file has no alpha.
+    static constexpr int channels = 4;  ///< Red, green, blue and alpha; alpha is 1 by default.
 
     int width = 0, height = 0;
     std::vector<std::uint16_t> values;  ///< 65535 is 1; row 0 is at the top: [(y * width + x) * channels + c].
@@ -22,10 +22,10 @@ struct StoredImage {
 };
 
 /// Decodes any kind of PNG. Checks the size before it allocates memory.
-/// @throws std::runtime_error with the reason if the data is not a PNG, truncated, damaged, or has more pixels.
+/// @throws std::runtime_error with the reason if the data is no PNG, truncated, damaged or too large.
 StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels);
 
-/// Decodes a PNG or JPEG, identified by its first bytes. @throws std::runtime_error as decode_stored_png() does.
+/// Decodes a PNG or JPEG by its first bytes. @throws std::runtime_error as decode_stored_png() does.
 StoredImage decode_stored_image(std::string_view bytes, std::int64_t most_pixels);
 
 }  // namespace interflect::inline detail

@@ -14,9 +14,9 @@ Rgb reinhard_curve(const Rgb& v);
 /// Its input is scaled to keep 0.18 at 0.18.
 Rgb filmic_curve(const Rgb& v);
 
-/// AgX of Troy Sobotka with the primaries of Benjamin Wrensch's 'Minimal AgX Implementation', 2023. Steps: move the
-/// primaries towards white; take the logarithm from 10 stops below to 6.5 stops above mid-grey; apply a sigmoid; move
-/// the primaries back; decode with a display's power of 2.2.
+/// AgX of Troy Sobotka with the primaries of Benjamin Wrensch's 'Minimal AgX Implementation', 2023: primaries moved
+/// towards white; logarithm from 10 stops below to 6.5 above mid-grey; sigmoid; primaries moved back; a display's power
+/// of 2.2.
 Rgb agx_curve(const Rgb& v);
 
 }  // namespace interflect::inline detail

@@ -4,12 +4,11 @@
 
 namespace interflect::inline detail {
 
-// Operators that match the perception of a display's observer to that of an observer in the scene. Luminances are in
-// cd/m^2. `adapted` is the adaptation luminance in the scene, L_wa > 0; `white` is the display's white, L_dmax > 0.
+// Operators that match the perception of an observer at the display to one in the scene. Luminances are in cd/m^2.
+// `adapted` is the adaptation luminance in the scene, L_wa > 0; `white` is the display's white, L_dmax > 0.
 
 /// G. Ward, 'A Contrast-Based Scalefactor for Luminance Display', Graphics Gems IV, 1994.
-/// @return  Factor from luminance to a value in [0, 1], where 1 is the display's white [m^2/cd]. The display's observer
-/// is adapted to white / 2.
+/// @return  Factor from luminance to [0, 1], 1 being white [m^2/cd]. The display's observer is adapted to white / 2.
 float ward_factor(float adapted, float white);
 
 /// Tumblin and Rushmeier, 'Tone Reproduction for Realistic Images', 1993, with the equations and constants of Tumblin,
@@ -19,7 +18,7 @@ class TumblinOperator {
   public:
     TumblinOperator(float adapted, float white);
 
-    /// Returns the display's luminance relative to white for a luminance >= 0; not clipped.
+    /// Returns the display's luminance relative to white; not clipped.
     float operator()(float luminance) const;
 
   private:
@@ -34,20 +33,20 @@ class FerwerdaOperator {
     /// @param rods_adapted  Scotopic adaptation luminance of the rods, > 0; see scotopic_luminance().
     FerwerdaOperator(float adapted, float rods_adapted, float white);
 
-    /// Returns the displayed colour; 1 is the display's white; not clipped.
+    /// Returns the displayed colour relative to white; not clipped.
     Rgb operator()(const Rgb& radiance) const;
 
   private:
     float cones_, rods_;  // factors of photopic and scotopic luminance [m^2/cd]
 };
 
-/// Just noticeable difference of luminance at an adaptation luminance, for cones [cd/m^2] and rods [scotopic cd/m^2]:
-/// fits of Ferwerda et al. 1996.
+/// Just noticeable luminance difference at an adaptation luminance, of cones [cd/m^2] and rods [scotopic cd/m^2]: fits
+/// of Ferwerda et al. 1996.
 float cone_threshold(float adapted);
 float rod_threshold(float adapted);
 
-/// Returns the scotopic luminance of a Rec. 709 radiance [scotopic cd/m^2]. The weights are the approximation Y (1.33
-/// (1 + (Y + Z) / X) - 1.68) of Larson, Rushmeier and Piatko 1997 at the three primaries; they also hold for white.
+/// Returns the scotopic luminance of a Rec. 709 radiance [scotopic cd/m^2]: the approximation Y (1.33 (1 + (Y + Z) / X)
+/// - 1.68) of Larson, Rushmeier and Piatko 1997 at the three primaries. The weights also hold for white.
 constexpr float scotopic_luminance(const Rgb& c) { return 0.085f * c.x + 1.969f * c.y + 0.519f * c.z; }
 
 }  // namespace interflect::inline detail
