@@ -9,12 +9,11 @@ namespace interflect::inline detail {
 struct Illumination {
     V3f towards{0, 0, 1};     ///< Unit direction to the luminaire.
     float distance = 0;       ///< Length of a shadow ray to it [m]; infinite for directional light.
-    Rgb irradiance{0, 0, 0};  ///< Of a surface that faces it [lm/m^2 or W/m^2]; 0 for skies, see Skies.
+    Rgb irradiance{0, 0, 0};  ///< On a surface that faces it [lm/m^2 or W/m^2]; 0 for skies, see Skies.
 };
-/// Returns the light of a luminaire. A measured light with an opening, or a disc, is sampled at one point: the mean
-/// over u and v is the light of the whole.
+/// Samples one point of a disc or of a measured light's opening; the mean over u and v is the light of the whole.
 /// @param x     Relative to the scene's origin [m].
-/// @param u, v  Uniform in (0, 1); they choose the point of an opening or disc.
+/// @param u, v  Uniform in (0, 1); choose the point of an opening or disc.
 Illumination illumination(const Luminaire& luminaire, const V3f& x, float u = 0.5f, float v = 0.5f);
 
 }  // namespace interflect::inline detail

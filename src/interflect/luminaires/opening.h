@@ -10,7 +10,7 @@ struct OpeningPoint {
     V3f normal;    ///< Unit length, outwards; zero if the opening has no area.
 };
 
-/// Samples a point of the surface that is visible along -d, uniformly over its projection.
+/// Samples a point of the surface visible along -d, uniformly over its projection.
 /// @param d  Unit direction of the emitted light. @param u, v  Uniform in (0, 1).
 OpeningPoint sample_opening(const LuminousOpening& opening, const V3f& d, float u, float v);
 

@@ -7,18 +7,17 @@
 
 namespace interflect::inline detail {
 
-/// Unoccluded radiance of a scene's skies and suns, and sampling of bright directions. Immutable, shared by all
-/// threads.
+/// Unoccluded radiance of skies and suns, and sampling of bright directions. Immutable, shared by all threads.
 class Skies {
   public:
     explicit Skies(const Scene& scene);
 
     /// Returns the radiance of the skies without suns [cd/m^2 or W/(m^2 sr)]. @param direction  Unit length.
     Rgb radiance(const V3f& direction) const;
-    /// Returns the radiance including the discs of suns.
+    /// Includes the discs of suns.
     Rgb seen(const V3f& direction) const;
 
-    /// Whether a sky is not uniform and should be sampled.
+    /// Whether any sky is not uniform and worth sampling.
     bool can_sample() const { return !sampled_.empty(); }
     struct Sample {
         V3f direction{0, 0, 1};
@@ -27,9 +26,9 @@ class Skies {
     /// Samples a direction by the radiance of the skies that are not uniform. @param sky  Chooses one; all in (0, 1).
     Sample sample(double sky, float u, float v) const;
     float density(const V3f& direction) const;
-    /// Returns the radiance of the skies that are not uniform.
+    /// Radiance of the skies that are not uniform.
     Rgb sampled_radiance(const V3f& direction) const;
-    Rgb uniform_radiance() const { return uniform_; }  ///< Of the uniform skies.
+    Rgb uniform_radiance() const { return uniform_; }  ///< Sum of the uniform skies.
 
   private:
     struct Sampled {

@@ -20,9 +20,9 @@ class SkyRadiance {
     Rgb towards(const V3f& direction) const;
     const SkyFrame& frame() const { return frame_; }
 
-    /// Returns the integral of radiance over each cell's solid angle: exact for a map, from four points for a dome.
+    /// Integrates radiance over each cell's solid angle: exactly for a map, from four points per cell for a dome.
     std::vector<Rgb> cell_integrals(const SkyGrid& grid) const;
-    /// Returns a grid of suitable resolution: the map's texels, or cells of 1.4 degrees.
+    /// Returns a suitable grid: the map's texels, or cells of 1.4 degrees.
     SkyGrid grid() const;
 
   private:

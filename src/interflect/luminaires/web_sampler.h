@@ -6,16 +6,15 @@
 
 namespace interflect::inline detail {
 
-/// Samples directions in proportion to the intensity of a photometric web, exactly as it is interpolated. Immutable,
-/// shared by all threads.
+/// Samples directions by the intensity of a photometric web, exactly as interpolated. Immutable, shared by all threads.
 class WebSampler {
   public:
     /// @param web  Must not have a web_fault().
     explicit WebSampler(const PhotometricWeb& web);
 
-    double flux() const { return azimuth_flux_.back(); }  ///< Of the web [lm or W].
-    /// Returns a unit direction in the luminaire's frame for u and v uniform in (0, 1): u chooses the azimuth, v the
-    /// polar angle. Equal areas of (u, v) have equal flux.
+    double flux() const { return azimuth_flux_.back(); }  ///< [lm or W]
+    /// Returns a unit direction in the luminaire's frame for u (azimuth) and v (polar angle) uniform in (0, 1). Equal
+    /// areas of (u, v) have equal flux.
     V3f direction(float u, float v) const;
 
   private:
