@@ -48,8 +48,8 @@ Imath::Box2d turned_box(const std::vector<V2d>& points, double angle) {
     return box;
 }
 
-/// Returns the rotation of the frame to the smallest enclosing rectangle, which has a side along one of the hull's. The
-/// angle is in (-45, 45] degrees, and 0 if that is as good.
+/// Returns the rotation of the frame to the smallest enclosing rectangle, which shares a direction with a side of the
+/// hull. In (-45, 45] degrees; 0 if that is as good.
 double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
     constexpr double quarter = std::numbers::pi / 2, better = 1 - 1e-4;
     const auto area = [&](double angle) {
