@@ -13,7 +13,6 @@
 
 namespace interflect::inline detail {
 
-/// Sampling of a picture by camera rays.
 struct CameraSampling {
     int width = 1, height = 1;  ///< [pixels], equal to the camera's.
     int samples = 16;           ///< Per pixel, >= 1. Each pixel has its own low-discrepancy sequence.
@@ -39,7 +38,6 @@ void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const Camer
                   std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
                   const std::function<void(const PixelSamples&)>& visit);
 
-/// Traces one ray per sample.
 inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                          const PictureMonitor& monitor, const std::function<void(const PixelSamples&)>& visit) {
     constexpr PixelOffset none_at_all;

@@ -167,7 +167,6 @@ class VertexBuilder {
         collect_leaf_edges(child(next), c, middle, high, from, to, found);
     }
 
-    /// One side of a seam.
     struct SeamSide {
         std::vector<LeafEdge> leaves;
         float length;  // of the patch's edge [m]

@@ -26,8 +26,7 @@ class LightTree {
         V3f low, high;
         void extend(const Box& other);
     };
-    /// The intensity in a direction is at most power / pi times the cosine of the angle by which it is outside the
-    /// cone.
+    /// The intensity in a direction is at most power / pi times the cosine of its angle outside the cone.
     struct Light {
         std::uint32_t index;
         float power;  ///< Sum over channels [W or lm].

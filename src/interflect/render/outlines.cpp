@@ -17,7 +17,6 @@ namespace {
 /// Rays of one sample: the first, one a line width to the right, and one a line width below.
 constexpr std::size_t rays_per_sample = 3;
 
-/// Returns the share of a pixel's samples on a border.
 float outlined_share(const PixelSamples& samples, const ElementForest& forest) {
     const auto leaf = [&](std::size_t i) { return leaf_of_hit(forest, samples.rays[i], samples.hits[i]); };
     int outlined = 0;

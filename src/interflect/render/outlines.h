@@ -8,7 +8,6 @@
 
 namespace interflect::inline detail {
 
-/// Style of the borders of leaves.
 struct OutlineOptions {
     float width = 1;             ///< [pixels], > 0; slanted lines are up to 1.4 times as wide.
     float opacity = 0.6f;        ///< In [0, 1]; below 1 the picture stays visible where leaves are smaller than pixels.

@@ -25,13 +25,13 @@ struct LightSample {
 
 /// Random numbers that sample bright places in final gathering.
 struct PlaceSample {
-    double patch;  // chooses the patch
-    float u, v;    // choose the point on it
+    double patch;
+    float u, v;  // choose the point on it
 };
 
 /// Random numbers that sample the skies at a vertex.
 struct SkySample {
-    double sky;  // chooses the sky
+    double sky;
     float u, v;  // choose the direction
 };
 

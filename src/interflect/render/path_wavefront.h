@@ -30,7 +30,6 @@ struct PathStart {
     float pixel_size = 0;             // side of a pixel of an orthographic picture [m]
 };
 
-/// Data shared by all paths of a picture.
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
@@ -71,7 +70,6 @@ struct BatchOfPaths {
     FirstHit first{};
 };
 
-/// Numbers of rays, summed over batches.
 struct RayCounts {
     std::int64_t rays = 0, shadow_rays = 0, escaped_rays = 0;
     RayCounts& operator+=(const RayCounts& o) {
@@ -139,7 +137,6 @@ class PathWavefront {
     /// @param index  Index of the ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
-    /// Continues shadow rays behind panes of glass.
     void pass_panes();
     /// Ends a path with the light of the solution, unless the element is too near.
     /// @return Whether it has ended.
@@ -147,7 +144,6 @@ class PathWavefront {
     /// Returns the density per solid angle of KnownLight::sample() in the direction from x to a place [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
-    /// Adds a shadow ray to a bright place of the solution.
     void connect_to_known_light(const V3f& x, const Path& path);
     /// @param bounces  Number of reflections between emitter and camera.
     void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);

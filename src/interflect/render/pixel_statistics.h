@@ -54,7 +54,6 @@ struct PixelStatistics {
         first.distance += (b.first.distance / batch_size - first.distance) / count;
         first.level += (b.first.level / batch_size - first.level) / count;
     }
-    /// Returns the mean of the channels of the reflected light.
     double reflected() const { return mean_channel(direct.mean + indirect.mean); }
     /// Variance of one batch.
     RgbD variance() const { return batches > 1 ? squares / (batches - 1.0) : RgbD(0, 0, 0); }

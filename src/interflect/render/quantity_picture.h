@@ -23,7 +23,6 @@ struct Quantity {
     std::string label() const { return unit.empty() ? name : name + " [" + unit + "]"; }
 };
 
-/// A picture of a quantity.
 struct QuantityPicture {
     Image values;       ///< To measure: mean over the surfaces in each pixel, in all channels; 0 without surfaces.
     Image shown;        ///< To display with a legend (legend.h): false colours; escaped rays are black.

@@ -133,7 +133,6 @@ std::vector<V3f> patch_normals(const Scene& scene) {
     return normals;
 }
 
-/// Numbers the sets of corners or edges.
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     SmoothSurfaces::Groups groups;
     groups.group.assign(4 * scene.patches.size(), none);
@@ -163,7 +162,6 @@ std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineIn
     return parts;
 }
 
-/// Straight line between two points in double precision.
 class StraightEdge {
   public:
     StraightEdge(const V3f& from, const V3f& to) : origin_(from), direction_(Imath::V3d(to) - Imath::V3d(from)) {
@@ -217,7 +215,6 @@ class SegmentTree {
     std::vector<Boxed> boxes_;
 };
 
-/// Contacts of a scene, found by position.
 class ContactTree {
   public:
     explicit ContactTree(const Scene& scene)
