@@ -70,7 +70,6 @@ class ByteSink : public Imf::OStream {
     std::size_t position_ = 0;
 };
 
-/// Describes the pixels as OpenEXR's three channels.
 Imf::FrameBuffer frame_buffer(const Image& image, const Imath::Box2i& window) {
     Imf::FrameBuffer buffer;
     const auto* first = reinterpret_cast<const float*>(image.pixels.data());

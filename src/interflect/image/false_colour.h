@@ -17,7 +17,6 @@ enum class Spacing {
     logarithmic,  ///< Equal ratios look equal; 0 has the colour of the smallest value.
 };
 
-/// Mapping from values to colours.
 struct ColourScale {
     float low = 0, high = 1;  ///< Values at the ends, low < high; low > 0 if logarithmic.
     Spacing spacing = Spacing::linear;

@@ -25,7 +25,6 @@ constexpr int label_margin = 2;
 /// Difference of neighbouring pixels, relative to a level, above which they show different surfaces or lighting.
 constexpr float jump = 0.15f;
 
-/// One number per pixel.
 struct Field {
     int width = 0, height = 0;
     std::vector<float> values;  // [y * width + x]
@@ -137,7 +136,6 @@ float distance(const V2f& p, const Segment& s) {
     return (p - (s.a + t * along)).length();
 }
 
-/// Increases the coverage of the pixels near a segment.
 void cover(const Segment& s, float half_width, Field& coverage) {
     const float reach = half_width + 1;
     const auto first = [&](float a, float b) { return std::max(0, static_cast<int>(std::min(a, b) - reach)); };

@@ -9,7 +9,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Luminance that becomes white under reinhard_curve().
 constexpr float reinhard_white = 4.0f;
 
 /// Input of Narkowicz's curve for an exposed value of 1. Keeps 0.18 at 0.18.
