@@ -41,7 +41,6 @@ V3d xyz_of_opponent(const V3d& opponent) {
     return {y + opponent.y / 500, y, y - opponent.z / 200};
 }
 
-/// Converts to CIE L*a*b*.
 V3d lab_of_xyz(const V3d& xyz) {
     constexpr double delta = 6.0 / 29;
     const auto compress = [](double t) {
@@ -62,7 +61,6 @@ V3d perceived_colour(const V3d& rgb) {
 
 // --- Filters, all of them sums of products of a function of x and a function of y
 
-/// One number per pixel.
 struct Channel {
     int width = 0, height = 0;
     std::vector<float> values;  // row by row

@@ -6,7 +6,6 @@
 
 namespace interflect::inline detail {
 
-/// Viewing conditions of the pictures.
 struct FlipOptions {
     /// Display pixels per degree of the field of view, in (0, 1000]. Default of the paper: 3840 pixels on 0.7 m, seen
     /// from 0.7 m; 67.02.
