@@ -22,16 +22,14 @@ constexpr double pi = std::numbers::pi;
 /// Point of a source that represents a part of its solid angle.
 struct Place {
     V3f towards;
-    float distance = 0;  // [m]
-    std::uint32_t patch =
-        none;                // a ray to the point must hit it; without a patch, the ray must be free up to `distance`
-    Rgb radiance{0, 0, 0};   // [cd/m^2]
-    double solid_angle = 0;  // [sr]
+    float distance = 0;          // [m]
+    std::uint32_t patch = none;  // the ray must hit it; default: hits nothing before `distance`
+    Rgb radiance{0, 0, 0};       // [cd/m^2]
+    double solid_angle = 0;      // [sr]
     double position_index = 1;
     std::size_t source = 0;
 };
 
-/// Integrals over one source.
 struct Sums {
     std::string name;
     double solid_angle = 0, luminance = 0, squared = 0,
