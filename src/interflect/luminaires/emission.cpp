@@ -42,7 +42,6 @@ V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
 }
 
-/// Side of a box.
 struct BoxSide {
     V3f corner, edge_u, edge_v, normal;  // the normal points inwards
 };
