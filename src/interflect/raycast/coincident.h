@@ -30,7 +30,6 @@ class CoincidentFaces {
     /// @param scene      Valid (scene_faults); convex quadrilaterals.
     /// @param tolerance  Coordinate error of each face [m], > 0. Size scene.patches.size().
     CoincidentFaces(const Scene& scene, std::span<const float> tolerance);
-    /// Uses the same tolerance for all faces.
     CoincidentFaces(const Scene& scene, float tolerance)
         : CoincidentFaces(scene, std::vector<float>(scene.patches.size(), tolerance)) {}
 
@@ -66,7 +65,6 @@ class CoincidentFaces {
     std::size_t memory() const;                                  ///< [bytes]
 
   private:
-    /// Face with priority over another.
     struct PriorityFace {
         PriorityFace(const Scene& scene, std::uint32_t face, float margin);
 

@@ -23,7 +23,6 @@ class Panes {
     /// Returns the rest of a ray behind the pane that it hit.
     Ray behind(const Ray& ray, const Hit& hit) const;
 
-    /// Hit of a ray behind its first hit.
     struct HitBehind {
         std::uint32_t ray;  ///< Index.
         Rgb transmittance;  ///< Product over all panes before the hit.
