@@ -38,7 +38,7 @@ class ElementVertices {
 
     std::uint32_t count() const { return count_; }
     /// Returns the corners of element e, leaf or not, in its patch's vertex order: (0,0) (1,0) (1,1) (0,1) of a
-    /// quadrilateral's Cell; (0,0) (1,0) (0,1), `none` for a triangle.
+    /// quadrilateral's Cell; (0,0) (1,0) (0,1) and `none` for a triangle.
     const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
     /// Ordered: hanging ends of an edge precede the vertex inside it.
     const std::vector<Hanging>& hanging() const { return hanging_; }

@@ -26,7 +26,7 @@ class LightTree {
         V3f low, high;
         void extend(const Box& other);
     };
-    /// The intensity in a direction is at most power / pi times the cosine of its angle outside the cone.
+    /// Light whose intensity in a direction is at most power / pi times the cosine of the angle outside its cone.
     struct Light {
         std::uint32_t index;
         float power;  ///< Sum over channels [W or lm].
@@ -35,7 +35,7 @@ class LightTree {
         V3f centre() const { return 0.5f * (box.low + box.high); }
     };
     struct Choice {
-        std::uint32_t index = none;  ///< Default: no light can reach the point.
+        std::uint32_t index = none;  ///< none if no light can reach the point.
         float probability = 0;
     };
 
@@ -70,7 +70,7 @@ class LightTree {
     void build(std::uint32_t node, std::span<Light> lights);
 
     std::vector<LightNode> nodes_;     // [0] is the root; empty without lights
-    std::vector<std::uint32_t> leaf_;  // node per index
+    std::vector<std::uint32_t> leaf_;  // node per index; none without a light
 };
 
 /// Converts patches with power > 0 to lights. @param geometry, power  Per patch of the scene.
