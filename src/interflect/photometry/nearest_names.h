@@ -26,8 +26,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// Lists the names most similar to an unknown name, for a message: "expected one of 'a', 'b'". Also compares the ends
-/// of names behind a dot: "top" finds "desk.top".
+/// Lists the names most similar to an unknown name, for a message. Also compares the ends of names behind a dot: "top"
+/// finds "desk.top".
 inline std::string text_of_nearest(const std::string& name, std::span<const std::string> names) {
     constexpr std::size_t most_told = 5, most_compared = 10'000;
     struct Candidate {
