@@ -51,7 +51,7 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     text("interflect.version", metadata.version);
 }
 
-/// A file in memory: OpenEXR goes back to fill in what it left open.
+/// File in memory. OpenEXR seeks back to complete earlier parts.
 class ByteSink : public Imf::OStream {
   public:
     ByteSink() : OStream("memory") {}
@@ -70,7 +70,6 @@ class ByteSink : public Imf::OStream {
     std::size_t position_ = 0;
 };
 
-/// The pixels as OpenEXR's three channels.
 Imf::FrameBuffer frame_buffer(const Image& image, const Imath::Box2i& window) {
     Imf::FrameBuffer buffer;
     const auto* first = reinterpret_cast<const float*>(image.pixels.data());
@@ -116,7 +115,7 @@ void require_channels(const Imf::ChannelList& channels) {
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
-    Imf::addChromaticities(header, Imf::Chromaticities());  // the default: Rec. 709 primaries, D65
+    Imf::addChromaticities(header, Imf::Chromaticities());  // default: Rec. 709 primaries, D65
     insert_metadata(metadata, header);
     for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     Imf::FrameBuffer buffer = frame_buffer(image, header.dataWindow());
@@ -126,7 +125,7 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::s
         Imf::OutputFile file(sink, header);
         file.setFrameBuffer(buffer);
         file.writePixels(image.height);
-    }  // which completes the table of line offsets
+    }  // completes the table of line offsets
     return sink.release();
 }
 

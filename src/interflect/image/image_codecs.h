@@ -10,20 +10,20 @@
 #include "interflect/image.h"
 #include "interflect/image_files.h"
 
-/// One pair of functions a file format, for image_files.cpp alone. Decoders throw std::runtime_error with the reason
-/// only; whoever knows the file's name adds it.
+/// Encoder and decoder per file format, for image_files.cpp. Decoders throw std::runtime_error with the reason; the
+/// caller adds the file name.
 namespace interflect::inline detail::codecs {
 
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
 
-/// Bytes of all rows of a PNG before compression, and their limit: stb counts them with int and doubles its arrays.
+/// Bytes of a PNG's rows before compression, and their limit: stb counts them as int and doubles its arrays.
 constexpr std::int64_t png_bytes(int width, int height, int channels = 3) {
     return (std::int64_t{channels} * width + 1) * height;
 }
 inline constexpr std::int64_t most_png_bytes = std::int64_t{1} << 30;
 
-/// @param opacity  Of each pixel, in [0, 1]; none: the file has no alpha.
+/// @param opacity  Per pixel, in [0, 1]; empty: the file has no alpha.
 std::string encode_png(const Image& image, std::span<const float> opacity = {});
 std::string encode_jpeg(const Image& image);
 Image decode_png(std::string_view bytes, std::int64_t most_pixels);
@@ -32,7 +32,7 @@ Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels);
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes, std::int64_t most_pixels);
 
-/// @throws InputError for a layer that has not as many values as the image's pixels need.
+/// @throws InputError if the number of values in a layer does not match the image.
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers);
 Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);

@@ -19,13 +19,12 @@ namespace {
 
 using V2f = Imath::V2f;
 
-// In dots of the font.
+// [dots of the font]
 constexpr float line_width = 1, shortest_line = 16, label_spacing = 160;
 constexpr int label_margin = 2;
-/// Between neighbouring pixels' values, relative to a level, above which they lie on two surfaces, or in two lights.
+/// Difference of neighbouring pixels, relative to a level, above which they show different surfaces or lighting.
 constexpr float jump = 0.15f;
 
-/// One number a pixel.
 struct Field {
     int width = 0, height = 0;
     std::vector<float> values;  // [y * width + x]
@@ -36,7 +35,7 @@ struct Field {
     float at(int x, int y) const { return values[index(std::clamp(x, 0, width - 1), std::clamp(y, 0, height - 1))]; }
 };
 
-/// The binomial filter of five pixels, along rows or along columns.
+/// Applies the binomial filter of five pixels along rows or columns.
 Field smoothed(const Field& field, int dx, int dy) {
     constexpr std::array<float, 5> weights = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
     Field result = field;
@@ -57,13 +56,13 @@ Field field_of(const Image& image) {
     return smoothed(smoothed(field, 1, 0), 0, 1);
 }
 
-/// A piece of a line within the square between four pixels' centres [pixels].
+/// Part of a line within the square between four pixel centres [pixels].
 struct Segment {
     V2f a, b;
-    std::uint32_t line = 0;  // any edge of a square that the line crosses, by Contour::edge_id()
+    std::uint32_t line = 0;  // one of the square edges that the line crosses, by Contour::edge_id()
 };
 
-/// The lines of one level: marching squares.
+/// Lines of one level by marching squares.
 class Contour {
   public:
     Contour(const Field& field, float level) : field_(field), level_(level), edges_(2 * field.values.size()) {
@@ -74,7 +73,7 @@ class Contour {
     }
 
     const std::vector<Segment>& segments() const { return segments_; }
-    /// Of the whole line that a segment is part of [pixels].
+    /// Returns the length of the whole line that contains a segment [pixels].
     float length(const Segment& segment) const { return lengths_.at(segment.line); }
 
   private:
@@ -84,7 +83,7 @@ class Contour {
         return static_cast<std::uint32_t>(2 * field_.index(x, y) + (is_vertical ? 1 : 0));
     }
 
-    /// Where the level lies between the centres of a pixel and of the next one to the right or below.
+    /// Returns the crossing of the level between the centres of a pixel and its right or lower neighbour.
     V2f crossing(int x, int y, bool is_vertical) const {
         const float a = field_.at(x, y), b = is_vertical ? field_.at(x, y + 1) : field_.at(x + 1, y);
         const float t = (level_ - a) / (b - a);
@@ -115,7 +114,7 @@ class Contour {
         if (highest - lowest > jump * std::abs(level_)) return;
         if (count == 2) join(crossed[0], crossed[1]);
         if (count < 4) return;
-        // A saddle: its middle goes with one pair of opposite corners.
+        // Saddle: the value at the centre selects the pair of corners that are connected.
         const float middle =
             (field_.at(x, y) + field_.at(x + 1, y) + field_.at(x, y + 1) + field_.at(x + 1, y + 1)) / 4;
         const bool with_top_left = (middle >= level_) == top_left;
@@ -137,7 +136,6 @@ float distance(const V2f& p, const Segment& s) {
     return (p - (s.a + t * along)).length();
 }
 
-/// Raises the coverage of the pixels near a segment.
 void cover(const Segment& s, float half_width, Field& coverage) {
     const float reach = half_width + 1;
     const auto first = [&](float a, float b) { return std::max(0, static_cast<int>(std::min(a, b) - reach)); };
@@ -161,7 +159,7 @@ void draw_lines(Image& image, const Contour& contour, int dot, const Rgb& colour
         image.pixels[i] += coverage.values[i] * (colour - image.pixels[i]);
 }
 
-/// A number on a line [pixels].
+/// Number on a line [pixels].
 struct Label {
     int left = 0, top = 0, width = 0, height = 0;
     std::string text;
@@ -176,8 +174,8 @@ struct Label {
     }
 };
 
-/// Adds labels of one level where its lines are long enough, wholly in the picture, beside all others, and far from
-/// those with the same number; from the middle of the picture on.
+/// Adds labels of one level, from the middle of the picture outwards. Requires a long line and a place inside the
+/// picture, without overlap and far from labels with the same number.
 void place_labels(const Contour& contour, float level, int dot, const Image& image, std::vector<Label>& labels) {
     Label label{.text = fmt::format("{:.4g}", level)};
     label.width = text_width(label.text, dot) + 2 * label_margin * dot;

@@ -13,12 +13,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// The places of a legend's parts, in dots of the font, from the legend's top.
+/// Positions of the parts from the legend's top [dots of the font].
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               legend_bottom = 43;
-/// Round values that a scale has at least room for.
+/// Minimum number of round values on a scale.
 constexpr int least_values = 3;
-/// Room for a number with the space to the next one, likewise, and the least such space.
+/// Width for a number and the space after it, and the minimum space [dots of the font].
 constexpr int number_width = 64, number_gap = 8;
 
 void require_valid(const ColourScale& scale) {
@@ -33,7 +33,7 @@ void require_printable(const std::string& title) {
         throw InputError("the title of a legend '" + title + "': expected printable ASCII");
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not above x.
+/// Returns the largest of 1, 2 and 5 times a power of ten that is <= x.
 double round_below(double x) {
     const double power = std::pow(10, std::floor(std::log10(x)));
     for (const double factor : {5.0, 2.0})
@@ -50,7 +50,7 @@ std::vector<float> multiples(const ColourScale& scale, double step) {
     return values;
 }
 
-/// These multiples of every `stride`-th power of ten.
+/// Returns these multiples of every `stride`-th power of ten.
 std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vector<double>& factors, int stride) {
     std::vector<float> values;
     const double low = scale.low * (1 - rounding), high = scale.high * (1 + rounding);
@@ -62,7 +62,7 @@ std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vect
     return values;
 }
 
-/// Pixels from the strip's left end to its right one; the left one is a margin from the picture's.
+/// Returns the length of the strip [pixels]. Its left end is one margin from the picture's edge.
 int strip_length(const Image& image, int dot) { return std::max(1, image.width - 2 * margin * dot); }
 
 void draw_strip(Image& image, int top, int dot) {
@@ -72,7 +72,7 @@ void draw_strip(Image& image, int top, int dot) {
              false_colour((static_cast<float>(x) + 0.5f) / static_cast<float>(length)));
 }
 
-/// A tick at each round value; a number that would run into the last one is left out.
+/// Draws a tick at each round value. Omits numbers that would overlap the previous one.
 void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
     const int left = margin * dot, length = strip_length(image, dot);
     int free_from = left;

@@ -11,7 +11,7 @@
 namespace interflect::inline detail {
 
 int dot_size(int picture_width) {
-    constexpr int dots = 512;  // that a picture is wide, or a little more
+    constexpr int dots = 512;  // approximate width of a picture
     return std::max(1, (picture_width + dots / 4) / dots);
 }
 

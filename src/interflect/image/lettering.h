@@ -6,22 +6,22 @@
 
 namespace interflect::inline detail {
 
-// Text and rectangles in pictures. Text is drawn with dots of a whole number of pixels.
+// Text and rectangles in pictures. Dots of text are a whole number of pixels wide.
 
-/// Colours of what is written on pictures, and of what is below it.
+/// Colours of text and of its background.
 inline const Rgb ink(0.8f, 0.8f, 0.8f), paper(0.01f, 0.01f, 0.01f);
 
-/// Pixels a dot in a picture of this width [pixels]: text grows with the picture.
+/// Returns the pixels per dot in a picture of this width [pixels].
 int dot_size(int picture_width);
 
-/// Fills the part of a rectangle that lies in the image; right and bottom are exclusive [pixels].
+/// Fills a rectangle, clipped to the image. Right and bottom are exclusive [pixels].
 void fill(Image& image, int left, int top, int right, int bottom, const Rgb& colour);
 
-/// Of a capital letter or a digit, in dots.
+/// Height of a capital letter or a digit [dots].
 inline constexpr int text_height = 7;
 /// [pixels]
 int text_width(std::string text, int dot);
-/// Writes printable ASCII from its top left corner on.
+/// Writes printable ASCII from its top left corner.
 void write_text(Image& image, int left, int top, std::string text, int dot);
 
 }  // namespace interflect::inline detail

@@ -5,7 +5,7 @@
 
 namespace interflect::inline detail {
 
-/// write_image() into a file that appears under its name once it is complete: commits it. Errors have its final name.
+/// Writes an image like write_image() and commits the file. Errors contain its final name.
 void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
                  std::span<const ImageLayer> layers = {});
 

@@ -4,7 +4,7 @@
 
 namespace interflect::inline detail {
 
-/// As read_image(), and of JPEG files too: what surfaces show may have lost detail, what is measured may not.
+/// Like read_image(), but also reads JPEG: textures may have lost detail, measurements may not.
 Image read_photograph(const std::filesystem::path& path, std::int64_t most_pixels);
 
 }  // namespace interflect::inline detail

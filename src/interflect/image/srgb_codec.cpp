@@ -1,4 +1,4 @@
-// PNG and JPEG: written through stb. stored_image.cpp reads them.
+// Writes PNG and JPEG with stb. stored_image.cpp reads them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace interflect::inline detail::codecs {
 namespace {
 
 constexpr int channels = 3;
-constexpr int jpeg_quality = 95;  // of 100: no blocks that the eye would see on smooth walls
+constexpr int jpeg_quality = 95;  // of 100: no visible blocks on smooth walls
 
 std::vector<std::uint8_t> srgb_bytes(const Image& image, std::span<const float> opacity = {}) {
     std::vector<std::uint8_t> bytes;

@@ -1,4 +1,4 @@
-// PNG through libspng, JPEG through libjpeg-turbo: both withstand hostile files, which stb's readers do not.
+// PNG with libspng, JPEG with libjpeg-turbo: unlike stb's readers, both are robust against hostile files.
 #include "interflect/image/stored_image.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr std::size_t most_chunk_bytes = std::size_t{1} << 24;  // of text and profiles, which nobody asks for
+constexpr std::size_t most_chunk_bytes = std::size_t{1} << 24;  // of unused text and profiles
 
 struct FreePng {
     void operator()(spng_ctx* context) const { spng_ctx_free(context); }
@@ -46,7 +46,7 @@ StoredImage decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
                                 &colour_space));
     codecs::require_allowed_size(image.width, image.height, most_pixels);
     std::vector<std::uint8_t> narrow(image.pixel_count() * StoredImage::channels);
-    // Progressive scans without end would take hours.
+    // The limit of scans rejects progressive files that would take hours.
     require(tjDecompress2(decoder.get(), data, bytes.size(), narrow.data(), image.width, 0, image.height, TJPF_RGBA,
                           TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
     image.values.reserve(narrow.size());
@@ -71,7 +71,7 @@ StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels) 
     require_png(spng_decode_image(context.get(), image.values.data(), image.values.size() * sizeof(std::uint16_t),
                                   SPNG_FMT_RGBA16, SPNG_DECODE_TRNS));
     require_png(spng_decode_chunks(context.get()));
-    constexpr std::string_view last_chunk = "IEND\xae\x42\x60\x82";  // libspng does not look at its checksum
+    constexpr std::string_view last_chunk = "IEND\xae\x42\x60\x82";  // libspng does not check its checksum
     if (bytes.rfind(last_chunk) == bytes.npos) throw std::runtime_error("it ends too early");
     return image;
 }

@@ -9,25 +9,24 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Luminance that becomes white under reinhard_curve().
 constexpr float reinhard_white = 4.0f;
 
-/// Input of Narkowicz's curve for an exposed value of 1: with it 0.18 stays 0.18.
+/// Input of Narkowicz's curve for an exposed value of 1. Keeps 0.18 at 0.18.
 constexpr float filmic_scale = 0.72317f;
 
 float narkowicz(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
-/// What AgX's curve makes of the logarithm: stops around mid-grey to [0, 1].
+/// Range of AgX's logarithm around mid-grey, mapped to [0, 1] [stops].
 constexpr float mid_grey = 0.18f, stops_below = 10, stops_above = 6.5f;
-/// The sigmoid goes through (pivot_in, pivot_out) with this slope; the powers bend its ends to 0 and 1.
+/// The sigmoid passes through (pivot_in, pivot_out) with this slope; the powers bend its ends to 0 and 1.
 constexpr float pivot_in = stops_below / (stops_below + stops_above), pivot_out = 0.5f, contrast = 2, toe_power = 3,
                 shoulder_power = 3.25f;
 constexpr float display_power = 2.2f;
 
-/// One half of a sigmoid: from 0 with slope `contrast` to `height` at `width`.
+/// Returns one half of a sigmoid: from 0 with slope `contrast` to `height` at `width`.
 float bend(float x, float width, float height, float power) {
     const float straight = contrast * width;
-    const float limit = straight / std::pow(std::pow(straight / height, power) - 1, 1 / power);  // for endless x
+    const float limit = straight / std::pow(std::pow(straight / height, power) - 1, 1 / power);  // for infinite x
     const float t = contrast * x / limit;
     return limit * t / std::pow(1 + std::pow(t, power), 1 / power);
 }
@@ -54,8 +53,8 @@ Rgb filmic_curve(const Rgb& v) {
 }
 
 Rgb agx_curve(const Rgb& v) {
-    if (v == Rgb(0)) return v;  // exactly: the sigmoid's lower end is 0 but for rounding
-    // Each row: where a primary of Rec. 709 goes. Columns sum to 1, so that greys stay grey.
+    if (v == Rgb(0)) return v;  // exact: the sigmoid's lower end has rounding errors
+    // Rows: new positions of the Rec. 709 primaries. Columns sum to 1 to preserve greys.
     static const Imath::M33f inset(0.8424f, 0.0423f, 0.0424f,  //
                                    0.0784f, 0.8785f, 0.0784f,  //
                                    0.0792f, 0.0792f, 0.8792f);

@@ -15,10 +15,10 @@ namespace interflect {
 
 namespace {
 
-constexpr double key = 0.2;                   // what the logarithmic mean becomes, 1 being white
-constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at either end
+constexpr double key = 0.2;                   // logarithmic mean after exposure; 1 is white
+constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at each end
 
-/// Of the finite pixels where `measure` is above 0, without the lowest and the highest 5%; 0 where there is none.
+/// Averages over the finite pixels where `measure` is > 0, without the lowest and highest 5%; 0 without such pixels.
 double logarithmic_mean(const Image& image, float (*measure)(const Rgb&)) {
     std::vector<float> lit;
     lit.reserve(image.pixels.size());
@@ -39,7 +39,7 @@ float scotopic(const Rgb& colour) { return scotopic_luminance(colour); }
 
 using Operator = std::function<Rgb(const Rgb&)>;
 
-/// From radiance >= 0 to what the display shows, not clipped.
+/// Returns the operator from radiance >= 0 to displayed values, not clipped.
 Operator absolute_operator(const Image& image, Tonemap curve, float white) {
     const auto adapted = static_cast<float>(logarithmic_mean(image, photopic));
     if (!(adapted > 0)) return [](const Rgb&) { return Rgb(0); };
@@ -86,7 +86,7 @@ Image tone_map(const Image& image, float exposure, Tonemap curve, float display_
     for (Rgb& pixel : shown.pixels) {
         if (!is_finite(pixel)) continue;
         const Rgb mapped = shown_of(Rgb(std::max(0.0f, pixel.x), std::max(0.0f, pixel.y), std::max(0.0f, pixel.z)));
-        // In this order an overflow's NaN becomes white.
+        // This order of arguments turns the NaN of an overflow into white.
         for (int c = 0; c < 3; ++c) pixel[c] = std::min(1.0f, mapped[c]);
     }
     return shown;

@@ -8,37 +8,37 @@
 
 namespace interflect::inline detail {
 
-/// Cells of equal azimuths and equal angles from the zenith, row by row from the zenith.
+/// Grid of equal azimuths and equal angles from the zenith, row by row from the zenith.
 struct SkyGrid {
     std::size_t columns, rows;
 
     std::size_t size() const { return columns * rows; }
-    /// Cosine of the angle of the upper edge of a row.
+    /// Returns the cosine of the zenith angle at the upper edge of a row.
     double edge_cosine(std::size_t row) const;
-    double solid_angle(std::size_t row) const;  ///< Of each of its cells [sr].
+    double solid_angle(std::size_t row) const;  ///< Per cell in the row [sr].
     SkyPlace middle(std::size_t column, std::size_t row) const;
     std::size_t row_of(float cosine) const;
     std::size_t column_of(float s) const;
 };
 
-/// Places in proportion to given weights of a grid's cells, uniform in solid angle within each: a piecewise-constant
-/// distribution in two dimensions. Immutable; 4 bytes a cell.
+/// Samples places by the weights of a grid's cells, uniformly in solid angle within a cell: a piecewise constant
+/// distribution. Immutable; 4 bytes per cell.
 class DirectionTable {
   public:
-    /// @param weights  Of each cell, >= 0.
+    /// @param weights  Per cell, >= 0.
     DirectionTable(const SkyGrid& grid, std::span<const float> weights);
 
-    double sum() const { return sum_; }  ///< Of all weights; where it is 0 there is nothing to sample.
+    double sum() const { return sum_; }  ///< Sum of the weights; sampling requires > 0.
     /// For u and v uniform in (0, 1): u chooses the column, v the row.
     SkyPlace sample(float u, float v) const;
-    /// Density of sample() per solid angle [1/sr].
+    /// Per solid angle [1/sr].
     float density(const SkyPlace& place) const;
 
   private:
     SkyGrid grid_;
     double sum_ = 0;
     std::vector<double> rows_;    // cumulative share of each row, from 0 to 1
-    std::vector<float> columns_;  // of each row: its cells' cumulative shares of it, up to each cell's end
+    std::vector<float> columns_;  // cumulative share of each cell in its row
 };
 
 }  // namespace interflect::inline detail

@@ -17,9 +17,9 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// The box around all patches, a little larger than it must be: rays that start on it are outside.
+/// Returns the box around all patches, slightly enlarged: rays that start on it are outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
-    constexpr float margin = 1e-3f;  // of its diagonal
+    constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;
     for (const Patch& patch : scene.patches)
         for (int k = 0; k < patch.vertex_count(); ++k)
@@ -29,20 +29,19 @@ Imath::Box3f box_around(const Scene& scene) {
     return box;
 }
 
-/// Cosine of the angle of a ray of a beam to its axis, for v in (0, 1]: the inner part is uniform in solid angle;
-/// beyond it intensity is in proportion to (c - outer)^2.
+/// Samples the cosine between a ray of a beam and its axis, for v in (0, 1]. The inner part is uniform in solid angle;
+/// beyond it the intensity is proportional to (c - outer)^2.
 float sample_cosine(float v, float inner, float outer, float inner_share) {
     if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// A direction at an angle to an axis, turned about it by `turn` of a full turn.
+/// Returns the direction at an angle to an axis, rotated about it by `turn` of a full turn.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
 }
 
-/// A side of the scene's box.
 struct BoxSide {
     V3f corner, edge_u, edge_v, normal;  // the normal points inwards
 };
@@ -61,7 +60,7 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
     return sides;
 }
 
-/// What all channels have, and what each has beyond that.
+/// Minimum of the channels. A map is divided into this grey part and the excess of each channel.
 float least_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
 constexpr std::array<SkyComponent, 4> map_components = {
     {{Rgb(1, 1, 1), least_channel},
@@ -69,10 +68,10 @@ constexpr std::array<SkyComponent, 4> map_components = {
      {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - least_channel(c); }},
      {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - least_channel(c); }}}};
 
-/// What is sampled of a sky on a side of the box: the amount of a component, times the cosine in the middle of cells.
+/// Returns the distribution of a sky on a side of the box: amount of a component times cosine at the centre of cells.
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {
-    std::vector<float> of_horizon(grid.columns);  // cosines there
+    std::vector<float> of_horizon(grid.columns);  // cosines at the horizon
     for (std::size_t column = 0; column < grid.columns; ++column)
         of_horizon[column] = -normal.dot(frame.direction({grid.middle(column, 0).s, 0}));
     const float of_zenith = -normal.dot(frame.zenith);
@@ -88,7 +87,7 @@ DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<c
     return {grid, weights};
 }
 
-/// Where the line of a ray is within a box: distances along it, before the ray's start negative.
+/// Interval of a ray's line within a box: distances along the line, negative before the ray's origin.
 struct Crossing {
     float begin, end;  // begin > end: the line misses the box
 };
@@ -151,8 +150,8 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Starts on the rectangle that a box fills as seen along the light, widened so that slanted rays from a disc reach all
-/// of the box too.
+/// Emits from the rectangle that a box covers along the light, enlarged for the oblique rays of a disc to reach all of
+/// the box.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -174,8 +173,8 @@ void Emission::add(const DirectionalLight& light) {
     }
 }
 
-/// Within a convex surface that emits diffusely everywhere, radiance is the same in all directions: here the six sides
-/// of a box, which nothing is ever hit by.
+/// Radiance is the same in all directions inside a convex surface with uniform diffuse emission. Here this is the six
+/// sides of a box, which no ray can hit.
 void Emission::add(const UniformSky& sky) {
     for (std::size_t b = 0; b < boxes_.size(); ++b)
         for (const BoxSide& side : sides_of(boxes_[b].min, boxes_[b].size())) {
@@ -198,8 +197,8 @@ void Emission::add(const EnvironmentMap& map) {
     add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
 }
 
-/// As for a uniform sky, but with directions in proportion to radiance times cosine. Sides that face the same way have
-/// the same directions.
+/// Emits like a uniform sky, but with directions in proportion to radiance times cosine. Sides of different boxes that
+/// face the same way share their directions.
 void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                        std::span<const SkyComponent> components) {
     const std::vector<Rgb> integrals = sky->cell_integrals(grid);
@@ -230,7 +229,7 @@ void Emission::add_window(Window window, const Rgb& exitance, std::size_t box) {
     emitters_.push_back({window, exitance, RgbD(exitance) * double{part_area}, box});
 }
 
-/// All rays of a web's sampler carry the same power, whatever the web.
+/// All rays of a web's sampler carry the same power.
 void Emission::add(const MeasuredLight& light) {
     std::shared_ptr<const WebSampler>& sampler = samplers_[light.web.get()];
     if (!sampler) sampler = std::make_shared<WebSampler>(*light.web);
@@ -252,7 +251,7 @@ Ray Emission::Window::ray(float u, float v, float c, float d) const {
     return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
 }
 
-/// Cells that a side's plane divides reach behind it: what is sampled there is mirrored.
+/// Cells on a side's plane extend behind it: directions sampled there are mirrored.
 Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
     V3f direction = -sky->frame().direction(places->sample(c, d));
     const float cosine = direction.dot(normal);
@@ -291,8 +290,8 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// Moves the start of a ray to the scene's box if its line belongs to this box: the line crosses it, but no later one.
-/// Otherwise returns a ray that misses the scene.
+/// Moves the origin of a ray to the scene's box if the ray belongs to `box`: its line crosses this box, but no later
+/// one. Otherwise returns a ray that misses the scene.
 Ray Emission::of_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
@@ -358,7 +357,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Window& window = std::get<Window>(emitter.shape);
     if (window.is_sky()) return of_side(window.direction, window.part_area, emitter.rating);
-    // So far away that direction and distance are the same for the whole scene.
+    // Far enough for direction and distance to be the same for the whole scene.
     const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
 }

@@ -21,24 +21,24 @@ V3f along(int axis, float length) {
     return v;
 }
 
-/// Areas of the three faces of a box that are seen along -d, projected.
+/// Returns the projected areas of the three faces of a box that are visible along -d.
 V3f box_faces(const V3f& size, const V3f& d) {
     return {std::abs(d.x) * size.y * size.z, std::abs(d.y) * size.z * size.x, std::abs(d.z) * size.x * size.y};
 }
 
-/// Of the ends and the side of an elliptic cylinder.
+/// Projected areas of the end and the side of an elliptic cylinder.
 struct CylinderAreas {
     float end, side;
 };
 
-/// The side's projection is as high as the cylinder and as wide as its ellipse is, seen along d.
+/// The projection of the side has the height of the cylinder and the width of its ellipse along d.
 CylinderAreas cylinder_areas(const LuminousOpening& opening, const V3f& d) {
     const int k = opening.axis, i = (k + 1) % 3, j = (k + 2) % 3;
     const V3f& size = opening.size;
     return {std::abs(d[k]) * quarter_pi * size[i] * size[j], size[k] * std::hypot(d[i] * size[j], d[j] * size[i])};
 }
 
-/// The unit disk, uniformly.
+/// Samples the unit disk uniformly.
 Imath::V2f disk_point(float u, float v) {
     const float radius = std::sqrt(u), turn = 8 * quarter_pi * v;
     return {radius * std::cos(turn), radius * std::sin(turn)};
@@ -56,7 +56,7 @@ OpeningPoint sample_box(const V3f& size, const V3f& d, float u, float v) {
             along(k, sign)};
 }
 
-/// An affine map makes it one of radius 1: what is uniform in a projection stays so.
+/// An affine map to a cylinder of radius 1 preserves uniformity in a projection.
 OpeningPoint sample_cylinder(const LuminousOpening& opening, const V3f& d, float u, float v) {
     const int k = opening.axis, i = (k + 1) % 3, j = (k + 2) % 3;
     const V3f radii = opening.size / 2;

@@ -8,7 +8,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A cell of one axis of a grid that an interval of 0 to 1 overlaps, and by how much.
+/// Cell of one grid axis that overlaps an interval of 0 to 1, and the overlap.
 struct Overlap {
     std::size_t cell;
     double from, to;
@@ -20,7 +20,7 @@ std::vector<Overlap> overlaps(std::size_t i, std::size_t texels, std::size_t cel
     const auto count = static_cast<double>(cells);
     const double low = static_cast<double>(i) / static_cast<double>(texels),
                  high = static_cast<double>(i + 1) / static_cast<double>(texels);
-    // Whole numbers tell where it begins and ends: i cells / texels, rounded.
+    // Integer arithmetic avoids rounding errors in the range of cells.
     const std::size_t first = i * cells / texels, last = ((i + 1) * cells - 1) / texels;
     for (std::size_t cell = first; cell <= last; ++cell)
         found.push_back({cell, std::max(low, static_cast<double>(cell) / count),
@@ -77,7 +77,7 @@ std::vector<Rgb> SkyRadiance::cell_integrals(const SkyGrid& grid) const {
     return integrals;
 }
 
-/// Shares what each texel radiates among the cells that it overlaps.
+/// Distributes the integral of each texel to the cells that it overlaps.
 std::vector<Rgb> SkyRadiance::texel_integrals(const SkyGrid& grid) const {
     std::vector<Rgb> integrals(grid.size(), Rgb(0));
     std::vector<std::vector<Overlap>> across(image_->width);

@@ -6,16 +6,15 @@
 
 namespace interflect::inline detail {
 
-/// Directions with a density in proportion to the intensity of a photometric web, exactly as it is interpolated.
-/// Immutable, shared by all threads.
+/// Samples directions by the intensity of a photometric web, exactly as interpolated. Immutable, shared by all threads.
 class WebSampler {
   public:
-    /// @param web  Without web_fault().
+    /// @param web  Must not have a web_fault().
     explicit WebSampler(const PhotometricWeb& web);
 
-    double flux() const { return azimuth_flux_.back(); }  ///< Of the web [lm or W].
-    /// A unit direction of the luminaire's frame, for u and v uniform in (0, 1): u chooses the azimuth, v the polar
-    /// angle. Equal areas of (u, v) have equal flux.
+    double flux() const { return azimuth_flux_.back(); }  ///< [lm or W]
+    /// Returns a unit direction in the luminaire's frame for u (azimuth) and v (polar angle) uniform in (0, 1). Equal
+    /// areas of (u, v) have equal flux.
     V3f direction(float u, float v) const;
 
   private:
@@ -29,9 +28,9 @@ class WebSampler {
     PhotometricWeb::Pole pole_;
     std::vector<double> polar_, azimuth_;  // [radians]
     std::vector<float> intensities_;
-    /// Per azimuth and polar angle: flux per radian of azimuth, up to that polar angle.
+    /// Cumulative flux per radian of azimuth, for each azimuth up to each polar angle.
     std::vector<double> cumulative_;
-    std::vector<double> azimuth_flux_;  // up to each azimuth
+    std::vector<double> azimuth_flux_;  // cumulative, up to each azimuth
 };
 
 }  // namespace interflect::inline detail

@@ -17,10 +17,9 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Share of the reference's mean luminance that is added to what is divided by: differences in what is nearly black do
-/// not count as large.
+/// Share of the reference's mean luminance that is added to denominators, to limit differences in nearly black areas.
 constexpr double dark_share = 0.01;
-constexpr double trimmed_share = 0.99;  // of the blocks that are kept when the worst are left out
+constexpr double trimmed_share = 0.99;  // of the blocks, without the worst ones
 
 double quotient(double numerator, double denominator) { return numerator == 0 ? 0 : numerator / denominator; }
 
@@ -47,7 +46,7 @@ double mean(std::span<const double> values) {
     return sum / static_cast<double>(values.size());
 }
 
-/// Means of the whole blocks of block x block pixels, row by row.
+/// Returns the means of complete blocks of block x block pixels, row by row.
 std::vector<double> block_means(const std::vector<double>& values, int width, int height, int block) {
     std::vector<double> means;
     for (int top = 0; top + block <= height; top += block)

@@ -19,18 +19,17 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A place of a source, which stands for some of its solid angle.
+/// Point of a source that represents a part of its solid angle.
 struct Place {
     V3f towards;
     float distance = 0;          // [m]
-    std::uint32_t patch = none;  // that a ray there must hit; none: it must hit nothing before `distance`
+    std::uint32_t patch = none;  // the ray must hit it; default: hits nothing before `distance`
     Rgb radiance{0, 0, 0};       // [cd/m^2]
     double solid_angle = 0;      // [sr]
     double position_index = 1;
     std::size_t source = 0;
 };
 
-/// What a source adds up to.
 struct Sums {
     std::string name;
     double solid_angle = 0, luminance = 0, squared = 0,
@@ -47,7 +46,7 @@ struct Sums {
     }
 };
 
-/// All places of all sources, as seen by one observer.
+/// Points of all sources for one observer.
 class SourcePlaces {
   public:
     SourcePlaces(const Scene& scene, const Observer& observer)
@@ -63,7 +62,8 @@ class SourcePlaces {
     std::vector<Sums>& sums() { return sums_; }
 
   private:
-    /// Cells are no wider than an eighth of their distance, so that direction and distance hardly change over one.
+    /// Divides a patch into cells of at most an eighth of the distance, but 2 to 16 per side. Direction and distance
+    /// are nearly constant in a cell.
     void add_patch(std::uint32_t index) {
         constexpr float cells_per_distance = 8;
         constexpr int fewest = 2, most = 16;
@@ -87,7 +87,7 @@ class SourcePlaces {
         }
     }
 
-    /// Each point of the opening causes a share of the irradiance that all of it causes: L times its solid angle.
+    /// Each point has an equal part of the solid angle of the opening, which is its irradiance / L.
     void add_luminaire(const Luminaire& luminaire, const MeasuredLight& light) {
         constexpr int per_side = 8, count = per_side * per_side;
         if (light.web->opening.is_point()) return;
@@ -127,7 +127,7 @@ class SourcePlaces {
     std::map<std::string, std::size_t> by_name_;
 };
 
-/// How much of the light of a place gets to the eye: nothing, all, or what panes let through.
+/// Returns the part of a point's light that reaches the eye: 0, 1, or the transmittance of panes.
 Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, const RayCaster& ray_caster) {
     Rgb transmittance(1);
     float left = place.distance;

@@ -14,7 +14,7 @@ namespace {
 
 using V2d = Imath::V2d;
 
-/// Relative, by which rounding may make a side longer without one more cell.
+/// Relative rounding error of a side that must not add a cell.
 constexpr double rounding = 1e-5;
 
 void require_valid(const GridOptions& options) {

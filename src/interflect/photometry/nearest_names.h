@@ -11,7 +11,7 @@
 
 namespace interflect::inline detail {
 
-/// How many letters must be added, removed or replaced to make one name of the other (Levenshtein 1965).
+/// Returns the number of letters to add, remove or replace between two names (Levenshtein 1965).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -26,8 +26,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// "expected one of 'a', 'b'", for a message: the names most like one that there is not. A name is also compared by
-/// its end behind a dot, so that "top" finds "desk.top".
+/// Lists the names most similar to an unknown name, for a message. Also compares the ends of names behind a dot: "top"
+/// finds "desk.top".
 inline std::string text_of_nearest(const std::string& name, std::span<const std::string> names) {
     constexpr std::size_t most_told = 5, most_compared = 10'000;
     struct Candidate {

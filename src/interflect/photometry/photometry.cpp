@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-/// On the side of its zenith: the integral of luminance times the cosine over the upper half, exactly.
+/// Returns the illuminance on the side of the zenith: the exact integral of luminance times cosine.
 double horizontal_illuminance(const EnvironmentMap& map) {
     const Texture& image = *map.image;
     const auto height_squared = [&](std::uint32_t edge) {

@@ -17,29 +17,28 @@ namespace {
 
 /// Cosine of the angle (0.8 degrees) up to which faces count as parallel.
 constexpr float same_plane_cosine = 0.9999f;
-/// Between two planes, relative to how far their faces reach.
+/// Maximum distance between faces of one plane, relative to the extent of all faces.
 constexpr double same_plane_distance = 1e-4;
-/// What is made of more planes is curved: further ones are ignored.
+/// Objects with more planes are curved; further planes are ignored.
 constexpr std::size_t most_planes = 256;
-/// Planes whose areas differ by less than this share are equally large.
+/// Planes count as equally large if their areas differ by less than this share.
 constexpr double equal_areas = 0.01;
-/// Cosine of the angle within which a surface faces a direction: 10 degrees.
+/// Cosine of the angle (10 degrees) within which a surface faces a direction.
 constexpr float facing_cosine = 0.98481f;
 
 bool is_part_of(const std::string& name, const std::string& object) {
     return name == object || (name.starts_with(object) && name[object.size()] == '.');
 }
 
-/// Name of a patch's object; a scene that was made by a program may have none.
+/// Returns the name of a patch's object; scenes made by programs may have no objects.
 std::string object_name(const Scene& scene, std::uint32_t patch) {
     const std::uint32_t object = scene.patches[patch].object;
     return object < scene.objects.size() ? scene.objects[object] : std::string();
 }
 
-/// "floor.a0.a12" -> "floor": without what names the copies of an array.
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; }
 
-/// Without the suffixes of arrays: ".a2", or ".a2.0.7" where one is inside others.
+/// Removes the suffixes of arrays, ".a2", or ".a2.0.7" for nested arrays: "floor.a0.a12" becomes "floor".
 std::string_view without_copies(std::string_view name) {
     for (std::string_view rest = name;;) {
         const std::size_t dot = rest.rfind('.');
@@ -64,7 +63,7 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     return patches;
 }
 
-/// The faces by planes, the largest plane first.
+/// Groups faces by plane, the largest plane first.
 std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<std::uint32_t> patches, const std::string& name) {
     std::vector<PatchGeometry> geometry;
     geometry.reserve(patches.size());
@@ -106,7 +105,7 @@ double height_of(const Scene& scene, const PlanarArea& plane) {
 }
 
 std::string text_of_direction(const V3f& direction) {
-    const V3f n = direction + V3f(0);  // no -0
+    const V3f n = direction + V3f(0);  // avoids -0
     return fmt::format("{:.3g},{:.3g},{:.3g}", n.x, n.y, n.z);
 }
 

@@ -9,22 +9,22 @@
 
 namespace interflect::inline detail {
 
-/// The faces of a planar area in a frame of two coordinates [m], in the world.
+/// Faces of a planar area in a two-dimensional frame in world coordinates [m].
 struct PlanarOutline {
-    Imath::V3d origin{0, 0, 0};                  ///< Of the frame, on the plane.
-    Imath::V3d u{1, 0, 0}, v{0, 1, 0};           ///< Its axes, of unit length; u x v is the normal.
+    Imath::V3d origin{0, 0, 0};                  ///< Origin of the frame, on the plane.
+    Imath::V3d u{1, 0, 0}, v{0, 1, 0};           ///< Axes of unit length; u x v is the normal.
     std::vector<std::vector<Imath::V2d>> faces;  ///< Convex, counter-clockwise.
     Imath::Box2d box;
 
     Imath::V3d point(const Imath::V2d& p) const { return origin + u * p.x + v * p.y; }
     /// Whether a point is in or on a face.
     bool holds(const Imath::V2d& p) const;
-    /// What borders on no other face: the outlines of the area and of its holes. O(edges^2).
+    /// Returns the edges without a neighbouring face: outlines of the area and of its holes. O(edges^2).
     std::vector<PlanarSegment> border() const;
 };
 
-/// Its axes lie along the smallest rectangle around the faces; u as nearly as can be along x, in a plane that is not
-/// horizontal v along z.
+/// Aligns the axes with the smallest rectangle around the faces: u as close to x as possible, and v to z in a plane
+/// that is not horizontal.
 PlanarOutline outline_of(const Scene& scene, const PlanarArea& area);
 
 double distance(const Imath::V2d& p, const PlanarSegment& s);

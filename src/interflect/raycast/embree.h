@@ -1,6 +1,6 @@
 #pragma once
 
-// What Embree 3 and Embree 4 call differently, for the sources of this folder alone.
+// Differences between Embree 3 and 4, only for this folder.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -21,7 +21,7 @@
 
 namespace interflect::inline detail {
 
-/// A ray as Embree takes it, from its origin to infinity.
+/// Converts a ray to an Embree query from its origin to infinity.
 inline RTCRayHit embree_query(const Ray& ray) {
     RTCRayHit query;
     query.ray = {ray.origin.x,
@@ -41,7 +41,7 @@ inline RTCRayHit embree_query(const Ray& ray) {
 }
 
 #if RTC_VERSION_MAJOR >= 4
-/// Embree 4 has no context where no arguments are needed, and no streams: one ray after the other takes their place.
+/// Embree 4 needs no context here and has no streams: rays are traced one by one.
 class EmbreeContext {
   public:
     void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
@@ -75,8 +75,7 @@ class EmbreeContext {
 };
 #endif
 
-/// The faces of one Embree geometry, by primitive number. A face is named by the patch on its front; that on its back
-/// is the next one.
+/// Faces of one Embree geometry, by primitive number. A face is identified by its front patch; the back follows it.
 struct Faces {
     std::vector<std::uint32_t> fronts;
     bool triangles = false, two_sided = false;

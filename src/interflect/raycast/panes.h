@@ -10,30 +10,29 @@
 
 namespace interflect::inline detail {
 
-/// What lies behind panes, through which rays go straight on: thin glass, and faces with holes
-/// (Material::transmittance). Refers to the scene and its ray caster. Immutable, shared by all threads.
+/// Continues rays straight through panes: thin glass and faces with holes (Material::transmittance). Refers to its
+/// arguments. Immutable, shared by all threads.
 class Panes {
   public:
     Panes(const Scene& scene, const RayCaster& ray_caster);
 
     bool empty() const { return !any_; }
-    /// Where a ray has hit: 0 where it escapes, and for what is no pane.
+    /// Returns the transmittance at a hit; 0 for escaped rays and other surfaces.
     Rgb transmittance(const Ray& ray, const Hit& hit) const;
 
-    /// The rest of a ray that has hit a pane: it starts behind that.
+    /// Returns the rest of a ray behind the pane that it hit.
     Ray behind(const Ray& ray, const Hit& hit) const;
 
-    /// What a ray meets behind its first hit.
     struct HitBehind {
         std::uint32_t ray;  ///< Index.
-        Rgb transmittance;  ///< Of all panes before it.
-        Hit hit;            ///< Distance from where the ray starts; escaped rays have their hits too.
+        Rgb transmittance;  ///< Product over all panes before the hit.
+        Hit hit;            ///< Distance from the ray's origin. Escaped rays also have an entry.
     };
-    /// Finds all that rays meet behind panes, pane by pane, in order of the rays.
-    /// @param hits  Of the rays, first hits. @param behind  Receives them.
+    /// Finds all hits behind panes, sorted by ray, then by depth.
+    /// @param hits  First hits of the rays. @param behind  Receives the result.
     void trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const;
 
-    /// Panes that light goes through at the most, one behind the other.
+    /// Maximum number of consecutive panes that light passes.
     static constexpr int most_in_a_row = 32;
 
   private:

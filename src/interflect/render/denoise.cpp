@@ -14,19 +14,19 @@ namespace interflect {
 namespace {
 
 constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2;  // [pixels]
-/// Squared differences count relative to this share of what noise explains: the k of Rousselle et al. 2012, squared.
+/// Squared differences are divided by this share of the noise variance: k^2 of Rousselle et al. 2012.
 constexpr float noise_share = 0.45f * 0.45f;
-constexpr float least_albedo = 0.01f;  // light on what is darker counts as if it were that bright
-constexpr float normal_scale = 0.1f;   // of squared differences of normals: about 18 degrees
-constexpr float plane_scale = 1.5f;    // distance from the tangent plane over that of neighbouring pixels
+constexpr float least_albedo = 0.01f;  // lower bound where light is divided by the albedo
+constexpr float normal_scale = 0.1f;   // of squared differences: about 18 degrees
+constexpr float plane_scale = 1.5f;    // distance from the tangent plane over the spacing of the pixels
 
-/// About exp(-d), without a call.
+/// Approximates exp(-d) without a library call.
 float fall(float d) {
     const float t = 1 / (1 + d * 0.125f), t2 = t * t, t4 = t2 * t2;
     return t4 * t4;
 }
 
-/// A kind of light by half of the samples, as irradiance over pi: channel by channel, their mean and its variance.
+/// One kind of light from half of the samples, as irradiance / pi: channels, their mean and its variance.
 struct Field {
     std::array<std::vector<float>, 3> value;
     std::vector<float> grey, variance;
@@ -36,7 +36,7 @@ std::size_t pixel_at(int x, int y, int width) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-/// Means of `values` over squares; the variance of a few batches is itself too noisy to be used pixel by pixel.
+/// Averages over squares. The variance of a few batches is too noisy to use pixel by pixel.
 std::vector<float> box_mean(const std::vector<float>& values, int width, int height, int radius) {
     std::vector<float> means(values.size());
     parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
@@ -73,15 +73,14 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
     return field;
 }
 
-/// Direct and indirect light.
-using Fields = std::array<Field, 2>;
+using Fields = std::array<Field, 2>;  // direct and indirect light
 
 Fields make_fields(const SampledLight& light, const Image& albedo) {
     return {make_field(light.direct, light.direct_variance, albedo),
             make_field(light.indirect, light.indirect_variance, albedo)};
 }
 
-/// The filter over some rows of the picture.
+/// Filter for a range of rows.
 class Band {
   public:
     Band(const PictureLayers& layers, const std::array<Fields, 2>& halves, int first_row, int end_row)
@@ -112,7 +111,7 @@ class Band {
             for (int x = 0; x < width_; ++x) {
                 const std::size_t i = at(x, y), k = i - at(0, first_);
                 picture.pixels[i] = layers_.emitted.pixels[i];
-                if (!(layers_.depth[i] > 0)) continue;  // nothing is there that could reflect
+                if (!(layers_.depth[i] > 0)) continue;  // no surface
                 Rgb irradiance(0);
                 for (const auto& of_half : sums_)
                     for (const Sums& s : of_half) irradiance += Rgb(s[0][k], s[1][k], s[2][k]) / (2 * s[3][k]);
@@ -121,14 +120,14 @@ class Band {
     }
 
   private:
-    using Sums = std::array<std::vector<float>, 4>;  // three channels, and the weights
+    using Sums = std::array<std::vector<float>, 4>;  // three channels and the weights
 
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
-    /// Columns of which the neighbour is in the picture.
+    /// Returns the range of columns whose neighbour lies in the picture.
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
 
-    /// shape_: the weight of each pixel's neighbour by where it lies.
+    /// Computes shape_: the weight of each pixel's neighbour by normals and tangent planes.
     void compare_shapes(int dx, int dy) {
         std::fill(shape_.begin(), shape_.end(), 0.0f);
         const float steps = std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy)));
@@ -149,8 +148,8 @@ class Band {
         }
     }
 
-    /// difference_: how much the light of each pixel's neighbour differs beyond its noise, rows from first_ -
-    /// patch_radius on.
+    /// Computes difference_: squared differences to neighbours beyond the noise, relative to it. Row 0 is first_ -
+    /// patch_radius.
     void compare_light(const Field& field, int dx, int dy) {
         constexpr float tiny = 1e-20f;
         std::fill(difference_.begin(), difference_.end(), 0.0f);
@@ -193,7 +192,7 @@ class Band {
     const std::array<Fields, 2>& halves_;
     int width_, height_, first_, end_;
     std::vector<float> difference_, shape_;
-    std::array<std::array<Sums, 2>, 2> sums_;  // of each half and kind of light
+    std::array<std::array<Sums, 2>, 2> sums_;  // [half][kind of light]
 };
 
 }  // namespace

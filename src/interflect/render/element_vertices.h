@@ -13,22 +13,20 @@
 
 namespace interflect::inline detail {
 
-/// The vertices that the elements of a forest have on the scene's smooth surfaces. Elements that meet in a point of one
-/// smooth surface share the vertex there, whichever their patches and levels; at creases, at borders of materials and
-/// between the sides of a face every surface has its own. Numbered from 0, a vertex in the middle of an edge after the
-/// edge's ends; the same for any number of threads. 16 bytes an element and 12 a hanging vertex stay; time about
-/// linear.
+/// Vertices of a forest's elements. Elements that meet at a point of one smooth surface share a vertex, regardless of
+/// patch and level. Creases, material borders and the two sides of a face have separate vertices. The midpoint of an
+/// edge has a larger number than its ends. Independent of the number of threads. Memory: 16 bytes per element and per
+/// hanging vertex, 20 per coupling. Time is about linear.
 class ElementVertices {
   public:
-    /// A vertex inside an edge of a larger leaf (a T-vertex): smaller elements on the other side have it as a corner. A
-    /// function that is linear along that edge has the interpolated value of its ends there.
+    /// T-vertex: a corner of smaller elements inside an edge of a larger leaf. Its value is interpolated linearly.
     struct Hanging {
         std::uint32_t vertex;
-        std::array<std::uint32_t, 2> ends;  // the edge that they bound is the leaf's, or a part of it
-        float fraction = 0.5f;              // of the way from ends[0] to ends[1]
+        std::array<std::uint32_t, 2> ends;  // of the leaf's edge, or of a part of it
+        float fraction = 0.5f;              // position between ends[0] and ends[1]
     };
-    /// A vertex on a seam (SmoothSurfaces::Seam) inside the edge of a leaf that is no larger than its own on the other
-    /// side, whose vertices it lacks: that leaf counts there by its angle.
+    /// Vertex on a seam (SmoothSurfaces::Seam) inside an opposite leaf's edge that is not longer than its own edges.
+    /// The leaf contributes to it by its angle.
     struct Coupling {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
@@ -36,16 +34,16 @@ class ElementVertices {
         float angle;  // [rad]
     };
 
-    /// @throws InputError for a forest of another scene.
+    /// @throws InputError if the forest belongs to another scene.
     ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options = {});
 
     std::uint32_t count() const { return count_; }
-    /// Of element e, leaf or not: in the order of its patch's vertices, so at (0,0) (1,0) (1,1) (0,1) of a
-    /// quadrilateral's Cell and at (0,0) (1,0) (0,1) of a triangle's, whose fourth is none.
+    /// Returns the corners of element e, leaf or not, in its patch's vertex order: (0,0) (1,0) (1,1) (0,1) of a
+    /// quadrilateral's Cell; (0,0) (1,0) (0,1) and `none` for a triangle.
     const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
-    /// In an order in which the ends of each come before it.
+    /// Ordered: hanging ends of an edge precede the vertex inside it.
     const std::vector<Hanging>& hanging() const { return hanging_; }
-    /// In no order: each counts what the leaves around its ends have, without couplings.
+    /// In any order. Each uses the values at its ends before couplings are applied.
     const std::vector<Coupling>& couplings() const { return couplings_; }
     const SmoothNormals& normals() const { return normals_; }
 
@@ -57,13 +55,11 @@ class ElementVertices {
     std::uint32_t count_ = 0;
 };
 
-/// Irradiance at vertices from that of elements, of which only leaves count. On curved surfaces it varies within
-/// patches as their normals do (SmoothNormals). At most vertices: the mean over the leaves that have the vertex as a
-/// corner, weighted by their angles there. An angle does not change when a face is cut into triangles (Thuermer and
-/// Wuethrich 1998), so the result does not depend on how a face was tessellated. At a hanging vertex: the interpolated
-/// value of its edge's ends, so that the leaves on both sides of the edge agree along all of it. Across a seam leaves
-/// of about equal size whose vertices lie apart differ by what linear interpolation leaves out: by the square of their
-/// size.
+/// Converts irradiance of leaves to irradiance of vertices. On curved surfaces it first varies within patches as their
+/// normals do (SmoothNormals). A vertex has the mean over the leaves at it, weighted by angle. Angles do not depend on
+/// the tessellation of a face (Thuermer and Wuethrich 1998). Hanging vertices are interpolated between the ends of
+/// their edge, on which both sides then agree. Across a seam, leaves of similar size differ by the error of linear
+/// interpolation, proportional to the square of their size.
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> irradiance);
 

@@ -6,14 +6,14 @@
 
 namespace interflect::inline detail {
 
-/// What irradiance is measured with: a small plane, or a surface whose normals are spread evenly over an arc, such as a
-/// cylinder's. Its irradiance is then the mean over them.
+/// Receiver of irradiance: a small plane, or a surface with normals spread evenly over an arc, such as a cylinder. The
+/// irradiance is the mean over the normals.
 struct Gauge {
     V3f position{0, 0, 0};  // relative to the scene's origin [m]
-    V3f normal{0, 0, 1};    // in the middle of the arc
-    V3f tangent{0, 0, 0};   // at a right angle to it, in the plane of the arc; both of unit length
+    V3f normal{0, 0, 1};    // at the middle of the arc
+    V3f tangent{0, 0, 0};   // perpendicular to it, in the plane of the arc; both have unit length
     float half_arc = 0;     // [rad]
-    float offset = 0;       // above the position, where rays start [m]
+    float offset = 0;       // of ray origins above the position [m]
 
     /// @param u  In [0, 1].
     V3f normal_at(float u) const {

@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Noise can make irradiance negative: such an element is not looked for.
+/// Noise can make irradiance negative. Such elements are never sampled.
 std::vector<float> received_power(const ElementForest& forest, std::span<const Rgb> irradiance) {
     std::vector<float> power(forest.size(), 0.0f);
     for (std::uint32_t e = 0; e < forest.size(); ++e)
@@ -60,9 +60,9 @@ KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double uniform,
         float rest = u * received_[e];
         unsigned k = 0;
         while (k < 3 && rest >= received_[children + k]) rest -= received_[children + k++];
-        while (k > 0 && !(received_[children + k] > 0)) --k;  // rounding
+        while (k > 0 && !(received_[children + k] > 0)) --k;  // rounding can select an empty child
         e = children + k;
-        u = std::clamp(rest / received_[e], 0.0f, below_one);  // what is left of u is uniform again
+        u = std::clamp(rest / received_[e], 0.0f, below_one);  // uniform again
         cell = cell.child(k, geometry.is_triangle());
     }
     return {patch, e, geometry.uniform_parameters(u, v, {cell.u, cell.v}, cell.size)};

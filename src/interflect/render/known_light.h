@@ -12,16 +12,16 @@
 
 namespace interflect::inline detail {
 
-/// The light of a solution, which final gathering looks up at its elements. What is bright is sampled like an emitter:
-/// a patch by LightTree, by the power that it reflects, then an element below it in proportion to what arrives there.
-/// Immutable, shared by all threads; 4 bytes an element, 132 a patch.
+/// Light of a solution for final gathering, sampled like emitters: LightTree chooses a patch by reflected power, then
+/// an element below it is chosen by received power. Immutable, shared by all threads. Memory: 4 bytes per element, 132
+/// per patch.
 class KnownLight {
   public:
-    /// @param irradiance  Of every element; that of leaves counts. All arguments must outlive this.
+    /// @param irradiance  Per element; only leaves are used. All arguments must outlive this object.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
 
-    /// A point of a patch, and the leaf that it lies in.
+    /// Point of a patch and the leaf that contains it.
     struct Place {
         std::uint32_t patch = none, leaf = none;
         Parameters parameters;
@@ -29,20 +29,19 @@ class KnownLight {
     Place place(std::uint32_t patch, const V3f& x) const;
     int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
-    /// rho H / pi where `place` is, the radiance that leaves it by reflection.
+    /// Returns the reflected radiance rho H / pi at `place`.
     Rgb radiance(const Place& place) const;
 
-    /// Whether the leaf is so small, seen from a point at this distance, that its one value may be gathered: no more
-    /// than a quarter of a steradian, A / d^2.
+    /// Whether the leaf's solid angle A / d^2 is at most 0.25 sr, small enough to gather its single value.
     bool is_far(const Place& place, float distance2) const {
         constexpr float largest_angle = 0.25f;
         return forest_.area(place.leaf) <= largest_angle * distance2;
     }
 
-    /// A point that may light x, on a surface with normal n; patch none where nothing does.
+    /// Samples a point that may illuminate x on a surface with normal n; without such a point, patch is `none`.
     /// @param uniform  In (0, 1). @param u, v  In [0, 1).
     Place sample(const V3f& x, const V3f& n, double uniform, float u, float v) const;
-    /// The density per area of sample() at `place` [1/m^2].
+    /// Returns the density of sample() per area at `place` [1/m^2].
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
   private:
@@ -50,7 +49,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> received_;  // power that arrives at each element, all channels together [lm or W]
+    std::vector<float> received_;  // power per element, sum over channels [lm or W]
     LightTree tree_;
 };
 

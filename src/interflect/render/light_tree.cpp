@@ -14,16 +14,16 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr std::size_t bin_count = 16;  // places where a node may be split; more gain nothing measurable
+constexpr std::size_t bin_count = 16;  // candidate splits per node; more have no measurable benefit
 
 V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
-/// How far a box with this half diagonal reaches from its centre in a direction.
+/// Returns the extent of a box from its centre in a direction.
 float support(const V3f& half, const V3f& direction) { return half.dot(absolute(direction)); }
 
-/// An angle in [0, pi] by cosine and sine.
+/// Angle in [0, pi], by cosine and sine.
 struct Angle {
     float cosine, sine;
     static Angle of_cosine(float c) { return {c, std::sqrt(std::max(0.0f, 1 - c * c))}; }
@@ -44,21 +44,21 @@ void LightTree::Box::extend(const Box& other) {
 
 LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
     constexpr float pi = std::numbers::pi_v<float>;
-    constexpr float parallel = 1e-4f;  // [rad]; the axes of a smaller angle have no plane between them
+    constexpr float parallel = 1e-4f;  // [rad]; axes at a smaller angle define no plane
     const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); };
     const float of_a = angle(a.cosine), of_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
     if (std::min(between + of_b, pi) <= of_a + parallel) return {a.axis, std::cos(std::min(pi, of_a + parallel))};
     if (std::min(between + of_a, pi) <= of_b + parallel) return {b.axis, std::cos(std::min(pi, of_b + parallel))};
     const float joint = 0.5f * (of_a + between + of_b);
     if (joint >= pi || between > pi - parallel) return {a.axis, -1};
-    const float turn = joint - of_a;  // of the axis from a towards b
+    const float turn = joint - of_a;  // rotation of the axis from a towards b
     const V3f axis = (std::sin(between - turn) * a.axis + std::sin(turn) * b.axis).normalized();
     return {axis, std::cos(joint)};
 }
 
 namespace {
 
-/// Exitance, all channels together, by which patches are sampled [lm/m^2 or W/m^2].
+/// Exitance for sampling patches, sum over channels [lm/m^2 or W/m^2].
 class SampledExitance {
   public:
     explicit SampledExitance(const Scene& scene) : scene_(scene), largest_(largest_texels(scene)) {
@@ -116,11 +116,11 @@ LightTree::LightTree(std::vector<Light> lights, std::size_t index_count) : leaf_
     build(0, lights);
 }
 
-/// Bins along one axis, and which of them are in the upper half.
+/// Bins along one axis and the first bin of the upper half.
 struct LightTree::Split {
     int axis = 0;
     float low = 0, scale = 0;
-    std::size_t first_above = 0;  // 0: none, since the centres coincide
+    std::size_t first_above = 0;  // 0: no split, since the centres coincide
     float cost = std::numeric_limits<float>::infinity();
 
     std::size_t bin_of(const V3f& centre) const {
@@ -128,7 +128,7 @@ struct LightTree::Split {
     }
 };
 
-/// Lights of a half, or of a bin.
+/// Lights of one half or of one bin.
 struct LightTree::Bin {
     float power = 0;
     Box box;
@@ -143,8 +143,8 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// The surface area orientation heuristic, about: power x area x solid angle, which is large where importance() is
-    /// a loose bound. A single normal counts as a hemisphere, normals of all directions as the whole sphere.
+    /// Approximates the surface area orientation heuristic: power x area x solid angle, large where importance() is a
+    /// loose bound. The solid angle is pi for parallel normals and 4 pi for normals in all directions.
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
@@ -159,10 +159,10 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
         Split split{axis, centres.low[axis], static_cast<float>(bin_count) / extent};
         std::array<Bin, bin_count> bins;
         for (const Light& l : lights) {
-            const float evenness = std::max(0.0f, l.cone.cosine);  // 0: it shines over a hemisphere or more
+            const float evenness = std::max(0.0f, l.cone.cosine);  // 0: the cone covers a hemisphere or more
             bins[split.bin_of(l.centre())].add({l.power, l.box, l.cone.axis * (l.power * evenness)});
         }
-        std::array<float, bin_count> cost{};  // of a split before this bin
+        std::array<float, bin_count> cost{};  // of a split before each bin
         Bin below, above;
         for (std::size_t b = 1; b < bin_count; ++b) {
             below.add(bins[b - 1]);
@@ -179,7 +179,7 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
     return best;
 }
 
-/// Splits where the costs of both halves are least in sum.
+/// Splits the lights at the minimum summed cost of both halves.
 void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     Box box = lights.front().box;
     Box centres{lights.front().centre(), lights.front().centre()};
@@ -206,7 +206,7 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     const Split split = best_split(lights, centres);
     const auto middle = std::stable_partition(
         lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
-    // The outermost bins both have a member, so neither half is empty; but all are in one where the centres coincide.
+    // Both halves have members unless all centres coincide, because the outermost bins are occupied.
     std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
     if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
 
@@ -219,14 +219,14 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
 }
 
-// The cosines at the box's nearest point are what lets a wide node that holds x, such as half the lamps of a storey,
-// outweigh one beside it: with d the distance to its nearest part and h their height over x, lamps that face down
-// light a floor by h^2 / d^4, of which the node's own distance only knows the mean.
+// The cosines use the nearest point of the box. A wide node that contains x, such as half the lamps of a storey, then
+// outweighs its neighbour: lamps that face down at height h and distance d contribute h^2 / d^4, but the centre's
+// distance is only a mean.
 float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const V3f to_centre = node.centre - x;
     const V3f& axis = node.cone.axis;
-    const float height = n.dot(to_centre) + support(node.half, n);       // of the box's highest point over the surface
-    const float ahead = support(node.half, axis) - axis.dot(to_centre);  // of x before the box's rearmost point
+    const float height = n.dot(to_centre) + support(node.half, n);       // of the highest point above the surface
+    const float ahead = support(node.half, axis) - axis.dot(to_centre);  // of x before the rearmost point
     if (height <= 0) return 0;
     const V3f gap = larger(absolute(to_centre) - node.half, V3f(0, 0, 0));
     const float nearest2 = gap.length2(), centre2 = to_centre.length2();
@@ -234,7 +234,7 @@ float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const float receiving = std::min(1.0f, height * inverse);
     float emitting = std::min(1.0f, ahead * inverse);
     if (node.cone.cosine < 1) {
-        // Behind every patch of the box, the farthest has the smallest angle.
+        // If x is behind the whole box, the farthest patch has the smallest angle.
         if (ahead < 0) emitting = ahead / (std::sqrt(centre2) + std::sqrt(node.radius2));
         emitting = less(Angle::of_cosine(emitting), {node.cone.cosine, node.cone_sine}).cosine;
     }
@@ -243,7 +243,7 @@ float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
 
 LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {
     if (nodes_.empty()) return {};
-    constexpr double below_one = 0x1.fffffffffffffp-1;  // what rounding must not reach
+    constexpr double below_one = 0x1.fffffffffffffp-1;  // rounding must not reach 1
     std::uint32_t node = 0;
     float probability = 1;
     if (nodes_[0].is_leaf() && importance(nodes_[0], x, n) <= 0) return {};

@@ -14,11 +14,10 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Luminaires that come into question at a point. Four instead of two lower the noise by 2 to 5% of it, and take 20 to
-/// 60% longer.
+/// Candidates per point. Four instead of two reduce the noise by 2 to 5% but take 20 to 60% longer.
 constexpr int candidate_count = 2;
 
-/// As LightTree wants it: beyond the cone intensity falls at least like the cosine.
+/// Returns the bounds for a LightTree. Outside the cone the intensity must decrease at least like the cosine.
 LightTree::Light bounded(const V3f& centre, const V3f& half, const Rgb& peak, const LightTree::Cone& cone) {
     return {0, pi * channel_sum(peak), {centre - half, centre + half}, cone};
 }
@@ -32,7 +31,7 @@ std::optional<LightTree::Light> bounds(const SpotLight& light) {
     return bounded(light.position, V3f(0), light.intensity, {light.direction.normalized(), std::cos(angle)});
 }
 
-/// The farthest from the nadir that a direction lies of the cell of a table that follows two of its angles [rad].
+/// Returns the largest angle to the nadir in the cell of the table that starts at these two angles [rad].
 float farthest_from_nadir(const PhotometricWeb& web, std::size_t azimuth, std::size_t polar) {
     if (web.pole == PhotometricWeb::Pole::nadir) return static_cast<float>(radians(web.polar[polar + 1]));
     float farthest = 0;
@@ -44,7 +43,7 @@ float farthest_from_nadir(const PhotometricWeb& web, std::size_t azimuth, std::s
     return farthest;
 }
 
-/// The smallest cone about the nadir that holds for every cell of the table.
+/// Returns the smallest cone around the nadir that is valid for every cell of the table.
 std::optional<LightTree::Light> bounds(const MeasuredLight& light) {
     const PhotometricWeb& web = *light.web;
     const float peak = web.peak();
@@ -87,7 +86,7 @@ LuminaireChoice::LuminaireChoice(const Scene& scene)
 Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const LightSample& sample) const {
     Illumination chosen;
     double all = 0, uniform = sample.light;
-    // Each replaces the one chosen so far with the probability of its share; what is left of the number is uniform.
+    // Each candidate replaces the chosen one with probability `share`; the rescaled number is uniform again.
     const auto consider = [&](std::uint32_t luminaire, float chance) {
         Illumination light = illumination(scene_.luminaires[luminaire], x, sample.u, sample.v);
         light.irradiance *= std::max(0.0f, n.dot(light.towards)) / chance;

@@ -10,22 +10,21 @@
 
 namespace interflect::inline detail {
 
-/// Chooses a luminaire that lights a point, by what it would bring if nothing were in its way: a few that come into
-/// question are taken from a LightTree, and one of these by its exact irradiance (resampled importance sampling, Talbot
-/// et al. 2005). Parallel light comes into question always. So the cost grows with the logarithm of the number of
-/// luminaires that have a place. Immutable, shared by all threads.
+/// Samples a luminaire by its unoccluded irradiance at a point. A LightTree proposes candidates; their exact irradiance
+/// decides (resampled importance sampling, Talbot et al. 2005). Parallel light is always a candidate. The cost is
+/// logarithmic in the number of other luminaires. Immutable, shared by all threads.
 class LuminaireChoice {
   public:
-    /// @param scene  Must outlive this.
+    /// @param scene  Must outlive this object.
     explicit LuminaireChoice(const Scene& scene);
 
-    /// Light that reaches the point x of a surface with normal n from one luminaire; with its irradiance, of that
-    /// surface, divided by the chance of this choice, so that the mean over choices is what all luminaires cause.
+    /// Returns the light of one luminaire at the point x of a surface with normal n. The surface's irradiance is
+    /// divided by the probability of the choice; its mean is the unoccluded irradiance by all luminaires.
     Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:
     const Scene& scene_;
-    std::vector<std::uint32_t> parallel_;  // indices of luminaires without a place
+    std::vector<std::uint32_t> parallel_;  // indices of the directional lights
     LightTree tree_;
 };
 

@@ -17,7 +17,7 @@ namespace interflect {
 
 namespace {
 
-/// By what the ray caster's offset is at the scene's farthest vertex, whatever surface the point may lie on.
+/// Returns the ray caster's offset at the farthest vertex, since the point may lie on any surface [m].
 float offset_for(const Scene& scene, const V3f& position) {
     constexpr float relative_offset = 0x1p-17f;
     float reach = 0;

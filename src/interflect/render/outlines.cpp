@@ -14,10 +14,9 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Rays of one sample: itself, and a line's width to the right and down.
+/// Rays of one sample: the first, one a line width to the right, and one a line width below.
 constexpr std::size_t rays_per_sample = 3;
 
-/// The share of a pixel's samples that lie on a border.
 float outlined_share(const PixelSamples& samples, const ElementForest& forest) {
     const auto leaf = [&](std::size_t i) { return leaf_of_hit(forest, samples.rays[i], samples.hits[i]); };
     int outlined = 0;
@@ -43,7 +42,7 @@ Image draw_outlines(const Image& picture, const Scene& scene, const ElementFores
     require_valid(options);
     require_pixels(picture);
     const Camera camera(view, picture.width, picture.height, scene.origin);
-    const float half = 0.5f * options.width;  // on either side of a border
+    const float half = 0.5f * options.width;  // on each side of a border
     const std::array<PixelOffset, rays_per_sample> offsets{{{-half, -half}, {half, -half}, {-half, half}}};
     Image outlined = picture;
     trace_pixels(camera, ray_caster, {picture.width, picture.height, samples, seed}, offsets, monitor,

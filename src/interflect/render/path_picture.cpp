@@ -23,13 +23,13 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Batches that a pixel's samples are divided into, at least: 7 degrees of freedom for its standard error.
+/// Minimum batches per pixel: 7 degrees of freedom for its standard error.
 constexpr int least_batches = 8;
-/// Samples of a batch, at most: beyond them stratification gains little, and more batches tell the error better.
+/// Maximum samples per batch: larger batches stratify little better, more batches estimate the error better.
 constexpr int largest_batch = 64;
-/// Paths of one wavefront, about: many enough to hide the cost of a call, few enough to stay in the cache.
+/// Approximate paths per wavefront: enough to hide the cost of a call, few enough for the cache.
 constexpr std::size_t paths_per_tile = 2048;
-/// Paths between two reports of progress, about.
+/// Approximate paths between two progress reports.
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
 
 std::vector<PatchGeometry> geometry_of(const Scene& scene) {
@@ -39,7 +39,7 @@ std::vector<PatchGeometry> geometry_of(const Scene& scene) {
     return geometry;
 }
 
-/// A picture while it is traced: statistics of its pixels, and the batches that they still need.
+/// Picture in progress: statistics and missing batches of its pixels.
 class PathPicture {
   public:
     PathPicture(const PathScene& scene, const PathOptions& options, const PathMonitor& monitor)
@@ -84,7 +84,7 @@ class PathPicture {
     }
 
   private:
-    /// @param parts  Of a pixel: the statistics of its direct and of its indirect light.
+    /// @param parts  Returns the statistics of a pixel's direct and indirect light.
     SampledLight light_of(const auto& parts) const {
         SampledLight light{Image(options_.width, options_.height), Image(options_.width, options_.height),
                            std::vector<float>(pixels_.size()), std::vector<float>(pixels_.size())};
@@ -124,7 +124,8 @@ class PathPicture {
 
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
 
-    /// @return Whether a pixel needs more than it has.
+    /// Computes the batches per pixel for the next round, at most twice the present number.
+    /// @return Whether a pixel needs more batches.
     bool want_more(std::vector<std::uint32_t>& wanted, std::uint32_t most) {
         const std::vector<double> needed = needed_batches(pixels_, options_);
         bool more = false;
@@ -139,7 +140,7 @@ class PathPicture {
         return more;
     }
 
-    /// Traces the batches that pixels lack: all of them one, then all that lack more another one, and so on.
+    /// Traces the missing batches: one for every pixel that lacks any, then a second one, and so on.
     void trace_round(const std::vector<std::uint32_t>& wanted) {
         const std::size_t per_chunk = paths_per_chunk / s_.batch_size;
         std::vector<std::uint32_t> present(pixels_.size());
@@ -177,7 +178,7 @@ class PathPicture {
         report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
     }
 
-    /// Computes the error after as many new paths as pixels: it visits all of them.
+    /// Updates the error after one new path per pixel on average, because that visits all pixels.
     void report(double fraction) {
         if (!monitor_.on_progress) return;
         const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);
@@ -192,7 +193,7 @@ class PathPicture {
     const PathOptions& options_;
     const PathMonitor& monitor_;
     std::vector<PixelStatistics> pixels_;
-    double foreseen_ = 0;  // batches in all
+    double foreseen_ = 0;  // expected total of batches
     std::int64_t batches_done_ = 0;
     double error_ = std::numeric_limits<double>::infinity();  // after batches_of_error_ batches
     std::int64_t batches_of_error_ = 0;

@@ -9,26 +9,25 @@
 
 namespace interflect::inline detail {
 
-/// Irradiance of every element, at which final gathering ends its paths.
+/// Irradiance of every element, with which final gathering ends its paths.
 struct KnownIrradiance {
     const ElementForest& forest;
     std::span<const Rgb> irradiance;
 };
-/// @throws InputError for sizes that disagree and a forest of another scene.
+/// @throws InputError if the sizes disagree or the forest belongs to another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
-/// Peak memory of trace_picture(), including its result [bytes]. Measured with pictures of 2048 x 2048 pixels and with
-/// a sphere of 1.4 million emitting patches.
+/// Peak memory of trace_picture() with its result [bytes], measured with 2048 x 2048 pixels and with a sphere of 1.4
+/// million emitting patches.
 inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 250;
 
-/// Traces the paths of a picture, in rounds where there is a target: what trace_paths(), gather() and
-/// measure_illuminance() have in common.
-/// @param start  Of options.width x options.height pixels.
-/// @param known  Null: paths go on until roulette ends them.
+/// Traces a picture for trace_paths(), gather() and measure_irradiance(), in rounds if it has an error target.
+/// @param start  Starts of options.width x options.height pixels.
+/// @param known  Null: paths end by Russian roulette.
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                           const PathOptions& options, const PathMonitor& monitor, const KnownIrradiance* known);
 
-/// Paths through the pixels of a view. @throws InputError as Camera() does.
+/// Starts paths through the pixels of a view. @throws InputError as Camera() does.
 PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin);
 
 }  // namespace interflect::inline detail

@@ -22,38 +22,37 @@
 
 namespace interflect::inline detail {
 
-/// Where paths start, one pixel each: on the squares of a picture, or at gauges.
+/// Starts of paths, one per pixel: in the squares of a picture, or at gauges.
 struct PathStart {
     std::optional<Camera> camera;
-    float pixel_angle = 0;            // that a pixel's side fills in the middle of the picture [rad]; 0 if orthographic
+    float pixel_angle = 0;            // of a pixel's side at the centre [rad]; 0 if orthographic
     std::span<const Gauge> gauges{};  // without a camera
-    float pixel_size = 0;             // of an orthographic picture [m]
+    float pixel_size = 0;             // side of a pixel of an orthographic picture [m]
 };
 
-/// What all paths of a picture share.
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
     const PathStart& start;
-    std::span<const PatchGeometry> geometry;  // of each patch
-    const LightTree& lights;                  // patches
+    std::span<const PatchGeometry> geometry;  // per patch
+    const LightTree& lights;                  // emitting patches
     const LuminaireChoice& luminaires;
     const Skies& skies;
     const PathOptions& options;
     std::size_t batch_size;
     Panes panes;
-    bool splits;                        // at panes, or at mirrors
-    const KnownLight* known = nullptr;  // that paths end at; null: they go on until roulette ends them
+    bool splits;                        // paths split at panes or mirrors
+    const KnownLight* known = nullptr;  // ends the paths; null: Russian roulette
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
 
-/// What a camera ray hits first; all 0 where it escapes.
+/// First hit of a camera ray; all 0 if the ray escapes.
 struct FirstHit {
-    RgbD albedo{0, 0, 0};  // its reflectance
+    RgbD albedo{0, 0, 0};  // reflectance
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
-    double distance = 0;  // from the eye [m]
-    double level = 0;     // of the element, where a solution is known
+    double distance = 0;  // from the camera [m]
+    double level = 0;     // of the element, if a solution is known
 
     FirstHit& operator+=(const FirstHit& o) {
         albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
@@ -61,17 +60,16 @@ struct FirstHit {
     }
 };
 
-/// One batch of a pixel, and its outcome: sums over the batch's paths.
+/// One batch of a pixel and its result: sums over its paths.
 struct BatchOfPaths {
     std::uint32_t pixel = 0, batch = 0;
     bool done = false;
-    RgbD emitted{0, 0, 0};   // seen directly
-    RgbD direct{0, 0, 0};    // reflected once, from where it was emitted to the camera
-    RgbD indirect{0, 0, 0};  // reflected more often
+    RgbD emitted{0, 0, 0};   // visible directly
+    RgbD direct{0, 0, 0};    // reflected once between emitter and camera
+    RgbD indirect{0, 0, 0};  // reflected more than once
     FirstHit first{};
 };
 
-/// Counts of rays, summed over batches.
 struct RayCounts {
     std::int64_t rays = 0, shadow_rays = 0, escaped_rays = 0;
     RayCounts& operator+=(const RayCounts& o) {
@@ -82,12 +80,12 @@ struct RayCounts {
     }
 };
 
-/// Traces the paths of some batches together, breadth first: all of them by a bounce, then all by the next.
+/// Traces the paths of several batches together, breadth first: one bounce of all paths, then the next bounce.
 class PathWavefront {
   public:
     explicit PathWavefront(const PathScene& scene) : s_(scene) {}
 
-    /// Adds to each batch the light of its paths.
+    /// Adds the light of the paths to their batches.
     void trace(std::span<BatchOfPaths> batches);
     const RayCounts& counts() const { return counts_; }
 
@@ -96,71 +94,65 @@ class PathWavefront {
         Rgb throughput;
         std::uint32_t index;   // in light_
         V3f normal;            // of the surface that its ray leaves
-        float travelled = 0;   // from there to where its ray starts, behind panes [m]
-        bool is_first = true;  // nothing that reflects diffusely lies before it in the picture
+        float travelled = 0;   // distance from that surface to the origin of the ray, behind panes [m]
+        bool is_first = true;  // the picture shows no diffuse reflection before it
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
     };
-    /// The contribution of a shadow ray if it hits the patch that it is sent to, or nothing nearer than a luminaire.
+    /// Contribution of a shadow ray that hits `patch` or, without a patch, hits no surface within `distance`.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;         // to the luminaire, from where the shadow ray starts [m]
-        std::uint32_t bounces;  // of the light that it brings
+        float distance;         // from the ray's origin to the luminaire [m]
+        std::uint32_t bounces;  // number of reflections of its light
     };
 
     void start_at_camera(std::span<const BatchOfPaths> batches);
-    /// Their light is gathered as a white surface would, so that paths begin by leaving it.
+    /// Starts paths at gauges, which act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
-    /// Traces the rays of all paths and keeps those that go on.
+    /// Traces the rays of all paths and keeps the paths that continue.
     void advance_paths();
-    /// Where a path left the last surface.
+    /// Returns the point where a path left the last surface.
     static V3f start_of(const Ray& ray, const Path& path);
-    /// Adds the paths that go straight on behind panes of glass, and from the camera's point of view in mirrors.
+    /// Adds the paths behind panes of glass and in mirrors seen by the camera.
     void split_paths();
-    /// A path that splits off another; where its throughput would not count it is not added.
+    /// Splits off a path unless its throughput is negligible.
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
-    /// What happens where a ray hits; afterwards `ray` and `path` are the reflected ones. @return Whether it goes on.
+    /// Handles a hit; afterwards `ray` and `path` are the reflected ones. @return Whether the path continues.
     bool interact(const Hit& hit, Ray& ray, Path& path);
-    /// Joins `ray.origin`, on a surface with `path.normal`, to the light, and chooses the direction in which the path
-    /// leaves it. @return Whether it goes on.
+    /// Connects `ray.origin`, on a surface with `path.normal`, to the lights, and samples the next direction.
+    /// @return Whether the path continues.
     bool leave(Ray& ray, Path& path);
-    /// Light of the skies that a ray escapes to.
     void add_sky(const Ray& ray, const Path& path);
-    /// Light from the emitting patch that a ray has hit.
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
-    /// Of each kind of light that is sampled at a vertex. Where paths end after the next one, all else costs little.
+    /// Returns the shadow rays per kind of light at a vertex: more if paths end after the next vertex, where all other
+    /// work is small.
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
-    /// Next event estimation by one of shadow_rays_at() rays.
-    /// @param path   Of which the throughput has the reflectance at x.
-    /// @param index  Of the ray among those of the batch.
+    /// Adds a shadow ray to an emitting patch. The throughput of `path` includes the reflectance at x.
     void connect_to_light(const V3f& x, const Path& path, const LightSample& sample);
-    /// The same for luminaires.
     void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
-    /// The same for skies.
+    /// @param index  Index of the ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
-    /// Lets shadow rays that have hit a pane of glass on their way go on behind it.
     void pass_panes();
-    /// Ends a path at the solution's light, unless the element that its ray hit is too near.
+    /// Ends a path with the light of the solution, unless the element is too near.
     /// @return Whether it has ended.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Density per solid angle with which KnownLight::sample() takes the direction from x to a place.
+    /// Returns the density per solid angle of KnownLight::sample() in the direction from x to a place [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
-    /// A shadow ray to what is bright in the solution.
     void connect_to_known_light(const V3f& x, const Path& path);
-    /// @param bounces  Of the light, until it reaches the camera.
+    /// @param bounces  Number of reflections between emitter and camera.
     void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 
     const PathScene& s_;
-    std::uint32_t vertex_ = 1;         // which vertex of the paths comes next; the camera is vertex 0
-    std::vector<std::uint64_t> keys_;  // of each batch
-    std::vector<PathLight> light_;     // of each path, those that have ended too
-    std::vector<Path> paths_;          // those that go on, as are rays_
+    std::uint32_t vertex_ = 1;         // next vertex of the paths; the camera is vertex 0
+    std::vector<std::uint64_t> keys_;  // per batch
+    std::vector<PathLight> light_;     // per path, including ended ones
+    std::vector<Path> paths_;          // paths that continue, parallel to rays_
     std::vector<Ray> rays_, shadow_rays_;
     std::vector<Hit> hits_;
     std::vector<Connection> connections_;

@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Variance is averaged over the pixels at most this far away, in columns and in rows.
+/// Variance is averaged over the pixels within this distance in columns and rows.
 constexpr int neighbourhood_radius = 3;
 
 double mean_reflected(const std::vector<PixelStatistics>& pixels) {
@@ -18,12 +18,12 @@ double mean_reflected(const std::vector<PixelStatistics>& pixels) {
     return sum / static_cast<double>(pixels.size());
 }
 
-/// What a pixel's error is relative to.
+/// Returns the denominator of a pixel's relative error.
 double error_scale(const PixelStatistics& p, double picture_mean) {
     return std::max(mean_channel(p.mean), picture_mean);
 }
 
-/// Means over the pixels at most `neighbourhood_radius` away along one axis of a picture.
+/// Averages within `neighbourhood_radius` along one axis of a picture.
 std::vector<double> mean_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
                                std::size_t length, std::size_t step) {
     std::vector<double> means(values.size());

@@ -10,13 +10,12 @@
 
 namespace interflect::inline detail {
 
-/// Mean of the channels.
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 
-/// Mean and variance of a part of a pixel's light over its batches, gathered one by one (Welford 1962).
+/// Running mean and variance of a part of a pixel's light over its batches (Welford 1962).
 struct PartStatistics {
     RgbD mean{0, 0, 0};
-    double squares = 0;  // sum of squared differences from the mean, of the channels' means
+    double squares = 0;  // sum of squared deviations of the mean of the channels
     std::uint32_t batches = 0;
 
     void add(const RgbD& value) {
@@ -24,16 +23,16 @@ struct PartStatistics {
         mean += difference / static_cast<double>(++batches);
         squares += mean_channel(difference) * mean_channel(value - mean);
     }
-    /// Of the mean over the channels of `mean`; 0 where a single batch tells nothing.
+    /// Squared standard error of the mean of the channels.
     double squared_error() const { return batches > 1 ? squares / (batches - 1.0) / batches : 0; }
 };
 
-/// Likewise of all of a pixel's light.
+/// Running mean and variance of a pixel's light and of its parts.
 struct PixelStatistics {
-    RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared differences from the mean
-    RgbD emitted{0, 0, 0};                 // means from here on
+    RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared deviations from the mean
+    RgbD emitted{0, 0, 0};                 // mean, as are the members of `first`
     PartStatistics direct, indirect;
-    std::array<PartStatistics, 2> direct_halves, indirect_halves;  // of every other batch, and of the rest
+    std::array<PartStatistics, 2> direct_halves, indirect_halves;  // even batches, odd batches
     FirstHit first;
     std::uint32_t batches = 0;
 
@@ -55,18 +54,17 @@ struct PixelStatistics {
         first.distance += (b.first.distance / batch_size - first.distance) / count;
         first.level += (b.first.level / batch_size - first.level) / count;
     }
-    /// Mean of the channels of what is reflected.
     double reflected() const { return mean_channel(direct.mean + indirect.mean); }
-    /// Of one batch.
+    /// Variance of one batch.
     RgbD variance() const { return batches > 1 ? squares / (batches - 1.0) : RgbD(0, 0, 0); }
     RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
 };
 
-/// The root mean square over the pixels of standard error over mean, each pixel's mean at least the mean over the
-/// picture of what is reflected; infinite where a pixel has fewer than two batches.
+/// Root mean square over the pixels of standard error / mean. A pixel's mean counts as at least the picture's mean
+/// reflected light. Infinite if a pixel has fewer than two batches.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
-/// How many batches each pixel should have in all for the target, options.until, by the variance around it.
+/// Returns the total batches that each pixel needs for options.until, from the variance around it.
 std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
 }  // namespace interflect::inline detail

@@ -27,13 +27,13 @@ namespace interflect {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-/// Rays from probes between two reports of progress: a fraction of a second.
+/// Probe rays between two progress reports: a fraction of a second.
 constexpr std::size_t rays_per_report = std::size_t{1} << 20;
-/// What the convolution with the cosine makes of harmonics of each degree (Ramamoorthi and Hanrahan 2001, Eq. 8).
+/// Factors of the convolution with the cosine for each harmonic (Ramamoorthi and Hanrahan 2001, Eq. 8).
 constexpr std::array<float, 9> cosine_factors{pi,     2 * pi / 3, 2 * pi / 3, 2 * pi / 3, pi / 4,
                                               pi / 4, pi / 4,     pi / 4,     pi / 4};
 
-/// Relative to the scene's origin [m].
+/// Returns the bounds relative to the scene's origin [m].
 Imath::Box3d bounds_of(const Scene& scene) {
     Imath::Box3d bounds;
     for (const Patch& patch : scene.patches)
@@ -41,13 +41,13 @@ Imath::Box3d bounds_of(const Scene& scene) {
     return bounds;
 }
 
-/// Adds light from one direction. @param irradiance  Of a surface that faces it.
+/// Adds light from one direction. @param irradiance  On a surface that faces it.
 void add(IrradianceProbe& probe, const V3f& towards, const Rgb& irradiance) {
     const std::array<float, 9> basis = spherical_harmonics(towards);
     for (std::size_t k = 0; k < 9; ++k) probe.coefficients[k] += irradiance * (cosine_factors[k] * basis[k]);
 }
 
-/// A uniformly distributed rotation (Shoemake 1992).
+/// Returns a uniformly distributed rotation (Shoemake 1992).
 Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     const auto words = random_words(seed, index);
     const float a = unit_float(words[0]), b = 2 * pi * unit_float(words[1]), c = 2 * pi * unit_float(words[2]);
@@ -56,7 +56,7 @@ Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     return rotation.toMatrix33();
 }
 
-/// The light of a solution at points in space. Immutable, shared by all threads.
+/// Light of a solution at points in space. Immutable, shared by all threads.
 class LightAround {
   public:
     LightAround(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const ProbeOptions& options)
@@ -71,7 +71,7 @@ class LightAround {
           seed_(options.seed),
           far_(static_cast<float>(bounds_of(scene).size().length())) {}
 
-    /// From each probe.
+    /// Number of rays per probe.
     std::size_t rays() const { return nodes_.size(); }
 
     IrradianceProbe probe(const V3f& x, std::uint64_t index) const {
@@ -99,7 +99,7 @@ class LightAround {
             add(probe, rays[b.ray].direction, nodes_[b.ray].weight * b.transmittance * radiance(rays[b.ray], b.hit));
     }
 
-    /// That leaves what a ray meets.
+    /// Returns the radiance from the surface that a ray hits, or from the skies.
     Rgb radiance(const Ray& ray, const Hit& hit) const {
         if (hit.patch == none) return skies_.radiance(ray.direction);
         const Patch& patch = scene_.patches[hit.patch];
@@ -110,7 +110,7 @@ class LightAround {
     }
 
     void add_luminaire(const Luminaire& luminaire, const V3f& x, IrradianceProbe& probe) const {
-        constexpr int across = 4;  // points of an opening or disc
+        constexpr int across = 4;  // points per axis of an opening or disc
         for (int i = 0; i < across * across; ++i) {
             const int row = i / across, column = i % across;
             const float u = (static_cast<float>(column) + 0.5f) / across, v = (static_cast<float>(row) + 0.5f) / across;
@@ -121,7 +121,7 @@ class LightAround {
         }
     }
 
-    /// Of what lies on a ray up to a distance; 0 where anything but panes does.
+    /// Returns the transmittance of the panes up to a distance; 0 if another surface is in between.
     Rgb transmittance(Ray ray, float distance) const {
         Rgb through(1);
         for (int panes = 0; panes < Panes::most_in_a_row; ++panes) {
@@ -136,7 +136,7 @@ class LightAround {
         return Rgb(0);
     }
 
-    /// The share of directions in which a one-sided face shows its back: rays pass it, but not on their way back.
+    /// Returns the share of rays that pass a one-sided face from behind, which stops the reversed ray.
     float share_of_backs(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
         std::vector<Ray> back;
         std::vector<float> lengths;
@@ -162,7 +162,7 @@ class LightAround {
     const Skies skies_;
     const std::vector<SphereNode> nodes_;
     const std::uint64_t seed_;
-    const float far_;  // out of the scene [m]
+    const float far_;  // length of rays that leave the scene [m]
 };
 
 ProbeGrid empty_grid(const Scene& scene, const ProbeOptions& options) {

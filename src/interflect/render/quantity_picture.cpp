@@ -11,10 +11,10 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// What one pixel sees of a quantity.
+/// Sum of a quantity over the rays of one pixel.
 struct Seen {
     double sum = 0;
-    int rays = 0;  // that hit something
+    int rays = 0;  // number of hits
 
     float mean() const { return rays > 0 ? static_cast<float>(sum / rays) : 0; }
 };

@@ -30,7 +30,7 @@ class Shader {
     Shader(const Shader&) = delete;  // smooth_ refers to vertices_
     Shader& operator=(const Shader&) = delete;
 
-    /// H or L = B / pi with B = M + rho H, where `ray` hit; M and rho are those of the texels there.
+    /// Returns H or L = B / pi with B = M + rho H at the hit; M and rho include textures.
     Rgb value_at(const Ray& ray, const Hit& hit) const {
         if (shows_irradiance_) return irradiance_at(ray, hit);
         const Patch& patch = scene_.patches[hit.patch];
@@ -86,7 +86,7 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
         for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
         thread_local std::vector<Panes::HitBehind> behind;
         behind.clear();
-        if (!options.irradiance) panes.trace(samples.rays, samples.hits, behind);  // irradiance is that of the pane
+        if (!options.irradiance) panes.trace(samples.rays, samples.hits, behind);  // the pane has its own irradiance
         for (const auto& [ray, transmittance, hit] : behind) sum += value(samples.rays[ray], hit) * RgbD(transmittance);
         result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
         if (escaped > 0) escaped_rays += escaped;

@@ -10,24 +10,22 @@
 
 namespace interflect::inline detail {
 
-/// A quantity of elements, such as irradiance, as a function on the scene's surfaces that is continuous wherever
-/// they are smooth: interpolated from the corners of leaves, linearly on a triangle and bilinearly on a quadrilateral,
-/// without cracks where large leaves meet small ones. A patch that is whole and has no smooth neighbours keeps its one
-/// value.
+/// Quantity of elements, such as irradiance, as a continuous function on each smooth surface: linear on triangles,
+/// bilinear on quadrilaterals, without cracks between levels. An undivided patch without smooth neighbours is constant.
 class SmoothField {
   public:
-    /// @param forest    Stays as it is while the field is used, like `vertices`, which are of this forest.
-    /// @param values    One an element, in any unit; only those of leaves count. A scalar goes as a grey.
-    /// @throws InputError where the sizes disagree.
+    /// @param forest    Must not change during use, like `vertices`, which must belong to it.
+    /// @param values    Per element, in any unit; only leaves are used. Scalars are passed as grey.
+    /// @throws InputError if the sizes disagree.
     SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
 
-    /// The value at a point of a patch. Any number of threads may call it.
+    /// Returns the value at a point of a patch. Thread-safe.
     Rgb at(std::uint32_t patch, Parameters p) const;
 
   private:
     const ElementForest& forest_;
     const ElementVertices& vertices_;
-    std::vector<Rgb> value_;  // of each vertex
+    std::vector<Rgb> value_;  // per vertex
 };
 
 }  // namespace interflect::inline detail

@@ -24,11 +24,11 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// An edge that more patches share is taken as a crease: no smooth surface looks so, and all pairs are compared.
+/// Edges with more patches count as creases: they do not occur on smooth surfaces, and all pairs would be compared.
 constexpr std::size_t most_patches_at_an_edge = 64;
 
-/// Vertices closer than this share of the largest coordinate of the scene's core_bounds() are one: eight steps of a
-/// float there, more than what rounding moves a point by when it is computed from either end of an edge.
+/// Vertices within this share of the largest coordinate of core_bounds() are merged: eight float steps, more than the
+/// rounding error of a point computed from either end of an edge.
 constexpr float weld_share = 0x1p-20f;
 
 float weld_tolerance(const Scene& scene) {
@@ -39,8 +39,7 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Finds vertices by where they are: a hash grid of cells four times as wide as the distance within which vertices are
-/// the same, so that most searches look into one cell.
+/// Hash grid of vertices. Its cells are four times as wide as the tolerance: most searches visit one cell.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -48,7 +47,7 @@ class VertexGrid {
         first_.reserve(positions_.size());
     }
 
-    /// An earlier vertex at the place of vertex `i`; where there is none, `i`, which later ones then find.
+    /// Returns an earlier vertex at the position of `i`; otherwise inserts and returns `i`.
     std::uint32_t weld(std::uint32_t i) {
         const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
@@ -68,7 +67,7 @@ class VertexGrid {
 
     GridCell cell_of(const V3f& p) const {
         const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
-        constexpr double last = 0x1p62;  // what lies beyond is far from the scene
+        constexpr double last = 0x1p62;  // limit for points far from the scene
         const auto index = [&](float v) {
             return static_cast<std::int64_t>(std::clamp(std::floor(v / size), -last, last));
         };
@@ -83,12 +82,12 @@ class VertexGrid {
     }
 
     const std::vector<V3f>& positions_;
-    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;  // the latest vertex in each cell
-    std::vector<std::uint32_t> next_;                              // the one before it in the same cell
+    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;  // latest vertex in each cell
+    std::vector<std::uint32_t> next_;                              // previous vertex in the same cell
     float tolerance_;                                              // [m]
 };
 
-/// For each vertex the first one at the same place.
+/// Maps each vertex to the first one at its position.
 std::vector<std::uint32_t> weld(const Scene& scene) {
     VertexGrid grid(scene);
     std::vector<std::uint32_t> welded(scene.vertices.size());
@@ -96,10 +95,10 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
     return welded;
 }
 
-/// An edge as one patch sees it; the patch's vertex order runs along it from `start` to `end`, which are corners.
+/// Edge of one patch, from corner `start` to corner `end` in the patch's vertex order.
 struct PatchEdge {
-    std::uint32_t low, high;   // welded vertices, low < high: the same for every patch at the edge
-    std::uint32_t start, end;  // 4 patch + corner; start also is the number of the edge
+    std::uint32_t low, high;   // welded vertices, low < high; equal for all patches at the edge
+    std::uint32_t start, end;  // 4 patch + corner; start also numbers the edge
     bool upwards;              // the patch runs from low to high
 
     std::uint32_t patch() const { return start / 4; }
@@ -172,24 +171,23 @@ class CreaseTest {
     const float least_cosine_of_smooth_ = cosine_of(60);
 };
 
-/// Numbers the sets of corners, or of edges, that patches have.
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     SmoothSurfaces::Groups groups;
     groups.group.assign(4 * scene.patches.size(), none);
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
-            const std::uint32_t member = 4 * p + c, first = sets.find(member);  // first <= member: numbered already
+            const std::uint32_t member = 4 * p + c, first = sets.find(member);  // first <= member: already numbered
             groups.group[member] = first == member ? groups.count++ : groups.group[first];
         }
     return groups;
 }
 
-/// Parts of a line, as intervals of the distance along it [m].
+/// Part of a line between two distances along it [m].
 struct LineInterval {
     double from, to;
 };
 
-/// What is left of `whole` beside `covered`: in ascending order, each longer than `least`.
+/// Returns the parts of `whole` outside `covered`, in ascending order, each longer than `least`.
 std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineInterval> covered, double least) {
     std::sort(covered.begin(), covered.end(),
               [](const LineInterval& a, const LineInterval& b) { return a.from < b.from; });
@@ -202,7 +200,6 @@ std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineIn
     return parts;
 }
 
-/// A straight line between two points, in double precision.
 class StraightEdge {
   public:
     StraightEdge(const V3f& from, const V3f& to) : origin_(from), direction_(Imath::V3d(to) - Imath::V3d(from)) {
@@ -215,11 +212,11 @@ class StraightEdge {
         const Imath::V3d d = Imath::V3d(x) - origin_;
         return (d - direction_ * direction_.dot(d)).length();
     }
-    /// Whether the other points lie on it, or where it goes on, within the tolerance.
+    /// Whether a and b lie on the edge's line, within the tolerance.
     bool is_collinear(const V3f& a, const V3f& b, double tolerance) const {
         return distance(a) <= tolerance && distance(b) <= tolerance;
     }
-    /// The part of it that lies between a and b, which are on its line.
+    /// Returns the part between a and b, which lie on the edge's line.
     LineInterval part_between(const V3f& a, const V3f& b) const {
         const auto [low, high] = std::minmax({along(a), along(b)});
         return {std::max(0.0, low), std::min(length_, high)};
@@ -236,7 +233,7 @@ Imath::Box3f box_around(const V3f& a, const V3f& b, float margin) {
     return widened(box, margin);
 }
 
-/// Finds by boxes what lies along an edge: contacts, or other edges.
+/// Box tree of segments: contacts or edges.
 class SegmentTree {
   public:
     SegmentTree(std::size_t count, const auto& ends_of) {
@@ -256,7 +253,6 @@ class SegmentTree {
     std::vector<Boxed> boxes_;
 };
 
-/// The contacts of a scene, by where they are.
 class ContactTree {
   public:
     explicit ContactTree(const Scene& scene)
@@ -265,7 +261,7 @@ class ContactTree {
           tree_(scene.contacts.size(),
                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
-    /// The parts of the segment from a to b along which there is a contact; longer than the tolerance.
+    /// Returns the parts of the segment with a contact, each longer than the tolerance.
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
@@ -284,13 +280,13 @@ class ContactTree {
     SegmentTree tree_;
 };
 
-/// Seams shorter than this share of an edge are ignored: gaps between the end of a wall and the next one.
+/// Seams shorter than this share of an edge are ignored, such as gaps between the end of a wall and the next wall.
 constexpr double least_seam_share = 1e-3;
 
-/// Where patches continue each other across parts of edges; only pairs with at least one patch of a cut surface.
+/// Finds continuations across parts of edges. Each pair has at least one patch of a cut surface.
 class SeamFinder {
   public:
-    /// @param edges  Those across which no whole patch continues.
+    /// @param edges  Edges across which no whole patch continues.
     SeamFinder(const Scene& scene, std::vector<PatchEdge> edges, const ContactTree& contacts)
         : scene_(scene),
           edges_(std::move(edges)),
@@ -305,7 +301,7 @@ class SeamFinder {
             if (!is_piece(edges_[i])) continue;
             std::vector<std::uint32_t> others;
             tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
-                if (is_piece(edges_[j]) && j <= i) return;  // is found from the other side
+                if (is_piece(edges_[j]) && j <= i) return;  // found from the other side
                 if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
                     others.push_back(j);
             });
@@ -339,7 +335,7 @@ class SeamFinder {
             found.push_back({{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});
         }
     }
-    /// Exactly 0 or 1 at the ends.
+    /// Returns exactly 0 or 1 near the ends.
     float snapped(double parameter, double length) const {
         const double margin = tolerance_ / length;
         return static_cast<float>(parameter <= margin ? 0 : parameter >= 1 - margin ? 1 : parameter);
