@@ -9,7 +9,7 @@
 
 namespace interflect::inline detail {
 
-/// The box, larger by `margin` in all directions [m].
+/// The box, enlarged by `margin` in all directions [m].
 inline Imath::Box3f widened(Imath::Box3f box, float margin) {
     box.min -= V3f(margin);
     box.max += V3f(margin);
@@ -24,8 +24,8 @@ inline Imath::Box3f bounds_of(const Scene& scene, const Patch& patch) {
     return box;
 }
 
-/// Whether a box meets a plane, or comes as close to it as `distance` [m].
-/// @param normal  Of the plane, unit length.
+/// Returns whether a box is within `distance` of a plane [m].
+/// @param normal  Unit normal of the plane.
 /// @param height  Signed distance of a point from the plane (V3d -> [m]).
 template <class Height>
 bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height& height, double distance) {

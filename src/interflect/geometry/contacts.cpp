@@ -22,14 +22,14 @@ namespace interflect {
 
 namespace {
 
-/// Strips narrower than this share of a face's diameter are not divided across.
+/// Strips narrower than this fraction of a face's diameter are not divided across.
 constexpr double narrow = 2e-3;
 
 constexpr std::size_t facets_at_once = 256;
 
-/// The pieces of a facet; none where it stays whole.
+/// Pieces of a facet; empty if it is not cut.
 struct CutFacet {
-    std::vector<PlanarPolygon> patches;  ///< Of three or four corners.
+    std::vector<PlanarPolygon> patches;  ///< With three or four corners.
     std::vector<PlanarSegment> contacts;
     bool reached_limit = false;
 };
@@ -72,10 +72,10 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     return cut;
 }
 
-/// Adds patches in place of a face.
+/// Writes the patches of whole and cut faces to `result`.
 class PieceWriter {
   public:
-    /// @param surfaces  The number of each patch's flat surface, or none.
+    /// @param surfaces  Number of each patch's flat surface, or none.
     PieceWriter(const Scene& scene, std::span<const std::uint32_t> surfaces, Scene& result)
         : scene_(scene), surfaces_(surfaces), result_(result), weld_(result) {}
 
@@ -114,13 +114,13 @@ class PieceWriter {
     VertexWeld weld_;
 };
 
-/// The facets of one face, and the number of patches that it is cut into.
+/// Facets of one face, and the number of patches into which it is cut.
 struct FacetRange {
     std::size_t first, last;
-    std::uint64_t patches = 0;  ///< 0: it stays whole.
+    std::uint64_t patches = 0;  ///< 0: not cut.
 };
 
-/// Decides which faces are cut, within the limit of all patches, and reports the limits that were reached.
+/// Decides which faces are cut, within the total limit of patches, and warns about limits that were reached.
 std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
                                const ContactOptions& options, Warnings& warnings) {
     std::vector<FacetRange> faces;
@@ -153,7 +153,7 @@ std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& fac
     return faces;
 }
 
-/// A number for each patch in a flat surface of which a face is cut, or which had one; none for the others.
+/// Surface number of each patch whose flat surface has a cut face or already had a number; none for other patches.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);

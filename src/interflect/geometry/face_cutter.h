@@ -7,21 +7,22 @@
 
 namespace interflect::inline detail {
 
-/// The part of `segment` that runs through the polygon's interior: at least `tolerance` long, and not within
-/// `tolerance` of one edge all along.
-/// @return  Whether there is one; if so, `segment` becomes it.
+/// Clips `segment` to the polygon's interior.
+/// @return  Whether the clipped segment is at least `tolerance` long and not entirely within `tolerance` of one edge.
+///          If so, `segment` is replaced by it.
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment);
 
 /// Result of cut_polygon().
 struct CutPolygon {
     std::vector<PlanarPolygon> pieces;    ///< Convex, any number of corners.
-    std::vector<PlanarSegment> contacts;  ///< The segments, moved onto the edges that the cuts made.
-    bool reached_limit = false;           ///< Segments still run through some of the pieces.
+    std::vector<PlanarSegment> contacts;  ///< The segments, moved onto the edges made by the cuts.
+    bool reached_limit = false;           ///< Segments still cross some of the pieces.
 };
 
-/// Binary space partition of a convex polygon by the lines of segments in its interior, each through the piece it lies
-/// in. Of the longest segments in a piece, the one whose line divides the fewest others goes first.
-/// @param tolerance    [m]: what is closer to a line lies on it, and no piece is thinner.
+/// Binary space partition of a convex polygon by the lines of segments in its interior. Each line cuts only the piece
+/// that contains its segment. Among the longest segments of a piece, the one whose line divides the fewest others is
+/// used first.
+/// @param tolerance    Points closer to a line than this lie on it, and no piece is thinner [m].
 /// @param most_pieces  > 0.
 CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segments, double tolerance,
                        std::size_t most_pieces);
@@ -29,11 +30,11 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
 /// Limits of the shape of pieces.
 struct PieceShape {
     double largest_aspect = 4;  ///< Length over width of a quadrilateral.
-    double least_width = 0;     ///< Narrower ones may have any length [m].
+    double least_width = 0;     ///< Narrower pieces may have any length [m].
 };
 
-/// Divides a convex polygon into triangles and quadrilaterals by diagonals that leave compact parts, and long
-/// quadrilaterals across, into 16 at most: the quadtree's elements have the shape of their patch.
+/// Divides a convex polygon into triangles and quadrilaterals by diagonals that leave compact parts. Cuts long
+/// quadrilaterals across, into at most 16 parts, because the elements of the quadtree inherit the shape of their patch.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
 }  // namespace interflect::inline detail

@@ -12,8 +12,8 @@ namespace interflect::inline detail {
 
 /// A corner of a planar polygon.
 struct PlanarCorner {
-    Imath::V2d position;          ///< In the plane's own frame [m].
-    std::uint32_t vertex = none;  ///< Its vertex in the scene; none for a new one.
+    Imath::V2d position;          ///< In the frame of the plane [m].
+    std::uint32_t vertex = none;  ///< Index of the scene vertex; none for a new vertex.
 };
 
 /// Convex, counter-clockwise.
