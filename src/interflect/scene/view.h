@@ -6,23 +6,23 @@
 
 namespace interflect::inline detail {
 
-/// What is wrong with a view, in words without its name; empty where it shows something: eye, look-at and up are
-/// finite, eye and look-at no farther out than farthest_coordinate (limits.h) and far enough apart for the direction
-/// not to be rounding, `up` has a length and is not along it, fov is in (0, 180), extent in [0, farthest_coordinate].
+/// Fault of a view, in words without its name; empty if valid. Valid: eye, look-at and up are finite; eye and look-at
+/// are within farthest_coordinate (limits.h) and far enough apart to define a direction; `up` is non-zero and not along
+/// it; fov is in (0, 180); extent is in [0, farthest_coordinate].
 std::string view_fault(const View& view);
 
-/// The view of that name. @throws InputError that lists the views there are.
+/// The view with this name. @throws InputError that lists the available views.
 const View& find_view(const Scene& scene, const std::string& name);
 
-/// A view for a scene that names none: from high up in a corner of its bounding box (core_bounds), just inside, towards
-/// its middle; `up` is the z axis.
+/// Default view: from just inside an upper corner of the scene's bounding box (core_bounds) towards its middle; `up` is
+/// the z axis.
 View overview(const Scene& scene);
 
-/// An orthographic view without a name of the scene cut open: of what lies beyond a plane. It shows the whole scene
-/// with a margin, the middle of its bounding box (core_bounds) in the middle of the picture. `up` is the z axis, or the
-/// y axis where the view goes along z.
-/// @param point      On the plane [m], in the world.
-/// @param direction  Of the view, at a right angle to the plane; not 0.
+/// Unnamed orthographic view of a section: the part of the scene beyond a plane. Shows the whole scene with a margin,
+/// with the middle of its bounding box (core_bounds) at the centre. `up` is the z axis, or the y axis for a view along
+/// z.
+/// @param point      On the plane [m], in world coordinates.
+/// @param direction  View direction, perpendicular to the plane; not 0.
 /// @param aspect     Width over height of the picture.
 View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
 
