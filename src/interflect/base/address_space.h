@@ -5,11 +5,11 @@
 
 namespace interflect::inline detail {
 
-/// Addresses that the process may still reserve [bytes]: what RLIMIT_AS (ulimit -v) leaves of them; the largest number
-/// where there is no such limit.
+/// Address space that the process may still reserve [bytes]: the rest of RLIMIT_AS (ulimit -v), or the largest number
+/// without such a limit.
 std::size_t free_address_space();
 
-/// So many addresses cannot be reserved.
+/// Thrown if this amount of address space cannot be reserved.
 class AddressSpaceError : public std::runtime_error {
   public:
     explicit AddressSpaceError(std::size_t bytes);
