@@ -4,10 +4,9 @@
 
 namespace interflect::inline detail {
 
-/// An output file that appears under its name only when complete: written to a temporary file, then renamed. Created
-/// before long work begins, so that an unwritable path is reported at once. A symbolic link is kept; its target is
-/// replaced. Devices, pipes and sockets are never replaced; the output is copied into them. The path '-' is standard
-/// output.
+/// An output file that appears under its name only when complete: written to a temporary file, then renamed. Create it
+/// before long work begins, to report an unwritable path at once. A symbolic link is kept; its target is replaced.
+/// Devices, pipes and sockets are never replaced; the output is copied into them. The path '-' is standard output.
 ///
 /// A killed process leaves its temporary file, .interflect-HOST-PID-N.part.EXTENSION. The next PendingFile on the same
 /// host and in the same folder removes it.
