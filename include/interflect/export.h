@@ -48,7 +48,7 @@ struct ExportOptions {
     /// [stops]: a radiance of 2^-exposure becomes 1, the brightest 8-bit value. Brighter colours are scaled to 1,
     /// preserving their hue. See automatic_exposure().
     float exposure = 0;
-    V3f up{0, 0, 1};                          ///< Of the scene. Rotated for formats with a fixed up axis.
+    V3f up{0, 0, 1};                          ///< Up axis of the scene; rotated for formats with a fixed one.
     std::optional<LightmapOptions> lightmap;  ///< nullopt: the light is stored at the vertices of the elements.
     ProbeOptions probes;                      ///< For formats that store probes instead of surfaces.
     PathMonitor monitor;                      ///< Monitors gathering and probes.

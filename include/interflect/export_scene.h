@@ -26,10 +26,9 @@ extern const std::span<const char* const> scene_export_extensions;
 /// Whether export_scene() supports the extension of this path.
 bool is_scene_export(const std::filesystem::path& path);
 
-/// Writes a scene for another renderer, which should compute the same light: faces with diffuse materials and images,
-/// emitters, light sources, skies as an image, views as cameras. Referenced files are written beside it. Radiance is M
-/// / pi. Photometric values are written unchanged, except for Radiance, where they are divided by 179 lm/W. Coordinates
-/// are relative to Scene::origin.
+/// Writes a scene for another renderer: faces with diffuse materials and images, emitters, light sources, skies as an
+/// image, views as cameras. Referenced files are written beside it. Radiance is M / pi. Photometric values are kept,
+/// except for Radiance, which needs them divided by 179 lm/W. Coordinates are relative to Scene::origin.
 /// @throws InputError for an unknown extension, an option out of range and a path that cannot be written.
 SceneExport export_scene(const std::filesystem::path& path, const Scene& scene, const SceneExportOptions& options = {});
 

@@ -35,11 +35,10 @@ struct GlareRating {
     std::vector<GlareSource> sources{};                     ///< Visible sources, in order of decreasing glare.
 };
 
-/// Position index p of Guth, as fitted by Levin (1975): 1 on the line of sight, increasing away from it. Positions
-/// below the line of sight have the index of their mirror image above it.
+/// Position index p of Guth, as fitted by Levin (1975): 1 on the line of sight, increasing away from it; equal for
+/// mirror images above and below it. Directions need not be normalised.
 /// @param towards            Direction of the source.
 /// @param line_of_sight, up  Need not be perpendicular.
-/// Directions need not be normalised.
 /// @return  Infinity for directions not in front of the observer.
 double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up = V3f(0, 0, 1));
 
@@ -47,18 +46,18 @@ double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& u
 /// @param background_luminance  Lb [cd/m^2]; if it is 0 and sources are visible, the result is infinity.
 double unified_glare_rating(double background_luminance, std::span<const GlareSource> sources);
 
-/// Computes the light sources visible to an observer by quadrature over their areas, with a ray to each node: emitting
-/// patches with L = M / pi, and measured luminaires with L = I(d) / A(d), where A is the projected area of their
-/// luminous opening. Excludes point and spot lights and luminaires without an opening, which have no area, and the sun
-/// and skies. Emitting windows are included, although UGR was not designed for them. The z axis is up.
+/// Computes the visible light sources by quadrature over their areas, with a ray to each node: emitting patches with L
+/// = M / pi, measured luminaires with L = I(d) / A(d), where A is the projected area of the luminous opening. Excludes
+/// sources without area (point and spot lights, luminaires without opening), the sun and skies. Includes emitting
+/// windows, although UGR was not designed for them. The z axis is up.
 /// @param ray_caster  Of the same scene. Cost: 4 to 256 rays an emitting patch, 64 a luminaire.
 /// @throws InputError for a line of sight without direction.
 std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_caster, const Observer& observer);
 
 /// Computes the glare rating of each observer. Lb is the indirect illuminance at the eye of a plane perpendicular to
 /// the line of sight, over pi.
-/// @param solution  As in measure_irradiance(), as are `options` and `monitor`. After an interruption only the
-///                  observers that were reached are rated; the others have a non-finite standard error.
+/// @param solution  As in measure_irradiance(), as are `options` and `monitor`. Observers not reached before an
+///                  interruption have a non-finite standard error.
 std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                     std::span<const Observer> observers, const PathOptions& options = {},
                                     const PathMonitor& monitor = {});

@@ -13,12 +13,12 @@ struct Scene;
 /// Light sources that are dimmed together.
 struct LightGroup {
     std::string name;
-    /// Pattern of the names of their objects, materials or luminaires. '*' matches any characters, '?' one character.
-    /// An object includes nested objects ("lamps" includes "lamps.left").
+    /// Pattern of the names of objects, materials or luminaires: '*' matches any characters, '?' one. An object
+    /// includes nested objects ("lamps" includes "lamps.left").
     std::string pattern;
 };
 
-/// Maximum number of groups of a scene, including the group of sources without a match.
+/// Maximum number of groups, including that of unmatched sources.
 inline constexpr std::size_t most_light_groups = 32;
 
 /// Whether a pattern matches all of `name`. O(product of both lengths).
@@ -42,8 +42,8 @@ SourceGroups source_groups(const Scene& scene);
 /// @throws InputError for a group without sources, and as source_groups().
 void require_sources_of_groups(const Scene& scene);
 
-/// Creates a group for each top-level object with a source. If all sources are in one object or in none, creates a
-/// group for each material and luminaire. @throws InputError for more than most_light_groups.
+/// One group for each top-level object with a source; if at most one object has sources, one for each material and
+/// luminaire. @throws InputError for more than most_light_groups.
 std::vector<LightGroup> groups_by_name(const Scene& scene);
 
 /// Copy of the scene with the sources of each group scaled. @param factors  One per group of source_groups(scene); >=

@@ -19,8 +19,8 @@ struct PointLight {
     Rgb intensity{0, 0, 0};  ///< [lm/sr = cd, or W/sr], >= 0.
 };
 
-/// Emits into a cone, with full intensity near its axis. Between the two angles the intensity is proportional to the
-/// squared difference of the cosine from that of the outer angle.
+/// Emits into a cone, with full intensity near its axis. Between the two angles intensity is proportional to the
+/// squared difference of cosines to the outer angle.
 struct SpotLight {
     V3f position{0, 0, 0};    ///< [m]
     V3f direction{0, 0, -1};  ///< Need not be normalised.
@@ -31,7 +31,7 @@ struct SpotLight {
     float outer_cosine() const;
 };
 
-/// Light from far away: parallel, or from a disc of uniform radiance, which is visible in pictures.
+/// Light from far away: parallel, or from a visible disc of uniform radiance.
 struct DirectionalLight {
     V3f direction{0, 0, -1};    ///< Direction of the light; need not be normalised.
     Rgb irradiance{0, 0, 0};    ///< Irradiance of a surface perpendicular to the light [lm/m^2 or W/m^2], >= 0.
@@ -47,7 +47,7 @@ struct UniformSky {
     Rgb radiance{0, 0, 0};  ///< [lm/(m^2 sr) = cd/m^2, or W/(m^2 sr)], >= 0.
 };
 
-/// A hemisphere of sky over a uniform ground that extends to the horizon, all of one colour.
+/// A hemisphere of sky over a uniform ground, all of one colour.
 struct SkyDome {
     SkyModel model;
     Rgb irradiance{0, 0,
@@ -58,8 +58,8 @@ struct SkyDome {
     float ground = 0;
 };
 
-/// An image of the distant surroundings: columns are azimuths, rows angles from the zenith, both evenly spaced. Each
-/// texel has constant radiance. The middle of the image is north; east is to the right of it.
+/// An image of the distant surroundings. Columns are azimuths, rows angles from the zenith, evenly spaced; texels have
+/// constant radiance. The middle of the image is north, with east to the right.
 struct EnvironmentMap {
     std::shared_ptr<const Texture> image;
     V3f zenith{0, 0, 1};  ///< Direction of the upper edge; need not be normalised.
@@ -71,8 +71,8 @@ inline constexpr std::uint64_t most_environment_texels = std::uint64_t{1} << 25;
 /// Limit of domes and maps of a scene; each takes up to 50 MB while light is shot.
 inline constexpr std::size_t most_skies = 8;
 
-/// A luminaire with measured intensity. All points of its opening visible from a direction emit equally: the far field
-/// is the measured one, the near field has the opening's size.
+/// A luminaire with measured intensity. All points of its opening visible from a direction emit equally, so the far
+/// field is as measured and the near field depends on the opening's size.
 struct MeasuredLight {
     std::shared_ptr<const PhotometricWeb> web;  ///< May be shared by luminaires.
     V3f position{0, 0, 0};                      ///< Centre of the opening [m].

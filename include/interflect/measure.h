@@ -43,9 +43,9 @@ struct MeasuredIrradiance {
     float illuminance_error() const { return luminance(standard_error); }  ///< [lux]
 };
 
-/// Measures irradiance by final gathering, see gather(), with the light at each point computed as for a pixel. For
-/// cylinders, the mean over their normals (CIE 136).
-/// @param solution  Of the same scene, as is `ray_caster`; null: by path tracing alone, see trace_paths().
+/// Measures irradiance by final gathering as for a pixel, see gather(). For cylinders, the mean over their normals (CIE
+/// 136).
+/// @param solution  Of the same scene, as is `ray_caster`; null: path tracing alone, see trace_paths().
 /// @param options   For each point; width and height are ignored. `until` is relative to the point's irradiance.
 /// @return          One entry per point. Points with too few samples after an interruption have an infinite standard
 ///                  error.

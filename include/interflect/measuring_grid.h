@@ -13,8 +13,8 @@ namespace interflect {
 /// Upper limit of measuring points per grid.
 inline constexpr std::size_t most_measuring_points = 1'000'000;
 
-/// Maximum distance between the points of a measuring grid by EN 12464-1 (formula 1): p = 0.2 * 5^(log10 d) [m], at
-/// most 10 m. d is the longer side of the area, or the shorter one if the longer is at least twice that.
+/// Maximum point distance of a measuring grid by EN 12464-1 (formula 1): p = 0.2 * 5^(log10 d) [m], at most 10 m. d is
+/// the longer side of the area, or the shorter one if the longer is at least twice that.
 /// @param length, width  Sides of the area [m], > 0.
 double grid_spacing(double length, double width);
 
@@ -36,23 +36,23 @@ struct PlanarArea {
     double area = 0;                     ///< [m^2]
 };
 
-/// Finds the planar surface of an object: its faces in the plane with the largest total area. Nested objects are
-/// included: "desk" has the faces of "desk.top" too. For two-sided faces the front is used, unless `facing` decides.
+/// Finds the planar surface of an object: its faces in the plane with the largest total area. Includes nested objects:
+/// "desk" includes "desk.top". Two-sided faces count by their front, unless `facing` decides.
 /// @param facing  Direction within 10 degrees of the surface's normal; nullopt: any.
-/// @throws InputError for an unknown object, with the nearest names; if no face matches; and if several planes have
-///         equal area, with their normals.
+/// @throws InputError for an unknown object, with the nearest names; if no face matches; and if several planes are
+///         (nearly) equally large, with their normals.
 PlanarArea find_surface(const Scene& scene, const std::string& object, const std::optional<V3f>& facing = {});
 
-/// Finds the largest horizontal plane of an object's upward faces, for example the top of a desk or the floor of a
-/// room; the highest of equal ones. @throws InputError as find_surface() does.
+/// The largest horizontal plane of an object's upward faces, such as the top of a desk; the highest of equal ones.
+/// @throws InputError as find_surface() does.
 PlanarArea find_top(const Scene& scene, const std::string& object);
 
-/// Finds the floor at or below a height: among the scene's upward faces there, those in the horizontal plane with the
-/// largest total area. @param height  World z [m]. @throws InputError if no such face exists.
+/// The floor at or below a height: the scene's upward faces there in the horizontal plane with the largest total area.
+/// @param height  World z [m]. @throws InputError if no such face exists.
 PlanarArea find_floor(const Scene& scene, double height);
 
-/// Divides an area by the objects of its faces, ordered by size, for example into the floors of rooms. Copies of an
-/// array (named "floor.a0", "floor.a1.2" in MGF) count as one object.
+/// Divides an area by the objects of its faces, ordered by size. Copies of an array ("floor.a0", "floor.a1.2" in MGF)
+/// count as one object.
 std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area);
 
 /// Points to measure at.
@@ -68,8 +68,8 @@ struct MeasuringGrid {
 };
 
 /// Creates a grid on an area, or at a given height. The smallest rectangle around the area, less the boundary strip, is
-/// divided into the smallest number of equal cells no wider than the spacing. The centre of a cell is a point of the
-/// grid if it lies within the faces, at least the strip's width from their border.
+/// divided into the fewest equal cells no wider than the spacing. A cell's centre is a point of the grid if it lies
+/// within the faces, at least the strip's width from their border.
 /// @param height  World z of the points [m]; nullopt: on the area itself.
 /// @throws InputError for options out of range, for more than most_measuring_points, and if no point remains. Cost:
 ///         O(points * patches), with a boundary also O(patches^2).

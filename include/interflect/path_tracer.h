@@ -45,7 +45,7 @@ struct PathOptions {
 /// Progress of a picture.
 struct PathProgress {
     std::int64_t rays = 0;      ///< Rays of all kinds so far.
-    double fraction = 0;        ///< Of the work planned so far, in [0, 1]; a missed target adds work.
+    double fraction = 0;        ///< Fraction of the work planned so far, in [0, 1]; a missed target adds work.
     double relative_error = 0;  ///< PathTracing::relative_error of a recent state; NaN if the work has none.
 };
 
@@ -93,11 +93,11 @@ struct PathTracing {
     /// black.
     Image image;
     PictureLayers layers;
-    /// Of each pixel and channel, in the same unit, from the spread of independent batches of paths.
+    /// Standard error of each pixel and channel, in the same unit, from the spread of independent batches of paths.
     Image standard_error;
-    /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (means over the
-    /// channels), root mean square over the pixels; 0 for a picture without light. Infinite if any pixel has fewer than
-    /// two batches of paths.
+    /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (channel
+    /// means), root mean square over the pixels; 0 for a picture without light. Infinite if any pixel has fewer than
+    /// two batches.
     double relative_error = 0;
     std::int64_t rays = 0;         ///< Camera rays, reflected rays and shadow rays.
     std::int64_t shadow_rays = 0;  ///< Included in `rays`.
@@ -109,21 +109,20 @@ struct PathTracing {
 };
 
 /// Path tracing (Kajiya 1986) of a view: an independent reference for the radiosity solver. Surfaces are diffuse; light
-/// passes straight through thin glass. Mirrors are followed from the camera only; other light that they reflect is
-/// lost, as in the solver.
+/// passes straight through thin glass. Mirrors are followed from the camera only; other mirrored light is lost, as in
+/// the solver.
 ///
-/// A path starts at a random point of a pixel's square and continues in cosine-distributed directions. It ends by
-/// Russian roulette on its throughput, without a limit of bounces. At each vertex an emitting patch is sampled by
-/// LightTree and connected by a shadow ray, which counts if RayCaster hits that patch. Reflected rays that hit an
-/// emitting patch also count; the balance heuristic weights both. Random numbers are Owen-scrambled Sobol' points.
+/// A path starts at a random point of a pixel's square and continues in cosine-distributed directions until Russian
+/// roulette on its throughput ends it. At each vertex an emitting patch is sampled by LightTree and connected by a
+/// shadow ray, which counts if RayCaster hits that patch. Reflected rays that hit an emitting patch also count; the
+/// balance heuristic weights both. Random numbers are Owen-scrambled Sobol' points.
 ///
-/// Paths are traced in batches of a power of two, at least 8 batches a pixel if `samples` suffices; `samples` is
-/// rounded up to whole batches. Batches use independent points.
+/// Paths are traced in independent batches of a power of two, at least 8 a pixel if `samples` suffices; `samples` is
+/// rounded up to whole batches.
 ///
 /// Without a target the estimate is unbiased. With a target, pixels get samples in rounds that at most double their
-/// number. The number of samples still needed follows from the relative variance of all samples so far, averaged over 7
-/// x 7 pixels, because the variance of a single pixel is too noisy a stopping criterion. The remaining bias is far
-/// below the standard error.
+/// number. The remaining number follows from the relative variance so far, averaged over 7 x 7 pixels because a single
+/// pixel's variance is too noisy. The bias is far below the standard error.
 ///
 /// @param ray_caster  Of the same scene.
 /// @return            The same bits for the same seed and any number of threads, unless interrupted.

@@ -18,11 +18,11 @@ struct LuminousOpening {
     bool is_point() const { return size == V3f(0); }
 };
 
-/// Luminous intensity of a luminaire as a function of direction, measured in the far field (IES LM-63, EULUMDAT).
+/// Far-field luminous intensity of a luminaire as a function of direction (IES LM-63, EULUMDAT).
 ///
 /// Directions are in the luminaire's frame: -z is the nadir, with vertical angle 0 in type C photometry; x is in the C0
 /// half plane and y in C90, so C is counter-clockwise seen from above. Intensities are tabulated over a polar angle
-/// from a pole and an azimuth about it, interpolated linearly in both, and zero outside the table.
+/// from a pole and an azimuth about it, interpolated linearly, and zero outside the table.
 struct PhotometricWeb {
     enum class Pole {
         nadir,  ///< Types C and A: the azimuth runs from x to y.

@@ -14,7 +14,7 @@ struct IlluminanceSummary {
     std::size_t points = 0;
     double mean = 0, min = 0, max = 0;
     double mean_error = 0;  ///< Standard error of the mean from sampling, which is independent at each point.
-    double min_error = 0;   ///< Of the darkest point.
+    double min_error = 0;   ///< Standard error of the minimum.
     double mean_solution_error = 0, min_solution_error = 0;  ///< Additional errors from the solution.
 
     double uniformity() const { return mean > 0 ? min / mean : 0; }  ///< U0 = Emin / Emean (EN 12665).

@@ -18,11 +18,11 @@ std::array<float, 9> spherical_harmonics(const V3f& direction);
 /// Irradiance of small surfaces at a point, as a function of their normal.
 struct IrradianceProbe {
     /// E_lm [lm/m^2 or W/m^2]: the coefficients of radiance times pi, 2 pi / 3 and pi / 4 for degree 0, 1 and 2, the
-    /// convolution with the cosine (Ramamoorthi and Hanrahan 2001, Eq. 9). The missing higher even degrees contribute
-    /// at most 9% of the irradiance of a single light direction.
+    /// convolution with the cosine (Ramamoorthi and Hanrahan 2001, Eq. 9). The omitted higher degrees are at most 9% of
+    /// the irradiance from one direction.
     std::array<Rgb, 9> coefficients;
     /// Inside a solid or in the dark: more than a quarter of all directions hit the back of a one-sided face, or no
-    /// light arrives. Do not interpolate from such probes.
+    /// light arrives. Exclude from interpolation.
     bool is_inside = false;
 
     IrradianceProbe() { coefficients.fill(Rgb(0)); }
@@ -47,9 +47,8 @@ struct ProbeGrid {
 inline constexpr std::int64_t most_probes = 1'000'000;
 
 /// Computes probes for the light of a solution. Rays from each probe follow a randomly rotated product quadrature of
-/// the sphere. Each returns the radiance (M + rho H) / pi of the surface that it hits, with smooth shading, or the
-/// sky's radiance. Rays pass through panes of glass; mirrors count as black. Unoccluded light sources other than
-/// surfaces are added exactly.
+/// the sphere and return the radiance (M + rho H) / pi of the surface hit, smoothly shaded, or of the sky. Panes of
+/// glass are transparent, mirrors black. Unoccluded light sources other than surfaces are added exactly.
 /// @param ray_caster  Of the same scene, as is `solution`.
 /// @return            The same bits for any number of threads.
 /// @throws InputError for an option out of range, more than most_probes, or another scene; Stopped if `monitor` ends

@@ -10,8 +10,8 @@
 
 namespace interflect {
 
-/// A ray of unit direction. Rays that leave a patch start RayCaster::ray_offset() above it, to avoid hits of faces in
-/// the patch's own plane.
+/// A ray of unit direction. Rays that leave a patch start RayCaster::ray_offset() above it, to avoid hits in its own
+/// plane.
 struct Ray {
     V3f origin;
     V3f direction;
@@ -32,8 +32,8 @@ class RayCaster {
     RayCaster(const RayCaster&) = delete;
     RayCaster& operator=(const RayCaster&) = delete;
 
-    /// Finds the first hit of every ray, on the calling thread. Rays pass through the back of one-sided faces. Among
-    /// coincident faces the same one is hit from every direction (see coincident.h).
+    /// Finds the first hit of every ray, on the calling thread. Rays pass through the back of one-sided faces. Of
+    /// coincident faces always the same one is hit (see coincident.h).
     /// @throws InputError unless the numbers of rays and hits are equal.
     void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
 
@@ -45,8 +45,8 @@ class RayCaster {
     /// where 8 are needed. Independent of all other faces.
     float ray_offset(std::uint32_t patch) const { return ray_offsets_[patch]; }
 
-    /// Fraction of a patch's area, in [0, 1], that rays can hit. Below 1 if coincident faces intercept rays in its
-    /// place. Only this fraction may emit.
+    /// Fraction of a patch's area, in [0, 1], that rays can hit, and from which light may be emitted. Below 1 if
+    /// coincident faces cover it.
     float uncovered_share(std::uint32_t patch) const;
     /// Whether uncovered_share() is below 1 anywhere.
     bool has_covered_patches() const;
@@ -72,7 +72,7 @@ class RayCaster {
 /// Embree's interfaces for tracing rays.
 enum class RayInterface { single, packet8, packet16, stream };
 
-/// Rays in Embree's own layout, which are traced without conversion: the upper bound for the solver's ray rate.
+/// Rays in Embree's own layout, traced without conversion: the upper bound for the solver's ray rate.
 class PreparedRays {
   public:
     PreparedRays(std::span<const Ray> rays, RayInterface interface);

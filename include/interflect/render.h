@@ -26,7 +26,7 @@ struct SmoothingOptions {
 /// Progress of a picture.
 struct PictureProgress {
     std::int64_t rays = 0;  ///< So far.
-    double fraction = 0;    ///< Of all rays, in [0, 1].
+    double fraction = 0;    ///< Fraction of all rays, in [0, 1].
 };
 
 /// Progress reports and early termination of a picture.

@@ -22,14 +22,14 @@ struct Material {
     std::string name;
     Rgb reflectance{0, 0, 0};  ///< Diffuse reflectance rho, each channel in [0, 1).
     Rgb exitance{0, 0, 0};     ///< Self-emitted exitance M [lm/m^2 or W/m^2], >= 0.
-    /// Indices into Scene::textures, or none. They multiply the reflectance and the exitance; the products obey the
-    /// limits above.
+    /// Textures that multiply the reflectance and the exitance (indices into Scene::textures, or none). The products
+    /// obey the limits above.
     std::uint32_t reflectance_texture = none, exitance_texture = none;
-    /// Fraction of light that passes straight through: thin glass, or with a texture the holes of a leaf or a fence.
-    /// The sum with both reflectances is at most 1.
+    /// Fraction of light that passes straight through: thin glass, or with a texture the holes of a leaf or a fence. At
+    /// most 1 in sum with both reflectances.
     Rgb transmittance{0, 0, 0};
     std::uint32_t transmittance_texture = none;  ///< Multiplies the transmittance.
-    /// Mirrored fraction of light: visible from the camera in gathered and path-traced pictures, lost to the solver.
+    /// Mirrored fraction of light. The camera sees it in gathered and path-traced pictures; the solver loses it.
     Rgb specular_reflectance{0, 0, 0};
 
     bool is_textured() const {
@@ -37,52 +37,50 @@ struct Material {
     }
 };
 
-/// One side of an input polygon: a triangle or a convex quadrilateral, planar within 2e-6 of its largest coordinate. A
-/// more strongly warped quadrilateral has a larger ray offset, which prevents leaks but reduces accuracy near its
-/// edges. Two triangles are exact.
+/// One side of an input polygon: a triangle or a convex quadrilateral, planar within 2e-6 of its largest coordinate.
+/// More warp increases the ray offset, which prevents leaks but reduces accuracy near the edges. Two triangles are
+/// exact.
 struct Patch {
     /// Counter-clockwise seen from the lit side; [3] == none for a triangle.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::uint32_t material = 0;
-    std::uint32_t other_side = none;  ///< The patch on the back of the same face; none for a one-sided face.
+    std::uint32_t other_side = none;  ///< Patch on the back of the face; none if one-sided.
     std::uint32_t object = 0;         ///< Index into Scene::objects.
-    std::uint32_t surface =
-        none;  ///< Equal for all patches of a flat surface with cut faces; none: derived from shared edges.
+    std::uint32_t surface = none;     ///< Equal within a flat surface with cut faces; none: derived from edges.
 
     bool is_triangle() const { return vertices[3] == none; }
     int vertex_count() const { return is_triangle() ? 3 : 4; }
 };
 
-/// A segment along which a face was cut because another face meets it there. Light differs on its two sides.
+/// Segment along which a face was cut where another face meets it. Light differs on its two sides.
 struct Contact {
     V3f a, b;  ///< Ends [m]; on edges of the pieces.
 };
 
-/// A pinhole camera in world coordinates, independent of the scene's origin.
+/// A pinhole camera in world coordinates.
 struct View {
     std::string name;
     Imath::V3d eye{0, 0, 0};      ///< [m]
     Imath::V3d look_at{0, 1, 0};  ///< [m]
     V3f up{0, 0, 1};              ///< Need not be normalised or perpendicular to the view direction.
     float fov = 45;               ///< Vertical, full [degrees], in (0, 180).
-    /// Above 0: orthographic, with this height of the picture [m]; `fov` is ignored. Rays start on the plane through
-    /// the eye, which cuts off objects behind it: plans and sections. Do not solve with such a view.
+    /// Above 0: orthographic, height of the picture [m]; `fov` is ignored. Rays start on the plane through the eye,
+    /// which cuts the scene: plans and sections. Do not solve with such a view.
     float extent = 0;
 };
 
-/// Scene in metres and linear Rec. 709; immutable once loaded. The two patches of a two-sided face are adjacent: the
-/// side in the file first, then its other_side.
+/// Scene in metres and linear Rec. 709; immutable once loaded. The patches of a two-sided face are adjacent, the side
+/// in the file first.
 struct Scene {
     std::string name;  ///< Source file.
-    /// World coordinates of the vertices' origin [m]: vertex v is at origin + v. Readers choose it (origin_for in
-    /// core.h) to preserve precision far from the world's origin.
+    /// World coordinates of the vertices' origin [m]. Chosen by readers (origin_for in core.h) to preserve precision.
     Imath::V3d origin{0, 0, 0};
     std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Unused vertices are ignored.
     /// (u, v) of every vertex, or empty if no patch is textured.
     std::vector<V2f> texture_coordinates;
-    /// (u, v) in [0, 1] of every vertex in its object's own lightmap, if provided by the file (TEXCOORD_1 of glTF); (0,
-    /// 0) is the lower left corner. Empty if no patch has any. The corners of a patch either all have coordinates or
-    /// are all NaN.
+    /// (u, v) in [0, 1] of every vertex in its object's own lightmap, if the file provides one (TEXCOORD_1 of glTF);
+    /// (0, 0) is the lower left corner. Empty without any. The corners of a patch either all have coordinates or are
+    /// all NaN.
     std::vector<V2f> lightmap_coordinates;
     std::vector<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous along these; see cut_at_contacts().
@@ -98,9 +96,9 @@ struct Scene {
     Warnings warnings;
 };
 
-/// Finds all violations of the invariants above (index out of range, non-finite number, reflectance outside [0, 1),
-/// negative exitance, textured patch without coordinates, degenerate patch, invalid view) and of the limits of
-/// computation (limits.h). One sentence each, at most 20; empty for a valid scene.
+/// Violations of the invariants above (index out of range, non-finite number, reflectance outside [0, 1), negative
+/// exitance, textured patch without coordinates, degenerate patch, invalid view) and of limits.h, one sentence each. At
+/// most 20; empty for a valid scene.
 std::vector<std::string> scene_faults(const Scene& scene);
 
 /// @param purpose  Start of the message: "cannot solve".

@@ -37,12 +37,12 @@ std::string sky_fault(const SkyModel& model);
 struct ModelledDaylight {
     SkyModel model;
     double sky_illuminance = 0;  ///< Horizontal, of the sky alone [lx].
-    double sun_illuminance = 0;  ///< Of a surface facing the sun [lx].
+    double sun_illuminance = 0;  ///< Illuminance of a surface facing the sun [lx].
 };
-/// All-weather model: luminance of the sky by Perez, Seals and Michalsky 1993, luminous efficacies by Perez et al. 1990
-/// with 2 cm of precipitable water, air mass by Kasten and Young 1989, solar constant 1367 W/m^2. The model's f(chi) =
-/// 1 + c exp(d chi) + e cos^2 chi corresponds to SkyModel with c and e divided by 1 + c exp(d pi / 2). For a clearness
-/// from 1.065 to 2.8 the brightness is at least 0.2, as in Radiance's gendaylit.
+/// All-weather model: sky luminance by Perez, Seals and Michalsky 1993, efficacies by Perez et al. 1990 with 2 cm of
+/// precipitable water, air mass by Kasten and Young 1989, solar constant 1367 W/m^2. The model's f(chi) = 1 + c exp(d
+/// chi) + e cos^2 chi is SkyModel with c and e divided by 1 + c exp(d pi / 2). For a clearness from 1.065 to 2.8 the
+/// brightness is at least 0.2, as in Radiance's gendaylit.
 /// @param direct_normal, diffuse_horizontal  Irradiances [W/m^2], >= 0 and > 0, at most the solar constant.
 /// @param sun_altitude  [degrees], in (0, 90].
 /// @throws InputError for arguments out of range.

@@ -20,11 +20,10 @@ struct SolvedScene {
     std::string interflect_version;  ///< Program version that wrote the file; empty if not recorded.
 };
 
-/// Writes scene and solution as one HDF5 file (layout in docs/solution-file.md): geometry, materials, views, the
-/// elements with irradiance and importance, a report of every iteration, and checksums of every byte. Equal input gives
-/// equal bytes, and every written file is readable. Use with PendingFile.
-/// @throws std::runtime_error, before writing, if the scene has a fault, or if a quantity is negative, not finite or
-///         not of element count; also if the file cannot be written.
+/// Writes scene and solution as one HDF5 file (layout in docs/solution-file.md), with a report of every iteration and
+/// checksums of every byte. Equal input gives equal bytes. Use with PendingFile.
+/// @throws std::runtime_error if the file cannot be written; before writing, if the scene has a fault, or a quantity is
+///         negative, not finite or not one per element. Every written file is therefore readable.
 /// @param state  State of the run for continuation, see Solver::save(). Null: not stored.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                     const StateArchive* state = nullptr);

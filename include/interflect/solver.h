@@ -26,9 +26,7 @@ struct AdvanceReport {
     bool is_stopped = false;                                 ///< Monitor::stop ended it.
 };
 
-/// Solves Eq. 1 of Prikryl et al. 2000 step by step. Each iteration shoots N rays, sampled by power (Eq. 3) or by power
-/// and importance (Eq. 9-11), refines the mesh if the method supports it (Eq. 14, 15), and is merged with the running
-/// mean (Eq. 6).
+/// Solves Eq. 1 of Prikryl et al. 2000 step by step; see solve().
 ///
 /// SolveOptions are the plan of the whole run: they determine the size of its iterations and its end. The Limits of
 /// advance() only determine when it returns; the next call continues the unfinished iteration. Many small calls, also
@@ -47,8 +45,8 @@ class Solver {
     Solver(Solver&&) noexcept;
     Solver& operator=(Solver&&) noexcept;
 
-    /// Continues until a limit is reached, the plan is complete, or Monitor::stop is set, which another thread or a
-    /// signal handler may do. Rays requested beyond a complete plan extend it.
+    /// Continues until a limit is reached, the plan is complete, or another thread or a signal handler sets
+    /// Monitor::stop. Rays requested beyond a complete plan extend it.
     /// @param limits  Rays and time count from this call. The last iteration is completed, so `rays` may be exceeded.
     ///                No step of rays begins after `time`, but at least one is traced.
     AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
@@ -56,7 +54,7 @@ class Solver {
     /// Continues with other views. Keeps the light; recomputes importance.
     /// @throws InputError as the constructor does; the views are then unchanged.
     void set_views(std::vector<WeightedView> views);
-    /// Scales the sources of a light group, and all its light, relative to the scene as given.
+    /// Scales the sources of a light group and their light, relative to the original scene.
     /// @throws InputError for an unknown group, for a factor that is negative or not finite, and for methods that do
     ///         not average iterations (Method::follows_dimming).
     void set_exitance(const std::string& group, float factor);
@@ -64,9 +62,9 @@ class Solver {
     /// @throws InputError for a limit out of range.
     void set_plan(const Limits& limits);
 
-    /// The current solution. Computed on first request in O(elements). The reference is valid until the solver changes.
+    /// Current solution, computed on first request in O(elements). The reference is valid until the solver changes.
     const Solution& solution() const;
-    /// The same without a copy; the solver must not be used afterwards.
+    /// The same without a copy. The solver must not be used afterwards.
     Solution take_solution() &&;
     /// With its sources as scaled by set_exitance().
     const Scene& scene() const { return *shared_scene(); }

@@ -6,10 +6,10 @@ namespace interflect {
 
 /// Tone mapping operators from luminance to display values in [0, 1]. All are monotonic and preserve black.
 ///
-/// The first four are curves for values scaled by an exposure to about 1, in any unit. The last three are based on a
-/// model of an observer of the scene and one of the display. They need luminances in cd/m^2 and choose the brightness
-/// from the adaptation luminance L_wa, so dim scenes look dim. L_wa is the logarithmic mean of luminance, over the same
-/// pixels as in automatic_exposure().
+/// The first four are curves for values scaled by an exposure to about 1, in any unit. The last three model an observer
+/// of the scene and one of the display. They need luminances in cd/m^2 and choose the brightness from the adaptation
+/// luminance L_wa, so dim scenes look dim. L_wa is the logarithmic mean of luminance, over the same pixels as in
+/// automatic_exposure().
 enum class Tonemap {
     srgb,      ///< Linear, clipped at 1: displays true ratios of light.
     reinhard,  ///< On luminance, which preserves hue; 4 becomes white (Eq. 4 of Reinhard et al. 2002).

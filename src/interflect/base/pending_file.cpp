@@ -69,14 +69,13 @@ void copy_into(const fs::path& from, const fs::path& device) {
 
 constexpr std::string_view temporary_mark = ".part";
 
-/// Common prefix of this host's temporary files.
 std::string temporary_prefix() {
     std::array<char, 256> host{};
     ::gethostname(host.data(), host.size() - 1);
     return ".interflect-" + std::string(host.data()) + "-";
 }
 
-/// Independent of the length of the final name, because file names have at most 255 bytes.
+/// Short, because file names have at most 255 bytes.
 std::string temporary_name(const fs::path& final_path) {
     static std::atomic<int> made = 0;
     constexpr std::size_t longest_extension = 16;
@@ -85,7 +84,7 @@ std::string temporary_name(const fs::path& final_path) {
            std::string(temporary_mark) + (extension.size() <= longest_extension ? extension : "");
 }
 
-/// Whether a file name belongs to a temporary file of a process that has ended.
+/// Whether a file name is that of a temporary file of an ended process.
 bool is_stale(std::string_view name, std::string_view prefix) {
     if (!name.starts_with(prefix) || name.find(temporary_mark) == std::string_view::npos) return false;
     pid_t process = 0;
@@ -95,7 +94,7 @@ bool is_stale(std::string_view name, std::string_view prefix) {
            ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Removes temporary files of killed processes of this host from a folder, where permitted.
+/// Removes temporary files of killed processes on this host, where permitted.
 void remove_stale_files(const fs::path& folder) {
     const std::string prefix = temporary_prefix();
     std::error_code ignored;

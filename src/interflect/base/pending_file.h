@@ -4,15 +4,15 @@
 
 namespace interflect::inline detail {
 
-/// An output file that appears under its name only when complete: written to a temporary file, then renamed. Create it
-/// before long work begins, to report an unwritable path at once. A symbolic link is kept; its target is replaced.
-/// Devices, pipes and sockets are never replaced; the output is copied into them. The path '-' is standard output.
+/// An output file that appears under its name only when complete: a temporary file is renamed. Create it before long
+/// work, to report an unwritable path at once. The target of a symbolic link is replaced, not the link. Devices, pipes
+/// and sockets are not replaced; the output is copied into them. The path '-' is standard output.
 ///
-/// A killed process leaves its temporary file, .interflect-HOST-PID-N.part.EXTENSION. The next PendingFile on the same
-/// host and in the same folder removes it.
+/// A killed process leaves a temporary file, .interflect-HOST-PID-N.part.EXTENSION, which the next PendingFile in the
+/// folder on the same host removes.
 class PendingFile {
   public:
-    /// Checks that the temporary file can be created, and removes it again.
+    /// Checks that the temporary file can be created.
     /// @throws InputError if `final_path` is a folder, its folder is missing, or it cannot be written.
     explicit PendingFile(std::filesystem::path final_path);
     /// Removes the temporary file unless commit() was completed.
@@ -23,10 +23,9 @@ class PendingFile {
     PendingFile& operator=(PendingFile&&) = delete;
 
     const std::filesystem::path& final_path() const { return final_path_; }
-    /// Path to write to. Same extension as final_path(), same folder as the file to be replaced.
+    /// Path to write to: same extension as final_path(), same folder as the file to be replaced.
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
-    /// Renames the finished temporary file to its final name, replacing any existing file, or copies it into a device.
-    /// @throws std::runtime_error
+    /// Renames the temporary file, replacing any existing file, or copies it into a device. @throws std::runtime_error
     void commit();
 
   private:

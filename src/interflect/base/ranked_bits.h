@@ -7,8 +7,8 @@
 
 namespace interflect::inline detail {
 
-/// A set of integers below a bound with constant-time rank: the index of each member in a table without entries for the
-/// others. 2 bits for each integer below the bound.
+/// A set of integers below a bound with constant-time rank, which serves as index into a compact table. 2 bits per
+/// integer below the bound.
 class RankedBits {
   public:
     RankedBits() = default;  ///< The empty set.

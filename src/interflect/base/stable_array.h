@@ -11,8 +11,8 @@
 
 namespace interflect::inline detail {
 
-/// An array of `capacity` zeros that never moves. Address space is reserved at once; memory is allocated page by page
-/// on first access. Threads may use new entries while others read old ones.
+/// An array of `capacity` zeros that never moves, so threads may use new entries while others read old ones. Address
+/// space is reserved at once; memory is allocated by page on first access.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);

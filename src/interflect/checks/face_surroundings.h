@@ -15,7 +15,7 @@ struct Surroundings {
     float escaped = 0;  ///< Left the scene.
 };
 
-/// Surroundings of faces and lamps, sampled with rays in cosine-distributed directions.
+/// Samples surroundings of faces and lamps with cosine-distributed rays.
 class FaceSurroundings {
   public:
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
@@ -23,7 +23,7 @@ class FaceSurroundings {
     /// Traces 64 rays.
     Surroundings look(std::uint32_t patch, Side side) const;
     /// Whether light from this source, reflected eight times independent of reflectance, stays within a tenth of the
-    /// scene's size and within five times the lamp's size or 0.5 m. Traces 64 paths, which pass through glass.
+    /// scene's size and within five times the lamp's size or 0.5 m. Traces 64 paths through glass.
     bool is_enclosed(std::uint32_t patch) const;
     bool is_enclosed(const V3f& position) const;
 

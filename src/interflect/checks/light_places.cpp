@@ -21,15 +21,15 @@ constexpr std::size_t most_lights = 1024, rays_per_part = 4,
                       rays_per_light = rays_per_part * Emission::parts_per_emitter;
 constexpr std::uint64_t seed_of_light = 31;
 
-/// Minimum gap between a luminaire and a surface [m]; in scenes smaller than 2 m, as a fraction of the diagonal. A
-/// closer luminaire loses light to the surface.
+/// Minimum gap between luminaire and surface [m], or relative to the diagonal of scenes smaller than 2 m. A closer
+/// surface takes light meant for the room.
 constexpr float least_gap = 0.02f, least_gap_relative = 0.01f;
 
-/// Surfaces count as close up to this multiple of the gap along a ray, so lamp shades do not.
+/// Multiple of the gap along a ray within which surfaces are close; excludes lamp shades.
 constexpr float most_oblique = 5;
 
 /// Measured light starts this fraction of the scene's largest coordinate before its opening (Emission), where it may
-/// miss a ceiling just below. The checks start at an eighth of that: 16 roundings of a coordinate.
+/// miss a ceiling just below. The checks start at an eighth: 16 roundings.
 constexpr float start_offset = 0x1p-17f, checked_offset = 0x1p-20f;
 
 bool is_local(const Luminaire& luminaire) {
@@ -37,7 +37,7 @@ bool is_local(const Luminaire& luminaire) {
            std::holds_alternative<MeasuredLight>(luminaire.kind);
 }
 
-/// Position and direction of a luminaire; direction 0 for a point light.
+/// Direction is 0 for a point light.
 struct Pose {
     V3f position, direction{0, 0, 0};
 };
@@ -49,7 +49,7 @@ Pose pose_of(const Luminaire& luminaire) {
     return {measured.position, measured.direction.normalized()};
 }
 
-/// At most `most_lights` luminaires in a scene with one face: a triangle with the same bounding box.
+/// At most `most_lights` luminaires, and a triangle with the bounding box of the scene.
 Scene sample_of_lights(const Scene& scene) {
     Imath::Box3f box;
     for (const Patch& patch : scene.patches)
@@ -77,7 +77,7 @@ struct Outcome {
     std::size_t escaped = 0, close = 0;
 };
 
-/// An Outcome for each luminaire of the sample. Surfaces are close by the distance of their plane.
+/// Surfaces are close by the distance of their plane.
 std::vector<Outcome> outcomes(const Scene& scene, const Scene& sample, const SightLines& lines, float close_distance) {
     const Emission emission(sample);
     const float back = (start_offset - checked_offset) * reach_of(sample);

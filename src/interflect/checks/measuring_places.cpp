@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
 
-/// Whether the reversed ray is blocked, which means that the ray has passed the back of a one-sided face.
+/// Whether the reversed ray is blocked: the ray has passed the back of a one-sided face.
 bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray, const Hit& hit) {
     constexpr float rounding = 1e-4f, offsets = 8;
     const float offset = ray_caster.ray_offset(hit.patch);
@@ -24,7 +24,7 @@ bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray,
     return back.patch != none && back.distance < hit.distance * (1 - rounding) - offsets * offset;
 }
 
-/// Distance of the first sample from a surface on which the point lies.
+/// Distance of rays from a surface on which the point lies.
 float offset_of_points(const Scene& scene) {
     constexpr float relative_offset = 0x1p-17f;  // as in measure_irradiance()
     float reach = 0;

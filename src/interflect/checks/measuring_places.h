@@ -14,10 +14,10 @@ namespace interflect::inline detail {
 enum class PointFault {
     none,
     outside,  ///< A quarter of the directions on its front side leave a closed room.
-    behind    ///< Most rays from it first pass the back of a one-sided face: the point is inside a solid.
+    behind    ///< Inside a solid: most rays from it first pass the back of a one-sided face.
 };
 
-/// Fault of each point. Traces 32 rays per point and back; of more than 2048 points it checks 2048, evenly spaced.
+/// Traces 32 rays per point and back, for at most 2048 points, evenly spaced.
 std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
                                      std::span<const MeasuringPoint> points);
 

@@ -51,7 +51,7 @@ bool is_bare_mesh(const Scene& scene) {
     return std::find(std::begin(bare), std::end(bare), extension) != std::end(bare);
 }
 
-/// Whether 99 of 100 coordinates are integers, for 8 vertices or more. Meshes in metres have fractions.
+/// Whether 99 of 100 coordinates of at least 8 vertices are integers. Meshes in metres have fractions.
 bool has_integer_coordinates(const Scene& scene) {
     constexpr std::size_t least_vertices = 8;
     if (scene.vertices.size() < least_vertices) return false;

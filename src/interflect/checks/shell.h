@@ -4,12 +4,12 @@
 
 namespace interflect::inline detail {
 
-/// Enclosed space of a scene, estimated with random lines from the sphere around it.
+/// Enclosed space of a scene, sampled with random lines from outside.
 struct Shell {
     /// Whether nine of ten faces visible from outside have an inner side from which at most 2 of 32 rays leave the
     /// scene. True for a room with a window, false for a room with a missing wall.
     bool is_closed = false;
-    /// Whether the shell is closed and seen from inside: a view is inside, or the scene has no view and is 2 m or more
+    /// Whether the shell is closed and seen from inside: a view is inside, or the scene has no view and is at least 2 m
     /// in each direction. Closed solids seen from outside are no rooms.
     bool is_room = false;
     float mean_free_path = 0;  ///< Mean length of rays between inner sides [m]; 0 unless closed.

@@ -6,22 +6,20 @@
 
 namespace interflect::inline detail {
 
-/// Straight lines through a scene that pass through panes. Random directions depend on a key and an index alone.
+/// Straight lines through a scene that pass through panes. Random directions depend on key and index alone.
 class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// First hit that is not a pane, with its distance from the start of the ray.
+    /// First hit that is not a pane, with its distance from the start.
     Hit first_surface(const Ray& ray) const;
 
-    /// Results of the rays from one point.
     struct Outlook {
         int escaped = 0, met = 0;  ///< Rays that left the scene; rays that hit a surface.
         float distance = 0;        ///< Sum over the rays that hit a surface [m].
     };
     static constexpr int rays_per_point = 32;
-    /// Traces cosine-distributed rays from a point just before a surface. Stops once more than `most_escaped` have
-    /// escaped.
+    /// Traces cosine-distributed rays from a point just before a surface, until more than `most_escaped` have escaped.
     Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
     /// Whether at least a quarter of all directions escape. True outside a closed scene (Shell), false inside.
     bool is_open(const V3f& x) const;

@@ -18,16 +18,14 @@ inline constexpr std::size_t elements_at_once = 1 << 13;
 
 /// Quadtrees of elements over the patches of a scene. Element i < patch_count() is the whole patch i; children follow
 /// their parents in blocks of four. 32-bit indices, 11 bytes an element: data for tree descent per element, other data
-/// per block. Threads may subdivide while others traverse the trees; put_in_order() then gives new elements their final
-/// numbers.
+/// per block. Threads may subdivide while others traverse; put_in_order() then assigns final numbers.
 class ElementForest {
   public:
     /// At the finest level an element's side is 2^-15 of its patch's side.
     static constexpr int deepest_level = 15;
 
     /// Creates one element per patch.
-    /// @param capacity  Maximum number of elements, >= the number of patches and < 2^32 - 2; reserves address space for
-    ///                  them.
+    /// @param capacity  Maximum number of elements, >= the number of patches and < 2^32 - 2; reserves address space.
     /// @throws InputError for another capacity or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
 
@@ -44,7 +42,7 @@ class ElementForest {
     std::uint32_t patch(std::uint32_t e) const { return is_root(e) ? e : block_of(e).patch; }
     std::uint32_t parent(std::uint32_t e) const {
         return is_root(e) ? none : block_of(e).parent;
-    }                                                             ///< none for a root.
+    }                                                             ///< Roots have no parent.
     float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
     int level(std::uint32_t e) const;                             ///< 0 for a root.
     /// Path from the root: 1, then two binary digits per level, the number of the child.
@@ -53,16 +51,14 @@ class ElementForest {
     }
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
-    /// Prefetches an element's area and children.
     void prefetch(std::uint32_t e) const { __builtin_prefetch(&nodes_[e]); }
-    /// Prefetches a patch's geometry.
     void prefetch_geometry(std::uint32_t patch) const {
         const char* geometry = reinterpret_cast<const char*>(&geometry_[patch]);
         __builtin_prefetch(geometry);
         __builtin_prefetch(geometry + 64);
     }
 
-    /// First of the four children; none for a leaf.
+    /// First of the four children.
     std::uint32_t first_child(std::uint32_t e) const {
         const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
@@ -80,20 +76,20 @@ class ElementForest {
     /// @return  The first child, or none if the forest is full or `e` is at the deepest level.
     std::uint32_t subdivide(std::uint32_t e);
 
-    /// Renumbers the elements from `first` on, which threads made in any order, by level, patch and path. No thread may
-    /// use the forest during the call.
-    /// @return  The old number of each new element first + i.
+    /// Renumbers the elements from `first` on by level, patch and path, independent of threads. No thread may use the
+    /// forest during the call.
+    /// @return  The old number of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Parents of all blocks of siblings, in the order of the blocks: the input of rebuild().
+    /// Parents of all blocks of siblings in order: the input of rebuild().
     std::vector<std::uint32_t> subdivided() const;
     /// Recreates the trees of another forest of the same scene with the same numbers. Call on a forest without
     /// children.
     /// @throws InputError if an element cannot be subdivided in this order.
     void rebuild(std::span<const std::uint32_t> parents);
 
-    /// Removes the last four siblings, which must be leaves; their parent becomes a leaf. The forest must be in order,
-    /// and no thread may use it during the call. @return  The parent.
+    /// Removes the last four siblings, which must be leaves, and returns their parent. The forest must be in order, and
+    /// no thread may use it during the call.
     std::uint32_t drop_last_siblings();
 
     /// Calls body(first) for each block of siblings on all threads, parents before children. Elements made since the
@@ -105,7 +101,7 @@ class ElementForest {
     void for_siblings_from_leaves(const Body& body) const;
 
   private:
-    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are being created; none: no children
+    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are being created
 
     struct Node {
         std::uint32_t first_child;
@@ -128,7 +124,7 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     std::vector<PatchGeometry> geometry_;  // per patch
     std::uint32_t patch_count_;
-    /// First element of each generation, and the end of the last one. No element has its parent in the same generation.
+    /// First element of each generation, and the end of the last one. Parents belong to an earlier generation.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
@@ -155,15 +151,14 @@ void ElementForest::for_siblings_from_leaves(const Body& body) const {
     for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
 }
 
-/// Copies the parent's value to each new element, from index `first` on.
+/// Copies the parent's value to each element from `first` on.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());
     for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
-/// Adds each parent's value to its children, from the roots down. Values are per unit of area, so children inherit them
-/// unchanged.
+/// Adds each parent's value to its children, from the roots down. Values are per unit of area.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -172,7 +167,7 @@ void push(const ElementForest& forest, std::vector<T>& values) {
     });
 }
 
-/// Replaces the value of each inner element by the area-weighted mean of its children, from the leaves up.
+/// Sets inner elements to the area-weighted mean of their children, from the leaves up.
 template <class T>
 void pull(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {

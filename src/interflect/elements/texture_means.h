@@ -9,9 +9,9 @@
 
 namespace interflect::inline detail {
 
-/// Area-weighted means of a scene's textures over cells of its patches. Where texture coordinates are linear over the
-/// patch (triangles, and undistorted images on quadrilaterals), a cell's mean is the area-weighted mean of its
-/// children, to rounding. Elsewhere a cell is approximated by 32 triangles. Depends on the patch and the cell alone.
+/// Area-weighted means of a scene's textures over cells of its patches. Where texture coordinates are linear
+/// (triangles, undistorted images on quadrilaterals), a cell's mean is that of its children, to rounding. Elsewhere a
+/// cell is approximated by 32 triangles. Depends on the patch and the cell alone.
 class TextureMeans {
   public:
     /// @param scene  Without faults; must outlive this object.

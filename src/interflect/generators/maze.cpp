@@ -22,7 +22,7 @@ using namespace building;
 
 constexpr float one_luminaire = 100;  // pitch beyond the size of any room [m]
 
-/// Furniture of a room in order of placement: large pieces and those with many patches first.
+/// In order of placement: large pieces and those with many patches first.
 const std::array wall_furniture{&bookcase, &bookcase, &workstation, &workstation, &low_bookcase, &cabinet,
                                 &radiator, &picture,  &picture,     &cartons,     &waste_bin};
 
@@ -33,7 +33,7 @@ void require_valid(const MazeOptions& options) {
         throw InputError(fmt::format("the share of extra doors must be 0 to 1, not {}", options.extra_doors));
 }
 
-/// Each room has its own sequence, so its contents do not depend on other rooms.
+/// Each room has its own sequence, independent of other rooms.
 RandomSequence sequence_of(const MazeOptions& options, std::uint32_t room) {
     return RandomSequence(mix(options.seed, std::uint64_t{room} + 1));
 }

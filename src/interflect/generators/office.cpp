@@ -41,7 +41,7 @@ FloorPlan plan_office(const OfficeOptions& options) {
                             .seed = options.seed});
 }
 
-/// Adds rows of desks within the aisles, for workers facing south.
+/// Rows of desks within the aisles, for workers facing south.
 void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnisher) {
     for (std::uint32_t row = 0; row < options.desk_rows; ++row)
         for (std::uint32_t desk = 0; desk < options.desks_per_row; ++desk)
@@ -51,7 +51,7 @@ void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnis
                                                     0));
 }
 
-/// Furniture along the walls of a room with this number of rows of desks.
+/// Furniture along the walls for this number of rows.
 std::vector<const Furniture*> furniture_along_walls(std::uint32_t desk_rows) {
     std::vector<const Furniture*> pieces;
     for (std::uint32_t row = 0; row < desk_rows; ++row) {

@@ -15,10 +15,9 @@ struct OfficeOptions {
     std::uint64_t seed = 1;           ///< Equal options give equal scenes.
 };
 
-/// Creates an office building of one floor. Its equal rooms are connected by doorways and contain rows of desks, all
-/// with the same orientation, below a grid of luminaires. Bookcases, cabinets, radiators and pictures line the walls.
-/// Other properties are those of make_maze(): closed, one-sided, about the origin, with the same names of objects and
-/// views. About 230 patches a desk and 650 a bookcase; one bookcase for every two rows.
+/// Creates an office building of one floor: equal rooms, connected by doorways, with parallel rows of desks below a
+/// grid of luminaires, and bookcases, cabinets, radiators and pictures along the walls. Other properties as in
+/// make_maze(). About 230 patches a desk and 650 a bookcase; one bookcase for every two rows.
 ///
 /// Time and memory are linear in the desks. @throws InputError if an option is out of its range.
 Scene make_office(const OfficeOptions& options);

@@ -4,7 +4,7 @@
 
 namespace interflect::inline detail {
 
-// Images for generated scenes, of 8-bit sRGB values, which a .png preserves exactly.
+// Generated images of 8-bit sRGB values, which a .png preserves.
 
 /// Two by two tiles of two tones, with joints.
 Texture make_tiles();
@@ -16,8 +16,8 @@ Texture make_louvres();
 /// Adds a texture and returns its index.
 std::uint32_t add_texture(Scene& scene, Texture texture);
 
-/// Gives a quadrilateral its own vertices with texture coordinates. The image covers it once, or repeats in squares of
-/// side `repeat` [m] if that is above 0. The bottom of the image is at the lowest edge.
+/// Gives a quadrilateral its own vertices with texture coordinates. The image covers it once, or in squares of side
+/// `repeat` [m] if that is above 0. Its bottom is at the lowest edge.
 void lay_image(Scene& scene, std::uint32_t patch, float repeat = 0);
 
 }  // namespace interflect::inline detail

@@ -32,9 +32,7 @@ class ContactFinder {
 
     /// Maximum distance of a touching facet [m].
     float reach() const;
-    /// Returns whether the facet's plane is within reach() of the box.
     bool plane_meets(const Imath::Box3f& box) const;
-    /// Finds the segments in which `other` meets the facet.
     void add_contacts_with(const Facet& other);
     /// Segments to cut along: those in connected components with an extent of at least `least_extent`.
     std::vector<PlanarSegment> segments(double least_extent);
@@ -42,8 +40,7 @@ class ContactFinder {
   private:
     /// Removes duplicates, and borders between coplanar faces that hide the facet on both sides.
     std::vector<PlanarSegment> distinct_segments();
-    /// Lowest segment index of each segment's connected component. Segments are connected if they share an end, within
-    /// the tolerance.
+    /// Lowest segment index of each connected component. Segments with a common end are connected.
     std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
@@ -55,11 +52,10 @@ class ContactFinder {
         return (s.a - t.a).length() <= facet_.detail() && (s.b - t.b).length() <= facet_.detail();
     }
 
-    /// @param outline  Side of the segment from a to b on which a coplanar face lies, or 0.
+    /// @param outline  Side of a coplanar face, as in FoundSegment.
     void add(const Imath::V3d& a, const Imath::V3d& b, int outline);
     void add_outline(const Facet& other);
-    /// Adds the intersection of the other facet with this facet's plane. Its ends are corners in the plane, or points
-    /// where edges cross it.
+    /// Adds the intersection of the other facet with this facet's plane.
     void add_section(const Facet& other, const std::array<double, 4>& height, double touching);
 
     const Scene& scene_;

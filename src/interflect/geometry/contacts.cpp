@@ -29,7 +29,7 @@ constexpr std::size_t facets_at_once = 256;
 
 /// Pieces of a facet; empty if it is not cut.
 struct CutFacet {
-    std::vector<PlanarPolygon> patches;  ///< With three or four corners.
+    std::vector<PlanarPolygon> patches;
     std::vector<PlanarSegment> contacts;
     bool reached_limit = false;
 };
@@ -72,7 +72,7 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     return cut;
 }
 
-/// Writes the patches of whole and cut faces to `result`.
+/// Writes whole and cut faces to `result`.
 class PieceWriter {
   public:
     /// @param surfaces  Number of each patch's flat surface, or none.
@@ -114,13 +114,13 @@ class PieceWriter {
     VertexWeld weld_;
 };
 
-/// Facets of one face, and the number of patches into which it is cut.
+/// Facets of one face, and its number of pieces.
 struct FacetRange {
     std::size_t first, last;
     std::uint64_t patches = 0;  ///< 0: not cut.
 };
 
-/// Decides which faces are cut, within the total limit of patches, and warns about limits that were reached.
+/// Decides which faces are cut within the total limit of patches. Warns about limits.
 std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
                                const ContactOptions& options, Warnings& warnings) {
     std::vector<FacetRange> faces;
@@ -153,7 +153,7 @@ std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& fac
     return faces;
 }
 
-/// Surface number of each patch whose flat surface has a cut face or already had a number; none for other patches.
+/// Surface number of each patch whose flat surface has a cut face or already had a number; otherwise none.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);

@@ -18,9 +18,9 @@ using Imath::V3d;
 
 /// Smaller fractions of the patch count as rounding error.
 constexpr double negligible_share = 1e-12;
-/// Up to this number, the other polygons are subtracted one by one; beyond it, the patch is halved first.
+/// Maximum number of polygons to subtract one by one; for more, the patch is halved first.
 constexpr std::size_t cut_at_once = 4;
-/// Limit of halvings, after which all others are subtracted one by one: they overlap in nearly one place.
+/// Limit of halvings: the others overlap in nearly one place and are then subtracted one by one.
 constexpr int most_halvings = 24;
 
 double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }
@@ -45,7 +45,7 @@ PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
     return polygon;
 }
 
-/// Area of a polygon outside all others. @param negligible  [m^2]
+/// @param negligible  [m^2]
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
                     int halvings) {
     const double area = area_of(polygon);

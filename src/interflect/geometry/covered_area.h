@@ -7,9 +7,8 @@
 
 namespace interflect::inline detail {
 
-/// Fraction of a patch's area, in [0, 1], outside the polygons of `others`: faces in (nearly) the same plane, which may
-/// overlap each other.
-/// @param tolerance  Slivers of this width [m] along the patch's edges count as covered, or as uncovered if nothing
+/// Fraction of a patch's area, in [0, 1], outside the (nearly) coplanar faces `others`, which may overlap.
+/// @param tolerance  Width of slivers along the patch's edges [m]. They count as covered, or as uncovered if nothing
 ///                   next to them is covered.
 /// @return           Exactly 0 or 1 if only such slivers make the difference. About O(k log k) for k others.
 float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<const std::uint32_t> others,

@@ -13,10 +13,10 @@ namespace {
 
 using Imath::V2d;
 
-/// Number of segments of a piece that are considered for the next cut.
+/// Segments of a piece considered for the next cut.
 constexpr std::size_t candidates_per_cut = 24;
 
-/// A line through two points. height() is the signed distance, positive on the left.
+/// height() is the signed distance, positive on the left.
 struct Line {
     V2d origin, direction;
 
@@ -25,7 +25,7 @@ struct Line {
     double along(const V2d& x) const { return direction.dot(x - origin); }
 };
 
-/// Side of a line: -1 right, 0 on it within the tolerance, 1 left.
+/// -1 right, 0 on the line within the tolerance, 1 left.
 int side_of(double height, double tolerance) { return (height > tolerance) - (height < -tolerance); }
 
 struct Piece {
@@ -33,12 +33,12 @@ struct Piece {
     std::vector<PlanarSegment> segments;
 };
 
-/// Orders candidates of equal cost by geometry, independent of their order in memory.
+/// Makes the choice among equal candidates independent of their order in memory.
 auto geometric_order(const PlanarSegment& s) {
     return std::make_tuple(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), s.a.x + s.b.x, s.a.y + s.b.y);
 }
 
-/// The longest segments of a piece, in an order that depends only on the segments.
+/// The longest segments, in an order that depends on geometry alone.
 std::vector<PlanarSegment> candidates(const std::vector<PlanarSegment>& segments) {
     std::vector<PlanarSegment> longest = segments;
     const std::size_t count = std::min(candidates_per_cut, segments.size());
@@ -51,7 +51,6 @@ std::vector<PlanarSegment> candidates(const std::vector<PlanarSegment>& segments
     return longest;
 }
 
-/// Length of the part of the line inside the polygon.
 double chord_length(const PlanarPolygon& polygon, const Line& line) {
     double from = std::numeric_limits<double>::infinity(), to = -from;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -65,8 +64,8 @@ double chord_length(const PlanarPolygon& polygon, const Line& line) {
     return std::max(0.0, to - from);
 }
 
-/// Cost of a cut: the number of divided segments, which then need a cut on each side; the length of the cut along which
-/// nothing touches the face; and, with a smaller weight, the imbalance of the halves.
+/// Cost of a cut: number of divided segments, which then need a cut on each side; length of the cut without contact;
+/// and, with a smaller weight, imbalance of the halves.
 double cost_of(const Piece& piece, const Line& line, double tolerance) {
     constexpr double of_division = 2, of_free_length = 1, of_imbalance = 0.5;
     std::size_t divided = 0;
@@ -95,8 +94,7 @@ Line best_cut(const Piece& piece, double tolerance) {
     return Line(choice[best]);
 }
 
-/// Parts of a polygon on both sides of a line, and the edge between them. Corners within the tolerance of the line
-/// belong to both parts.
+/// Parts of a polygon on both sides of a line, with the edge between them. Corners within the tolerance belong to both.
 struct Halves {
     PlanarPolygon left, right;
     PlanarSegment chord;
@@ -158,7 +156,6 @@ void distribute(const std::vector<PlanarSegment>& segments, const Line& line, co
     }
 }
 
-/// Compactness of a polygon: area over squared perimeter.
 double compactness(const PlanarPolygon& polygon) {
     const double border = perimeter(polygon);
     return doubled_area(polygon) / (border * border);
@@ -173,7 +170,7 @@ PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size
     }
 }
 
-/// Divides a quadrilateral across if it is too long for its width.
+/// Divides a quadrilateral across if it is too long.
 void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
     constexpr double most_parts = 16;
     const auto edge = [&](std::size_t i) {

@@ -15,20 +15,18 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Minimum cosine between the normals of two coplanar faces. It excludes faces that stand upright and are lower than
-/// the tolerance. Generous, because the normals of small faces are noisy.
+/// Minimum cosine between the normals of coplanar faces. Excludes upright faces lower than the tolerance. Generous,
+/// because the normals of small faces are noisy.
 constexpr double least_facing = 0.7;
 
-/// Number of faces per task.
 constexpr std::size_t search_grain = 1024;
 
-/// A face of three or four corners, before or after clipping, which adds up to four corners.
+/// A face of three or four corners; clipping adds up to four.
 struct ClippedFace {
     std::array<V3d, 8> corners;
     std::size_t count = 0;
 
     void add(const V3d& corner) { corners[count++] = corner; }
-    /// Corners of an unclipped face.
     std::span<const V3d> face_corners() const { return {corners.data(), count}; }
 };
 
@@ -39,7 +37,7 @@ ClippedFace polygon_of(const Scene& scene, const Patch& patch) {
     return polygon;
 }
 
-/// {x: normal . x >= offset} with a unit normal; offset - normal . x is the distance of x outside.
+/// {x: normal . x >= offset}, with a unit normal.
 struct HalfSpace {
     V3d normal;
     double offset = 0;
@@ -63,8 +61,7 @@ ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
     return result;
 }
 
-/// The larger face of possible pairs: its plane, and the half-spaces through its edges that bound the prism over its
-/// polygon.
+/// The larger face of possible pairs: its plane, and half-spaces that bound the prism over its polygon.
 class LargerFace {
   public:
     LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
@@ -120,7 +117,7 @@ class LargerFace {
     std::array<HalfSpace, 4> inside_;
 };
 
-/// Tree of face boxes, enlarged by each face's tolerance.
+/// Face boxes are enlarged by the face's tolerance.
 std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
                                  std::span<const float> tolerance) {
     std::vector<Boxed> tree;

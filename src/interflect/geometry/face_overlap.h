@@ -9,21 +9,20 @@
 
 namespace interflect::inline detail {
 
-/// Two overlapping faces. Each is identified by its patch; a two-sided face by its first patch.
+/// Two overlapping faces, each identified by its (first) patch.
 struct FacePair {
     std::uint32_t larger, smaller;  ///< By area; of equal faces the later one counts as larger.
 };
 
-/// Distance within which two faces are at the same place [m]: the smaller face's tolerance, since the smaller polygon
-/// is compared. The larger face contributes only an eighth of its tolerance, the rounding of its corners, which moves
-/// its plane.
+/// Distance within which two faces coincide [m]: the tolerance of the smaller face. The larger face contributes only
+/// the rounding of its corners, an eighth of its tolerance, which moves its plane.
 inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pair) {
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
 /// Finds all pairs of faces that overlap in (nearly) one plane: the smaller polygon reaches more than pair_tolerance()
-/// into the larger one, measured in the larger one's plane, and the common part lies within that distance of the plane.
-/// Skips pairs of one-sided faces with opposite normals, because they do not intercept the same rays.
+/// into the larger one, and the common part is within that distance of the larger one's plane. Skips pairs of one-sided
+/// faces with opposite normals, which intercept different rays.
 /// @param ignored    Faces to ignore; size scene.patches.size().
 /// @param tolerance  Tolerance of each face [m], > 0; size scene.patches.size().
 /// @return           In order of the larger face. O(n log n + pairs) time for n faces of bounded local density.

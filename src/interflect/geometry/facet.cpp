@@ -13,10 +13,10 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum detail as a fraction of a face's diameter: 40 um of 10 m. Shorter pieces are not cut off.
+/// Minimum detail relative to a face's diameter: 40 um of 10 m.
 constexpr double least_detail = 4e-6;
 
-/// Four roundings of a coordinate in single precision, relative to the coordinate.
+/// Four roundings of a coordinate in single precision, relative to it.
 constexpr double relative_rounding = 0x1p-22;
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace interflect::inline detail {
 
-/// A planar convex polygon of three or four corners: a face, or one of the two triangles of a warped quadrilateral.
+/// A planar convex polygon of three or four corners: a face, or half of a warped quadrilateral.
 struct Facet {
     std::uint32_t face = none;  ///< Its patch; the front of a two-sided face.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
@@ -27,7 +27,7 @@ struct Facet {
 
     double area() const { return area_; }  ///< [m^2]
 
-    /// Signed distance from the facet's plane [m].
+    /// Signed [m].
     double height(const Imath::V3d& x) const { return normal.dot(x - corners[0]); }
     /// Shorter lengths are ignored [m].
     double detail() const;

@@ -16,17 +16,16 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Cosine of the angle (0.8 degrees) up to which neighbours count as coplanar: above the rounding of small patches'
-/// normals, below modelled creases.
+/// Maximum angle (0.8 degrees) between coplanar neighbours, as cosine: above the rounding of small patches' normals,
+/// below modelled creases.
 constexpr float same_plane_cosine = 0.9999f;
 
 constexpr std::size_t patches_at_once = 4096;
 
-/// Maximum number of preceding faces at an edge with which a face is compared. Keeps the cost linear for any file.
+/// Number of preceding faces at an edge to compare with; bounds the cost for any file.
 constexpr std::size_t most_faces_at_edge = 8;
 
-/// Surfaces whose areas differ by less than this fraction count as equal: the same surface divided or rounded
-/// differently.
+/// Relative difference of equal areas: the same surface divided or rounded differently.
 constexpr double equal_areas = 1e-4;
 
 struct Edge {
@@ -40,7 +39,7 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
 
 bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
 
-/// Maps each vertex to a common index for its position, ignoring differences in coordinates.
+/// Common vertex index per position, ignoring other coordinates.
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
     std::iota(joined.begin(), joined.end(), 0u);
@@ -51,7 +50,7 @@ std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     return joined;
 }
 
-/// Edges of all faces, sorted by vertices, then by patch.
+/// Edges of all faces, by vertices, then by patch.
 std::vector<Edge> sorted_edges(const Scene& scene) {
     const std::vector<std::uint32_t> joined = joined_vertices(scene);
     std::vector<Edge> edges;
@@ -68,7 +67,7 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Position of each surface in the order of areas, indexed by its representative. @param area  Area of each surface.
+/// Position of each surface in the order of areas, and the area itself, are indexed by representative.
 std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
                                              const std::vector<double>& area) {
     std::vector<std::uint32_t> order;

@@ -7,12 +7,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Relative twist below which a quadrilateral counts as a parallelogram: rounding error.
+/// Relative rounding of the twist of a parallelogram.
 constexpr float parallelogram_tolerance = 1e-5f;
 
 /// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a and a + b are >= 0.
 float warp_linear(float a, float b, float uniform) {
-    // Solves a x + b x^2 / 2 = uniform (a + b / 2) in a form without cancellation for small b.
+    // Solves a x + b x^2 / 2 = uniform (a + b / 2) without cancellation for small b.
     const float target = uniform * (a + 0.5f * b);
     const float root = std::sqrt(std::max(0.0f, a * a + 2 * b * target));
     return a + root > 0 ? std::clamp(2 * target / (a + root), 0.0f, 1.0f) : uniform;
@@ -64,8 +64,7 @@ Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner
         else
             local = {a - 0.5f * b, 0.5f * b};
     } else if (!parallelogram_) {
-        // Samples the marginal density of u (the Jacobian at the middle of v), then the density of v given u. Both are
-        // linear.
+        // Samples the marginal density of u (the Jacobian at the middle of v), then v given u. Both are linear.
         const auto density = [&](float s, float t) {
             return std::max(0.0f, jacobian({corner.u + size * s, corner.v + size * t}));
         };
@@ -79,8 +78,8 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
     const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
     if (!parallelogram_) {
-        // d = u edge_u + v edge_v + u v twist in the plane: a quadratic equation for v. The root that stays finite for
-        // a vanishing twist is the one within a convex quadrilateral.
+        // d = u edge_u + v edge_v + u v twist in the plane: a quadratic equation for v. The root within a convex
+        // quadrilateral stays finite for a vanishing twist.
         using Imath::V3d;
         const V3d n(normal_), h(d), e(shape_.edge_u), f(shape_.edge_v), g(shape_.twist);
         const auto cross = [&](const V3d& a, const V3d& b) { return n.dot(a.cross(b)); };

@@ -35,15 +35,15 @@ class PatchGeometry {
     const Shape& shape() const { return shape_; }
     V3f point(Parameters p) const { return shape_.point(p); }
 
-    /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the area of the
-    /// patch, or over the part with parameters corner + size (s, t), where (s, t) covers the patch's parameter domain.
+    /// Maps a uniform point (a, b) of the unit square to parameters of points uniform over the patch's area, or over
+    /// its part corner + size (s, t), with (s, t) in the patch's parameter domain.
     Parameters uniform_parameters(float a, float b, Parameters corner = {}, float size = 1) const;
 
     /// Parameters of a point on (or close to) the patch: the inverse of point(), clamped to the patch.
     Parameters parameters_of(const V3f& x) const;
 
     /// |dx/du x dx/dv| at p [m^2]. Constant, 2 area(), on a triangle; linear in u and v on a planar quadrilateral. The
-    /// area of a cell is therefore the value at its centre times the cell's size in parameters.
+    /// area of a cell is this value at its centre times the cell's size.
     float jacobian(Parameters p) const;
 
   private:

@@ -17,7 +17,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Number of pieces along the first and the last edge of a patch; equal for a triangle.
+/// Pieces along the first and the last edge of a patch; equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
@@ -38,7 +38,7 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
 
-/// @param vertex  Returns the vertex at grid position (i, j): i along the first edge, j along the last.
+/// @param vertex  Vertex at grid position (i, j): i along the first edge, j along the last.
 template <class Vertex, class AddPiece>
 void split_quadrilateral(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
     for (std::uint64_t j = 0; j < n.v; ++j)

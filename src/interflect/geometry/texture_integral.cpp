@@ -13,12 +13,12 @@ constexpr std::int64_t texels_per_sum = 8;
 /// Maximum number of lines of texel centres that a border may cross: 0.1 s.
 constexpr double most_crossings = 1 << 20;
 
-/// Minimum height of a triangle in texels. Triangles without area are widened to it; their mean barely changes.
+/// Minimum height of a triangle in texels, which barely changes the mean. Avoids a division by a zero area.
 constexpr double least_height = 1e-3;
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
 
-/// The remainder in [0, n).
+/// Remainder in [0, n).
 std::int64_t wrapped(std::int64_t i, std::int64_t n) {
     const std::int64_t remainder = i % n;
     return remainder < 0 ? remainder + n : remainder;
@@ -26,7 +26,7 @@ std::int64_t wrapped(std::int64_t i, std::int64_t n) {
 
 double doubled_area(const std::array<Imath::V2d, 3>& x) { return (x[1] - x[0]).cross(x[2] - x[0]); }
 
-/// Moves the corner opposite to the longest edge away from that edge if it is too close.
+/// Moves the corner opposite to the longest edge away from it if it is too close.
 void widen(std::array<Imath::V2d, 3>& x) {
     std::size_t longest = 0;
     const auto edge = [&](std::size_t i) { return x[(i + 1) % 3] - x[i]; };

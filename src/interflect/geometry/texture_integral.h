@@ -11,17 +11,16 @@
 
 namespace interflect::inline detail {
 
-/// Exact means of a texture over triangles, with the filtering and repetition of texel_at(). By Green's theorem the
-/// integral of f over a triangle is the integral of F dy along its border, with dF/dx = f. Between two lines of texel
-/// centres F is a cubic, which Simpson's rule integrates exactly. Memory: 3 bytes a texel.
+/// Exact means of a texture over triangles, with filtering and repetition as in texel_at(). By Green's theorem the
+/// integral of f over a triangle is that of F dy along its border, with dF/dx = f. Between lines of texel centres F is
+/// a cubic, which Simpson's rule integrates exactly. Memory: 3 bytes a texel.
 class TextureIntegral {
   public:
     /// @param texture  Without faults; must outlive this object.
     explicit TextureIntegral(const Texture& texture);
 
-    /// Mean over the triangle with these corners (texture coordinates), or over the line if the triangle has no area.
-    /// Within the range of the texels. O(texels along the border); returns the mean of the whole texture if the border
-    /// crosses more than a million texels.
+    /// Mean over a triangle in texture coordinates, or over a line if it has no area. Within the range of the texels.
+    /// O(texels along the border); above a million of them, the mean of the whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:

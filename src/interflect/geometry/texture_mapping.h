@@ -6,11 +6,10 @@
 
 namespace interflect::inline detail {
 
-/// Texture coordinates at a point of a patch, interpolated linearly on a triangle, bilinearly on a quadrilateral.
-/// @param scene  With texture coordinates.
+/// Interpolated texture coordinates at a point of a patch. @param scene  With texture coordinates.
 V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p);
 
-/// All coordinates of a new vertex at this point, interpolated in the same way.
+/// All coordinates of a new vertex at this point.
 VertexCoordinates coordinates_at(const Scene& scene, const Patch& patch, Parameters p);
 
 /// Reflectance, exitance [lm/m^2 or W/m^2] and transmittance at a point of a patch: the material's value times the

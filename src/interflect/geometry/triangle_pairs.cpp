@@ -15,12 +15,11 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum sine of the angle by which the outline must turn at each corner.
+/// Minimum sine of the turn of the outline at each corner.
 constexpr double least_turn = 0.1;
 /// Maximum deviation of texture coordinates from the linear map.
 constexpr double coordinate_tolerance = 1e-4;
 
-/// An edge of a triangle, with the corner at its start.
 struct Edge {
     std::uint64_t vertices = 0;  // the lower index in the upper half
     std::uint32_t triangle = 0;
@@ -59,8 +58,7 @@ class PairFinder {
         return length >= squared_length(triangle, k + 1) && length >= squared_length(triangle, k + 2);
     }
 
-    /// Pairs consecutive triangles. Exporters write the halves of a quadrilateral in sequence, so most pairs need no
-    /// search.
+    /// Pairs consecutive triangles. Exporters write halves in sequence, so most pairs need no search.
     void pair_neighbours_in_order() {
         for (std::uint32_t t = 0; t + 1 < faces_.size(); ++t)
             for (std::uint32_t i = 0; i < 3 && is_single(t); ++i)
@@ -86,7 +84,7 @@ class PairFinder {
                 pair(first->triangle, first->corner, other->triangle, other->corner, longest_only);
     }
 
-    /// Merges two triangles along these edges if the result is a valid quadrilateral.
+    /// Merges two triangles along these edges if the result is valid.
     void pair(std::uint32_t t, std::uint32_t i, std::uint32_t u, std::uint32_t j, bool longest_only) {
         if (!is_single(t) || !is_single(u)) return;
         if (corner(t, i) != corner(u, j + 1) || corner(t, i + 1) != corner(u, j)) return;

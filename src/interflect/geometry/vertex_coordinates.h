@@ -8,7 +8,7 @@
 
 namespace interflect::inline detail {
 
-/// Coordinates of a vertex in its material's textures and in its object's lightmap.
+/// Coordinates of a vertex in textures and in its object's lightmap.
 struct VertexCoordinates {
     std::optional<V2f> texture;  ///< As Scene::texture_coordinates. Missing values are stored, and compared, as (0, 0).
     std::optional<V2f> lightmap;  ///< As Scene::lightmap_coordinates. Missing values are stored as NaN.
@@ -20,8 +20,7 @@ struct VertexCoordinates {
 
 VertexCoordinates coordinates_of(const Scene& scene, std::uint32_t vertex);
 
-/// Weighted sum of the coordinates of several vertices. Lightmap coordinates are missing if any vertex lacks them, and
-/// are clamped to [0, 1] against rounding.
+/// Weighted sum of coordinates. Lightmap coordinates are missing if any vertex lacks them, and are clamped to [0, 1].
 /// @param weights  One per vertex; sum 1.
 VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t> vertices,
                                std::span<const float> weights);

@@ -8,14 +8,14 @@
 
 namespace interflect::inline detail {
 
-/// Merges vertices with the same position, texture and lightmap coordinates. Compares exactly in single precision, with
-/// -0 equal to 0. At most 16 bytes a vertex: a hash table of vertex indices with linear probing.
+/// Merges vertices with equal position, texture and lightmap coordinates in single precision (-0 equals 0). A hash
+/// table of vertex indices with linear probing; at most 16 bytes a vertex.
 class VertexWeld {
   public:
     /// @param scene  New vertices are appended; vertices added by others are not found.
     explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// Index of the vertex at `position`, added by add_vertex() if new. All numbers must be finite.
+    /// Index of the vertex, added by add_vertex() if new. All numbers must be finite.
     std::uint32_t vertex(const V3f& position, const VertexCoordinates& coordinates = {});
 
   private:

@@ -10,12 +10,11 @@ namespace {
 
 using Imath::V3d;
 
-/// Distance of the middle from the origin, in reaches, up to which the origin is kept.
+/// Maximum distance of the middle from an unchanged origin, in reaches.
 constexpr double near_in_reaches = 8;
-/// Distance from the middle, in reaches, beyond which faces do not count for the scene's size.
+/// Maximum distance from the middle, in reaches, of faces that define the scene's size.
 constexpr double stray_in_reaches = 64;
 
-/// Smallest value at which the cumulative weight reaches half of the total.
 double weighted_median(std::span<const double> values, std::span<const double> weights) {
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -10,14 +10,13 @@
 
 namespace interflect::inline detail {
 
-/// Bounding box of a face, as input of core_of().
+/// Bounding box of a face.
 struct FaceExtent {
-    Imath::V3d centre{0, 0, 0};  ///< Centre of the box [m].
-    double size = 0;             ///< Diagonal of the box [m]; > 0.
+    Imath::V3d centre{0, 0, 0};  ///< [m]
+    double size = 0;             ///< Diagonal [m]; > 0.
 };
 
-/// Keeps every k-th face, with the smallest power of two k for which at most `capacity` are kept: enough for medians,
-/// in constant memory. Deterministic.
+/// Keeps every k-th face, k being a power of two, so at most `capacity` are kept: enough for medians. Deterministic.
 class FaceSample {
   public:
     static constexpr std::size_t capacity = 1 << 13;
@@ -32,22 +31,22 @@ class FaceSample {
     std::size_t offered_ = 0, stride_ = 1;
 };
 
-/// Location of most of a scene, robust against a few distant faces.
+/// Location of most of a scene, robust against distant faces.
 struct Core {
     Imath::V3d middle{0, 0, 0};  ///< Per axis: median of the face centres, weighted by face size [m].
-    double reach = 0;            ///< Distance to which the faces extend from the middle: weighted median [m].
+    double reach = 0;            ///< Extent of the faces from the middle: weighted median [m].
 };
 
 /// O(n log n). All zero without faces.
 Core core_of(std::span<const FaceExtent> faces);
 
-/// Origin that preserves the precision of single-precision vertices. It is 0 if the middle is within 8 times the reach
-/// (at most 3 bits are lost); otherwise the middle, rounded to a multiple of a power of two near the reach, which keeps
-/// exact coordinates exact.
+/// Origin that preserves the precision of single-precision vertices. 0 if the middle is within 8 times the reach, which
+/// costs at most 3 bits. Otherwise the middle, rounded to a power of two near the reach, which keeps exact coordinates
+/// exact.
 Imath::V3d origin_for(const Core& core);
 
-/// Bounding box that defines the scene's size, relative to the scene's origin [m]. Ignores faces whose centre is
-/// farther from the middle than 64 times the reach. O(patches).
+/// Bounding box that defines the scene's size, relative to its origin [m]. Excludes faces whose centre is farther from
+/// the middle than 64 times the reach. O(patches).
 Imath::Box3f core_bounds(const Scene& scene);
 
 }  // namespace interflect::inline detail

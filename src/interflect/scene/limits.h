@@ -6,9 +6,8 @@
 
 namespace interflect::inline detail {
 
-// Geometry and light are in single precision, which ends at 3 * 10^38 and loses digits below 10^-38. Variances scale
-// with the square of an element's irradiance and the inverse square of its area. Real scenes stay far from these
-// limits.
+// Single precision ends at 3 * 10^38 and loses digits below 10^-38. Variances scale with the square of an element's
+// irradiance and the inverse square of its area. Real scenes are far from these limits.
 
 /// Farthest coordinate of a face or a view, in the world and from the scene's origin [m]. Double precision resolves 1/8
 /// m there.
@@ -21,8 +20,8 @@ inline constexpr double widest_face = 1e7;
 inline constexpr double narrowest_scene = 1e-6;
 inline constexpr float smallest_face_area = 1e-18f;
 
-/// Exitance of any channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2. The brightest source of a scene must be at
-/// least `weakest_exitance`, or 0.
+/// Exitance of any channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2. The brightest source must have at least
+/// `weakest_exitance`, or 0.
 inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
 
 /// Whether all coordinates are finite and at most farthest_coordinate.
@@ -44,20 +43,19 @@ std::string brightness_fault(float strongest);
 /// The largest texel of every texture. O(texels).
 std::vector<Rgb> largest_texels(const Scene& scene);
 
-/// Reflectance or exitance of a material times the largest texel of its texture, if any.
+/// Value of a material times the largest texel of its texture, if any.
 /// @param texture  Index into Scene::textures, or none.
 /// @param largest  largest_texels().
 inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<Rgb>& largest) {
     return texture == none ? factor : factor * largest[texture];
 }
 
-/// Largest sum of reflected, mirrored and transmitted fractions on a textured surface. Exact if the reflectance and
-/// transmittance textures have the same size; else an upper bound.
+/// Largest sum of reflected, mirrored and transmitted light. Exact if the reflectance and transmittance textures have
+/// the same size; else an upper bound.
 /// @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
 
-/// Largest channel of all textured material emissions and luminaire ratings, each in its unit; 0 without sources.
-/// O(texels).
+/// Largest channel of all textured emissions and luminaire ratings, each in its unit; 0 without sources. O(texels).
 /// @param scene  With valid texture indices.
 float brightest_source(const Scene& scene);
 

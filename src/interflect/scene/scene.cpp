@@ -19,7 +19,7 @@ constexpr std::size_t listed_faults = 20;
 bool is_share(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0; }
 bool is_reflectance(const Rgb& c) { return is_share(c) && largest_channel(c) < 1; }
 
-/// The faults found so far, up to the number that is listed.
+/// Collects faults, up to the number that is listed.
 class Faults {
   public:
     template <class Describe>

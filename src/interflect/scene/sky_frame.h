@@ -4,8 +4,8 @@
 
 namespace interflect::inline detail {
 
-/// A direction as a position in a full-sphere image. `s` is the azimuth in turns: 1/2 at north, rising towards east.
-/// `cosine` is the cosine of the angle from the zenith.
+/// A direction as a position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of
+/// the angle from the zenith.
 struct SkyPlace {
     float s, cosine;
 };

@@ -15,11 +15,11 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Sine of the angle between `up` and the view direction below which the picture's orientation is rounding error.
+/// Minimum sine of the angle between `up` and the view direction; below it, the orientation is rounding error.
 constexpr double smallest_up_sine = 1e-5;
 
-/// Distance from eye to look-at, relative to the largest coordinate, below which rounding may change the direction by
-/// more than 1e-4 rad.
+/// Minimum distance from eye to look-at, relative to the largest coordinate; below it, rounding may change the
+/// direction by more than 1e-4 rad.
 constexpr double smallest_relative_distance = 1e-12;
 
 template <class T>

@@ -14,7 +14,6 @@ constexpr float wall_thickness = 0.2f;  // [m]
 constexpr float door_width = 0.9f;      // [m]
 constexpr float least_pier = 0.5f;      // minimum wall between a doorway and a corner [m]
 
-/// A wall between two rooms.
 struct SharedWall {
     std::array<std::uint32_t, 2> rooms;
     Side side;  // of the first room
@@ -55,7 +54,6 @@ std::vector<Interval> draw_intervals(std::uint32_t count, const Interval& length
     return intervals;
 }
 
-/// All walls that may get a doorway.
 std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns) {
     std::vector<SharedWall> walls;
     for (std::uint32_t room = 0; room < rooms; ++room) {
@@ -65,7 +63,7 @@ std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns)
     return walls;
 }
 
-/// Chooses the walls with a doorway: a spanning tree (Kruskal's algorithm on random weights) and random others.
+/// Chooses walls for doorways: a spanning tree (Kruskal's algorithm on random weights) and random others.
 std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanOptions& options,
                                RandomSequence& random) {
     std::vector<std::uint32_t> order(walls.size());
@@ -79,7 +77,7 @@ std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanO
     return chosen;
 }
 
-/// Chooses one of the places that divide a wall evenly, so opposite doorways are aligned or apart.
+/// Chooses one of several evenly spaced places, so opposite doorways are aligned or apart.
 Interval draw_opening(const Interval& wall, RandomSequence& random) {
     const float places = std::floor((wall.length() - 2 * least_pier) / door_width);
     const float first = wall.middle() - places * door_width / 2;

@@ -15,7 +15,6 @@ struct Interval {
     bool operator==(const Interval&) const = default;
 };
 
-/// Walls of a room, by position.
 enum Side : std::uint8_t { west, south, east, north };
 inline constexpr int side_count = 4;
 constexpr Side opposite(Side side) { return static_cast<Side>((side + 2) % side_count); }
@@ -27,7 +26,6 @@ struct Room {
     Interval x, y;
     std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< Index of the doorway in each wall.
 
-    /// Extent of the room along a wall.
     const Interval& along(Side side) const { return along_x(side) ? x : y; }
     /// Coordinate of the wall's face, across the wall.
     float wall(Side side) const {
@@ -43,7 +41,7 @@ struct Doorway {
     Interval opening;                                ///< Along the wall.
 };
 
-/// Rooms on a grid about the origin, connected by doorways; floors at z = 0.
+/// Rooms on a grid about the origin, with floors at z = 0.
 struct FloorPlan {
     float room_height = 2.8f, door_height = 2.1f;  ///< [m]
     std::vector<Room> rooms;                       ///< Row by row from south to north, each from west to east.
@@ -58,9 +56,9 @@ struct PlanOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates a nearly square grid of rooms. Doorways form a random spanning tree, so all rooms are connected, plus
-/// `extra_doors`. Doorways in opposite walls of a room are exactly aligned or do not overlap, so the lines of their
-/// edges through the room never cross. Time and memory are linear in the rooms.
+/// Creates a nearly square grid of rooms. Doorways form a random spanning tree, plus `extra_doors`. Opposite doorways
+/// of a room are aligned or do not overlap, so the lines of their edges never cross. Time and memory are linear in the
+/// rooms.
 FloorPlan make_floor_plan(const PlanOptions& options);
 
 }  // namespace interflect::inline detail::building

@@ -15,7 +15,7 @@ constexpr float aisle = 0.35f;       // minimum distance of free-standing furnit
 constexpr int random_tries = 40;
 constexpr int tried_places = 100;  // along a wall, in sequence, after random tries have failed
 
-/// Rotation that makes a piece face away from a wall: its y axis points from the wall into the room.
+/// Rotation that turns a piece's y axis from the wall into the room.
 int quarter_turns_from(Side wall) {
     switch (wall) {
         case south:
@@ -29,7 +29,7 @@ int quarter_turns_from(Side wall) {
     }
 }
 
-/// Converts a floor rectangle from wall to room coordinates: `along` the wall, `from` and `to` away from it.
+/// Converts a floor rectangle `along` a wall, `from` and `to` away from it, to room coordinates.
 Box2f beside_wall(const Room& room, Side wall, const Interval& along, float from, float to) {
     const float inwards = wall == west || wall == south ? 1.f : -1.f;
     const float a = room.wall(wall) + inwards * from, b = room.wall(wall) + inwards * to;

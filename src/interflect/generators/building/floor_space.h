@@ -18,10 +18,9 @@ class FloorSpace {
     /// Reserves only the ways through the doorways.
     FloorSpace(const FloorPlan& plan, const Room& room);
 
-    /// Reserves a part of the floor.
     void reserve(const Imath::Box2f& part) { taken_.push_back(part); }
 
-    /// Finds and reserves a place with the back to a wall; nullopt if the floor is full.
+    /// Finds and reserves a place with the back to a wall; nullopt if none is free.
     std::optional<Placement> against_wall(const Furniture& piece, RandomSequence& random);
     /// The same, away from the walls.
     std::optional<Placement> in_the_open(const Furniture& piece, RandomSequence& random);

@@ -8,9 +8,9 @@
 
 namespace interflect::inline detail::building {
 
-/// A kind of furniture with its accessories, for example a desk with its chair and papers. In local coordinates x
-/// points to the right, y to the front and z up; (0, 0, 0) is the middle of its back, on the floor. All parts are at
-/// least `gap` inside |x| < width / 2, 0 < y < depth, and `gap` above the floor.
+/// A kind of furniture with its accessories. In local coordinates x points right, y to the front and z up; (0, 0, 0) is
+/// the middle of its back, on the floor. All parts are at least `gap` inside |x| < width / 2, 0 < y < depth, and `gap`
+/// above the floor.
 struct Furniture {
     std::string_view name;
     float width, depth;  ///< [m]
@@ -28,8 +28,8 @@ extern const Furniture picture;  ///< Hangs on the wall; reserves the floor belo
 extern const Furniture cartons;  ///< Three, stacked at random.
 extern const Furniture waste_bin;
 
-/// Adds a luminaire below a ceiling: a flat box of 1.2 m along x and 0.6 m along y with an emitting underside. The
-/// origin is the middle of its place on the ceiling.
+/// Adds a flat luminaire below a ceiling, 1.2 m along x and 0.6 m along y, with an emitting underside. The origin is
+/// the middle of its place on the ceiling.
 void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random);
 
 }  // namespace interflect::inline detail::building

@@ -20,13 +20,13 @@ constexpr float aim_height = 1.0f;     // of the point at the centre of the pict
 constexpr float bird_fov = 45;         // [degrees]
 constexpr float bird_distance = 1.1f;  // from the plan's middle, relative to its diagonal
 
-/// A corner seen from inside: the directions of its walls along x and y (-1 or 1).
+/// Directions of the walls of a corner along x and y (-1 or 1), seen from inside.
 struct Corner {
     float x, y;
 };
 constexpr std::array<Corner, 4> room_corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-/// Rounds to short decimals, to keep view files short.
+/// Rounds to short decimals for compact files.
 Imath::V3d to_micrometres(const V3f& x) {
     const auto rounded = [](float coordinate) { return std::round(static_cast<double>(coordinate) * 1e6) / 1e6; };
     return {rounded(x.x), rounded(x.y), rounded(x.z)};

@@ -7,17 +7,17 @@
 
 namespace interflect::inline detail::building {
 
-/// A view of a room from a corner, and the floor around the camera that furniture must leave free.
+/// A view from a corner of a room, and the floor to keep free around the camera.
 struct LookOut {
     View view;
     Imath::Box2f standing_room;
 };
 
-/// View from a corner of room `index` at eye height towards the opposite corner. Chooses the corner with a doorway
-/// nearest to the middle of the picture. The camera is 0.45 m from both walls and from objects beside `standing_room`.
+/// View from a corner of room `index` at eye height to the opposite corner, with a doorway as close to the picture's
+/// centre as possible. The camera is 0.45 m from walls and from objects beside `standing_room`.
 LookOut look_out(const FloorPlan& plan, std::uint32_t index);
 
-/// View "overview" of the whole plan from above and south, through one-sided ceilings and walls.
+/// View "overview" of the whole plan from above and south, through one-sided faces.
 View bird_view(const FloorPlan& plan);
 
 /// Maximum number of rooms with a view, "room-0" and so on.

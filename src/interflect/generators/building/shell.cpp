@@ -13,8 +13,7 @@ namespace {
 /// Corners of an opening in a wall, in order: low and high end at the floor, high and low end at the top.
 using DoorFrame = std::array<std::uint32_t, 4>;
 
-/// Coordinates that divide the walls of a room along one axis: its ends, and the edges of doorways in the two walls
-/// along that axis.
+/// Coordinates that divide the walls of a room along one axis: its ends and doorway edges.
 std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side side) {
     const Interval& extent = room.along(side);
     std::vector<float> lines{extent.low, extent.high};
@@ -28,7 +27,7 @@ std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side 
     return lines;
 }
 
-/// One room as a box with the same dividing lines on opposite faces.
+/// A room as a box with equal dividing lines on opposite faces.
 class RoomShell {
   public:
     RoomShell(Scene& scene, const FloorPlan& plan, const Room& room, const Finish& finish, std::uint32_t object)
@@ -51,7 +50,7 @@ class RoomShell {
     const std::array<DoorFrame, side_count>& frames() const { return frames_; }
 
   private:
-    using GridPoint = std::array<std::size_t, 3>;  // indices of a grid point
+    using GridPoint = std::array<std::size_t, 3>;  // indices
 
     /// Adds the floor (axis z, low), a wall or the ceiling.
     void add_face(int axis, bool high) {

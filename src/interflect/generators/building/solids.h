@@ -6,12 +6,12 @@
 
 namespace interflect::inline detail::building {
 
-/// Distance between any two solids, and between solids and walls [m], which prevents coincident faces. It exceeds
-/// RayCaster::ray_offset() in the largest generated scenes (2.5 mm at 330 m from the origin). Rays from an object's
-/// underside therefore start above the surface below it.
+/// Distance between solids, and between solids and walls [m]; prevents coincident faces. Exceeds
+/// RayCaster::ray_offset() in the largest generated scenes (2.5 mm at 330 m from the origin), so rays from an underside
+/// start above the surface below.
 inline constexpr float gap = 0.004f;
 
-/// Position of an object: an origin on the floor and a rotation about the vertical.
+/// An origin on the floor and a rotation about the vertical.
 class Placement {
   public:
     Placement() = default;
@@ -22,7 +22,6 @@ class Placement {
     V3f point(const V3f& local) const {
         return origin_ + V3f(cosine_ * local.x - sine_ * local.y, sine_ * local.x + cosine_ * local.y, local.z);
     }
-    /// A placement given relative to this one.
     Placement at(const V3f& local, float radians = 0) const;
 
   private:
@@ -30,14 +29,13 @@ class Placement {
     float cosine_ = 1, sine_ = 0;
 };
 
-/// Adds solids at a placement in a scene. Each is closed and has six one-sided faces, which face outwards, and its own
-/// eight vertices.
+/// Adds closed solids of six one-sided faces, which face outwards and have their own eight vertices.
 class Solids {
   public:
     Solids(Scene& scene, const Placement& placement, std::uint32_t object)
         : scene_(&scene), placement_(placement), object_(object) {}
 
-    /// Returns the same object with a placement relative to this one.
+    /// Solids at a placement relative to this one.
     Solids at(const V3f& local, float radians = 0) const {
         return Solids(*scene_, placement_.at(local, radians), object_);
     }
