@@ -9,11 +9,11 @@ namespace interflect {
 struct ContactOptions {
     /// Distance of touching faces as a fraction of the smaller face's diameter; at least the rounding of vertices.
     float touch_distance = 1e-4f;
-    /// Connected segments of smaller extent are ignored, and faces smaller than its square stay whole [m], >= 0. Twice
-    /// default_element_size(), the resolution of elements, is suitable.
+    /// Minimum extent of connected segments [m], >= 0; smaller ones are ignored. Faces smaller than its square stay
+    /// whole. Twice default_element_size(), the resolution of elements, is suitable.
     float least_extent = 0;
-    /// Quadrilateral pieces with a larger ratio of length to width are divided across, >= 1, unless narrower than twice
-    /// `least_extent` or 0.002 of the face's diameter.
+    /// Maximum ratio of length to width of quadrilateral pieces, >= 1. Longer pieces are divided across, unless
+    /// narrower than twice `least_extent` or 0.002 of the face's diameter.
     float largest_aspect = 4;
     /// Maximum number of pieces of one face, in (0, 2^31). A face that needs more is cut into fewer.
     std::uint32_t most_pieces_per_face = 1u << 16;

@@ -21,9 +21,8 @@ struct PlacedLuminaire {
     Imath::V3d position{0, 0, 0};     ///< In world coordinates [m].
     std::optional<Imath::V3d> aim{};  ///< World point that its nadir faces [m]; nullopt: down, -z.
     double turn = 0;  ///< Rotation about its axis, counter-clockwise seen from above the luminaire [degrees].
-    std::optional<double>
-        lumens{};  ///< Flux of its lamps, which replaces the value in the file; of the luminaire, if the file has none.
-    double maintenance = 1;  ///< Maintenance factor of its light, for ageing lamps and dust.
+    std::optional<double> lumens{};  ///< Lamp flux, instead of the file's; luminaire flux if the file has none.
+    double maintenance = 1;          ///< Maintenance factor of its light, for ageing lamps and dust.
 };
 
 /// Returns the measured light at its place. Without `turn` its C0 half plane contains x, or z if the luminaire faces

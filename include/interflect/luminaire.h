@@ -50,10 +50,9 @@ struct UniformSky {
 /// A hemisphere of sky over a uniform ground, all of one colour.
 struct SkyDome {
     SkyModel model;
-    Rgb irradiance{0, 0,
-                   0};    ///< Irradiance of an unobstructed horizontal surface, from the sky alone [lm/m^2 or W/m^2].
-    V3f zenith{0, 0, 1};  ///< Need not be normalised; neither need `sun`.
-    V3f sun{0, 0, 1};     ///< Towards the sun, not below the horizon. The sun itself is a DirectionalLight.
+    Rgb irradiance{0, 0, 0};  ///< Horizontal, unobstructed, of the sky alone [lm/m^2 or W/m^2].
+    V3f zenith{0, 0, 1};      ///< Need not be normalised; neither need `sun`.
+    V3f sun{0, 0, 1};         ///< Towards the sun, not below the horizon. The sun itself is a DirectionalLight.
     /// Radiance below the horizon, times pi, over `irradiance`: the ground's reflectance if only the sky lights it.
     float ground = 0;
 };

@@ -20,9 +20,8 @@ enum class Receiver {
 
 /// Position and receiver of a measurement.
 struct MeasuringPoint {
-    Imath::V3d position{0, 0,
-                        0};  ///< World coordinates [m]. On a surface it measures the light received by that surface.
-    /// Planar: of the plane. Semicylindrical: facing direction, without its part along the axis. Need not be
+    Imath::V3d position{0, 0, 0};  ///< World coordinates [m]. A point on a surface measures its irradiance.
+    /// Planar: normal of the plane. Semicylindrical: facing direction, without its part along the axis. Need not be
     /// normalised.
     V3f normal{0, 0, 1};
     Receiver receiver = Receiver::planar;

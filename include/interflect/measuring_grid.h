@@ -20,9 +20,8 @@ double grid_spacing(double length, double width);
 
 /// Layout of a grid.
 struct GridOptions {
-    std::optional<double>
-        spacing{};        ///< Maximum distance between points [m], > 0; nullopt: grid_spacing() of the area.
-    double boundary = 0;  ///< Width of the excluded strip along the border of the area [m], >= 0.
+    std::optional<double> spacing{};  ///< Maximum point distance [m], > 0; nullopt: grid_spacing() of the area.
+    double boundary = 0;              ///< Width of the excluded strip along the border of the area [m], >= 0.
 };
 
 /// The strip along walls that EN 12464-1 excludes from an area [m].

@@ -34,8 +34,7 @@ struct PhotometricWeb {
     std::vector<float> azimuth;      ///< [degrees], at least two, ascending, over at most 360.
     std::vector<float> intensities;  ///< [cd] or [W/sr], >= 0: [azimuth * polar.size() + polar].
     LuminousOpening opening;
-    double lamp_lumens =
-        0;  ///< Rated flux of the lamps for these intensities [lm]; 0: not given (absolute photometry).
+    double lamp_lumens = 0;  ///< Rated flux of the lamps for these intensities [lm]; 0: absolute photometry.
 
     /// Column of the table: intensities of all polar angles at one azimuth.
     const float* at_azimuth(std::size_t i) const { return intensities.data() + i * polar.size(); }

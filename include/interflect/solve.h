@@ -90,8 +90,7 @@ struct RefinementOptions {
     /// Smallest element area [m^2]; >= 0. If 0: the area covered by a pixel, for visible elements; for others at most
     /// (5 mm)^2, depending on the scene's size.
     double min_area = 0;
-    std::size_t max_elements = std::size_t{1}
-                               << 26;  ///< Refinement stops at this number; at least the number of patches.
+    std::size_t max_elements = std::size_t{1} << 26;  ///< Refinement stops there; at least the number of patches.
 };
 
 /// Use of the views (Method::importance).
@@ -162,9 +161,8 @@ struct IterationReport {
     /// over the picture, relative to the mean, for visible reflected luminance without emission. Without: the same for
     /// irradiance, over the area. Infinite before an estimate exists, and if a view shows no reflected light.
     double error_estimate = std::numeric_limits<double>::infinity();
-    double noise_estimate = std::numeric_limits<double>::infinity();  ///< Standard error.
-    double discretisation_estimate =
-        std::numeric_limits<double>::infinity();  ///< Variation within elements, lost by averaging.
+    double noise_estimate = std::numeric_limits<double>::infinity();           ///< Standard error.
+    double discretisation_estimate = std::numeric_limits<double>::infinity();  ///< Mean deviation within elements.
     /// Payload of a ray relative to the mean of all rays: maximum, and value exceeded by 0.1% of the rays.
     double largest_quantum = 1, high_quantum = 1;
 };
@@ -193,8 +191,7 @@ struct Solution {
 
 /// Progress reports and early termination of a run.
 struct Monitor {
-    std::function<void(const IterationReport&)>
-        report;                               ///< Called after each iteration on the calling thread; may be empty.
+    std::function<void(const IterationReport&)> report;  ///< After each iteration, on the calling thread; may be empty.
     const std::atomic<bool>* stop = nullptr;  ///< Ends the run once true; the current iteration is discarded.
 };
 

@@ -50,8 +50,7 @@ struct FloorPlan {
 
 struct PlanOptions {
     std::uint32_t rooms = 1;
-    Interval width{5.2f, 6.8f},
-        depth{5.2f, 6.8f};  ///< Range of room sizes along x and y, drawn for each column and row [m].
+    Interval width{5.2f, 6.8f}, depth{5.2f, 6.8f};  ///< Room sizes along x and y, drawn for each column and row [m].
     float extra_doors = 0;  ///< Fraction of the walls outside the spanning tree that also get a doorway, 0 to 1.
     std::uint64_t seed = 1;
 };
