@@ -36,8 +36,7 @@ struct PathOptions {
     /// the pixel's radiance and the picture's mean reflected radiance, which relaxes the target for dark pixels.
     double until = 0;
     PathQuantity quantity = PathQuantity::radiance;
-    bool mirrors = true;  ///< Whether the camera sees mirror reflections (Material::specular_reflectance), which
-                          ///< reflect no other light.
+    bool mirrors = true;  ///< Whether the camera sees mirrors (Material::specular_reflectance).
     EmitterSampling emitter_sampling = EmitterSampling::combined;
     std::uint64_t seed = 1;
 };
