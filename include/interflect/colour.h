@@ -8,19 +8,19 @@
 
 namespace interflect {
 
-/// Linear Rec. 709 colour (or any quantity kept per channel); the unit stands with the quantity that uses it.
+/// Linear Rec. 709 colour, or any quantity per channel in the unit of that quantity.
 using Rgb = Imath::Color3f;
-/// The same in double precision, for sums over many patches.
+/// Double precision, for sums over many patches.
 using RgbD = Imath::Color3<double>;
 using V3f = Imath::V3f;
 
-/// Rec. 709 luminance weights; photometric quantities keep their unit: luminance({1, 1, 1}) == 1.
+/// Rec. 709 luminance. Photometric quantities keep their unit: luminance({1, 1, 1}) == 1.
 template <class T>
 constexpr T luminance(const Imath::Color3<T>& c) {
     return T(0.2126) * c.x + T(0.7152) * c.y + T(0.0722) * c.z;
 }
 
-/// Sum of the channels: what sampling probabilities are made of, so that no channel is ever starved.
+/// Sum of the channels, used for sampling probabilities so that every channel is sampled.
 template <class T>
 constexpr T channel_sum(const Imath::Color3<T>& c) {
     return c.x + c.y + c.z;

@@ -7,10 +7,10 @@
 
 namespace interflect {
 
-/// Scales the sources of a light group and all light that they bring, as if the scene had been solved so: no ray is
-/// traced. Errors and importance stay what they were.
-/// @param factor  1 is what they emit now; >= 0.
-/// @throws InputError that lists the groups, where there is no such group; for a factor that is negative or not finite.
+/// Scales the sources of a light group and all of its light, without tracing rays; the result equals a solution of the
+/// dimmed scene. Errors and importance are unchanged.
+/// @param factor  Relative to the current emission; >= 0.
+/// @throws InputError that lists the groups, for an unknown group; for a factor that is negative or not finite.
 void dim(Scene& scene, Solution& solution, const std::string& group, float factor);
 
 }  // namespace interflect

@@ -12,52 +12,52 @@
 
 namespace interflect {
 
-/// Somebody who looks.
+/// Position and gaze of an observer.
 struct Observer {
     Imath::V3d eye{0, 0, 0};     ///< World coordinates [m].
     V3f line_of_sight{1, 0, 0};  ///< Need not be normalised.
 };
 
-/// What an observer sees of a source of light: all emitting patches of an object, or a measured luminaire.
+/// Visible part of a light source: all emitting patches of an object, or a measured luminaire.
 struct GlareSource {
-    std::string name;           ///< Of the object or the luminaire; of patches in no object that of the material.
-    double luminance = 0;       ///< Mean over what is seen [cd/m^2].
-    double solid_angle = 0;     ///< Omega of what is seen [sr].
-    double position_index = 1;  ///< p, likewise: so that L^2 omega / p^2 is `glare` for even luminance.
+    std::string name;           ///< Name of the object or the luminaire; for patches outside objects, of the material.
+    double luminance = 0;       ///< Mean over the visible part [cd/m^2].
+    double solid_angle = 0;     ///< Omega of the visible part [sr].
+    double position_index = 1;  ///< Mean index p: L^2 omega / p^2 equals `glare` for uniform luminance.
     double glare = 0;           ///< Integral of L^2 / p^2 over the solid angle [cd^2 sr / m^4].
 };
 
-/// Unified Glare Rating of what an observer sees.
+/// Unified Glare Rating for an observer.
 struct GlareRating {
-    double ugr = -std::numeric_limits<double>::infinity();  ///< Minus infinity where no source is seen.
-    double standard_error = 0;                              ///< Of `ugr`, from that of the background.
+    double ugr = -std::numeric_limits<double>::infinity();  ///< Minus infinity without visible sources.
+    double standard_error = 0;                              ///< Standard error of `ugr`, due to the background.
     double background_luminance = 0;                        ///< Lb [cd/m^2].
-    std::vector<GlareSource> sources{};                     ///< Those that are seen, the most glaring first.
+    std::vector<GlareSource> sources{};                     ///< Visible sources, in order of decreasing glare.
 };
 
-/// Position index p of Guth, as fitted by Levin (1975): 1 on the line of sight, larger further from it. Below the line
-/// of sight it is that of the same place above.
-/// @param towards        The source. @param line_of_sight, up  Up need not be at a right angle to the line of sight.
-/// None need be normalised.
-/// @return  Infinity for what is not in front of the observer.
+/// Position index p of Guth, as fitted by Levin (1975): 1 on the line of sight, increasing away from it; equal for
+/// mirror images above and below it. Directions need not be normalised.
+/// @param towards            Direction of the source.
+/// @param line_of_sight, up  Need not be perpendicular.
+/// @return  Infinity for directions not in front of the observer.
 double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up = V3f(0, 0, 1));
 
 /// UGR = 8 log10(0.25 / Lb * sum of L^2 omega / p^2) (CIE 117:1995).
-/// @param background_luminance  Lb [cd/m^2]; infinity is returned where it is 0 but sources are seen.
+/// @param background_luminance  Lb [cd/m^2]; if it is 0 and sources are visible, the result is infinity.
 double unified_glare_rating(double background_luminance, std::span<const GlareSource> sources);
 
-/// The sources that an observer sees, by quadrature over their areas with a ray to each place: emitting patches with
-/// L = M / pi, and measured luminaires with L = I(d) / A(d), where A is the projected area of their luminous opening.
-/// Point and spot lights and luminaires without an opening have no area and are left out, as are the sun and skies.
-/// Windows that emit are sources like others, though UGR was not made for them. The z axis is up.
+/// Computes the visible light sources by quadrature over their areas, with a ray to each node: emitting patches with L
+/// = M / pi, measured luminaires with L = I(d) / A(d), where A is the projected area of the luminous opening. Excludes
+/// sources without area (point and spot lights, luminaires without opening), the sun and skies. Includes emitting
+/// windows, although UGR was not designed for them. The z axis is up.
 /// @param ray_caster  Of the same scene. Cost: 4 to 256 rays an emitting patch, 64 a luminaire.
 /// @throws InputError for a line of sight without direction.
 std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_caster, const Observer& observer);
 
-/// Rates what each observer sees. Lb is the indirect illuminance of a plane at the eye that faces along the line of
-/// sight, over pi.
-/// @param solution  As in measure_irradiance(), as are `options` and `monitor`. Only those observers are rated that an
-///                  interrupted measurement has reached; the others have a standard error that is not finite.
+/// Computes the glare rating of each observer. Lb is the indirect illuminance at the eye of a plane perpendicular to
+/// the line of sight, over pi.
+/// @param solution  As in measure_irradiance(), as are `options` and `monitor`. Observers not reached before an
+///                  interruption have a non-finite standard error.
 std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                     std::span<const Observer> observers, const PathOptions& options = {},
                                     const PathMonitor& monitor = {});

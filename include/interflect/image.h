@@ -8,7 +8,7 @@
 
 namespace interflect {
 
-/// Larger images are neither rendered nor read, whatever a file claims.
+/// Limit for rendering and reading images, independent of file headers.
 inline constexpr std::int64_t most_image_pixels = std::int64_t{1} << 28;
 
 /// A picture: linear Rec. 709 colours in any unit, row by row, row 0 at the top.
@@ -17,7 +17,7 @@ struct Image {
     std::vector<Rgb> pixels;  ///< [y * width + x]
 
     Image() = default;
-    /// @param fill  Every pixel's first colour.
+    /// @param fill  Initial colour of every pixel.
     Image(int image_width, int image_height, const Rgb& fill = Rgb(0, 0, 0))
         : width(image_width),
           height(image_height),
@@ -32,17 +32,17 @@ struct Image {
     }
 };
 
-/// @throws InputError unless the image has pixels, as many as width and height say.
+/// @throws InputError unless the image has pixels and their number matches width and height.
 void require_pixels(const Image& image);
 
-/// @throws InputError unless both images have the same size, and pixels.
+/// @throws InputError unless both images have pixels and the same size.
 void require_same_size(const Image& image, const Image& reference);
 
-/// The image with every factor x factor block of pixels replaced by its mean.
-/// @throws InputError where width or height is no multiple of `factor`, factor < 1, and as require_pixels() does.
+/// Replaces every factor x factor block of pixels by its mean.
+/// @throws InputError if width or height is not a multiple of `factor`, factor < 1, and as require_pixels() does.
 Image box_downsample(const Image& image, int factor);
 
-/// Pixels of which a channel is infinite or not a number.
+/// Number of pixels with an infinite or NaN channel.
 std::int64_t count_non_finite(const Image& image);
 
 }  // namespace interflect

@@ -1,5 +1,5 @@
 /// \file
-/// All of the library: read a scene, solve it, look at it, keep it.
+/// Includes the whole library: read, solve, render and save scenes.
 #pragma once
 
 #include "interflect/contacts.h"

@@ -13,83 +13,83 @@
 
 namespace interflect {
 
-/// Shines alike in all directions.
+/// Emits uniformly in all directions.
 struct PointLight {
-    V3f position{0, 0, 0};   ///< As vertices are, relative to Scene::origin [m].
+    V3f position{0, 0, 0};   ///< Relative to Scene::origin, like vertices [m].
     Rgb intensity{0, 0, 0};  ///< [lm/sr = cd, or W/sr], >= 0.
 };
 
-/// Shines into a cone, with full intensity near its axis. Between the two angles intensity is in proportion to the
-/// square of how far the cosine is from that of the outer one.
+/// Emits into a cone, with full intensity near its axis. Between the two angles intensity is proportional to the
+/// squared difference of cosines to the outer angle.
 struct SpotLight {
     V3f position{0, 0, 0};    ///< [m]
     V3f direction{0, 0, -1};  ///< Need not be normalised.
     Rgb intensity{0, 0, 0};   ///< On the axis [lm/sr = cd, or W/sr], >= 0.
-    float inner_angle = 0;    ///< From the axis [degrees]; up to there intensity is full. In [0, outer_angle].
-    float outer_angle = 45;   ///< From there on it is zero. In (0, 180].
+    float inner_angle = 0;    ///< From the axis [degrees]: full intensity up to this angle. In [0, outer_angle].
+    float outer_angle = 45;   ///< Zero intensity from this angle on. In (0, 180].
     float inner_cosine() const;
     float outer_cosine() const;
 };
 
-/// Light that comes from far away: parallel, or from a disc of uniform radiance, which pictures show.
+/// Light from far away: parallel, or from a visible disc of uniform radiance.
 struct DirectionalLight {
-    V3f direction{0, 0, -1};    ///< In which the light goes; need not be normalised.
-    Rgb irradiance{0, 0, 0};    ///< Of a surface that faces it [lm/m^2 or W/m^2], >= 0.
-    float diameter = 0;         ///< Of the disc [degrees]; 0: parallel light. In [0, 90].
-    float disc_sine() const;    ///< Of the angle from the disc's centre to its edge.
+    V3f direction{0, 0, -1};    ///< Direction of the light; need not be normalised.
+    Rgb irradiance{0, 0, 0};    ///< Irradiance of a surface perpendicular to the light [lm/m^2 or W/m^2], >= 0.
+    float diameter = 0;         ///< Angular diameter of the disc [degrees]; 0: parallel light. In [0, 90].
+    float disc_sine() const;    ///< Sine of the angle from the disc's centre to its edge.
     Rgb disc_radiance() const;  ///< E / (pi sin^2); only with a disc.
 };
-/// The Sun's, at its mean distance from the Earth [degrees].
+/// Angular diameter of the Sun at its mean distance from the Earth [degrees].
 inline constexpr float sun_diameter = 0.533f;
 
-/// Surrounds the scene on all sides, below its horizon too, with the same radiance.
+/// Surrounds the scene with uniform radiance, also below the horizon.
 struct UniformSky {
     Rgb radiance{0, 0, 0};  ///< [lm/(m^2 sr) = cd/m^2, or W/(m^2 sr)], >= 0.
 };
 
-/// A hemisphere of sky over a uniform ground that reaches to the horizon, all of one colour.
+/// A hemisphere of sky over a uniform ground, all of one colour.
 struct SkyDome {
     SkyModel model;
-    Rgb irradiance{0, 0, 0};  ///< That the sky alone causes on an unobstructed horizontal surface [lm/m^2 or W/m^2].
-    V3f zenith{0, 0, 1};      ///< Need not be normalised, nor need the next one.
+    Rgb irradiance{0, 0, 0};  ///< Horizontal, unobstructed, of the sky alone [lm/m^2 or W/m^2].
+    V3f zenith{0, 0, 1};      ///< Need not be normalised; neither need `sun`.
     V3f sun{0, 0, 1};         ///< Towards the sun, not below the horizon. The sun itself is a DirectionalLight.
-    /// Radiance below the horizon, times pi, over `irradiance`: where the sky alone lights the ground, its reflectance.
+    /// Radiance below the horizon, times pi, over `irradiance`: the ground's reflectance if only the sky lights it.
     float ground = 0;
 };
 
-/// An image of all that surrounds the scene, far away: columns are azimuths, rows angles from the zenith, evenly
-/// spaced, and each texel is of one radiance. The middle of the image is north; east is to the right of it.
+/// An image of the distant surroundings. Columns are azimuths, rows angles from the zenith, evenly spaced; texels have
+/// constant radiance. The middle of the image is north, with east to the right.
 struct EnvironmentMap {
     std::shared_ptr<const Texture> image;
     V3f zenith{0, 0, 1};  ///< Direction of the upper edge; need not be normalised.
-    V3f north{0, 1, 0};   ///< Need not be normalised, nor at a right angle to the zenith.
-    Rgb factor{1, 1, 1};  ///< Of the texels, to radiance [cd/m^2 or W/(m^2 sr)], >= 0.
+    V3f north{0, 1, 0};   ///< Need not be normalised, nor perpendicular to the zenith.
+    Rgb factor{1, 1, 1};  ///< Factor from texels to radiance [cd/m^2 or W/(m^2 sr)], >= 0.
 };
-/// Texels of all environment maps of a scene: up to 24 bytes each while pictures are drawn.
+/// Limit of texels of all environment maps of a scene: up to 24 bytes each during rendering.
 inline constexpr std::uint64_t most_environment_texels = std::uint64_t{1} << 25;
-/// Domes and maps of a scene, each of which takes up to 50 MB while light is shot.
+/// Limit of domes and maps of a scene; each takes up to 50 MB while light is shot.
 inline constexpr std::size_t most_skies = 8;
 
-/// A luminaire whose light was measured. Every point of its opening that a direction leaves from shines alike, so that
-/// far away it is what was measured, and close by it has the opening's size.
+/// A luminaire with measured intensity. All points of its opening visible from a direction emit equally, so the far
+/// field is as measured and the near field depends on the opening's size.
 struct MeasuredLight {
-    std::shared_ptr<const PhotometricWeb> web;  ///< Many luminaires may share one.
-    V3f position{0, 0, 0};                      ///< Of the opening's middle [m].
-    V3f direction{0, 0, -1};                    ///< Of its nadir; need not be normalised.
-    V3f c0{1, 0, 0};  ///< Its C0 half plane holds this direction, which need not be at a right angle to the nadir.
-    bool mirrored = false;  ///< C90 lies on the other side.
-    Rgb factor{1, 1, 1};    ///< Of the intensities, >= 0.
+    std::shared_ptr<const PhotometricWeb> web;  ///< May be shared by luminaires.
+    V3f position{0, 0, 0};                      ///< Centre of the opening [m].
+    V3f direction{0, 0, -1};                    ///< Nadir direction; need not be normalised.
+    V3f c0{1, 0, 0};        ///< Direction in the C0 half plane; need not be perpendicular to the nadir.
+    bool mirrored = false;  ///< C90 is on the opposite side.
+    Rgb factor{1, 1, 1};    ///< Factor of the intensities, >= 0.
 };
 
-/// A source of light that is not a surface of the scene: nothing hits it, and only skies and discs are seen.
+/// A light source that is not a surface. Rays do not hit it; only skies and discs are visible.
 struct Luminaire {
     std::string name;
     std::uint32_t object = 0;  ///< Index into Scene::objects.
     std::variant<PointLight, SpotLight, DirectionalLight, UniformSky, MeasuredLight, SkyDome, EnvironmentMap> kind;
 };
 
-/// What it is rated by: intensity (of measured light the largest), irradiance or radiance (of a map the largest), each
-/// in its unit.
+/// Characteristic value: intensity (maximum for measured light), irradiance or radiance (maximum for a map), each in
+/// its unit.
 Rgb rating(const Luminaire& luminaire);
 
 /// Whether it surrounds the scene: a uniform sky, a dome or a map.
@@ -98,7 +98,7 @@ bool is_sky(const Luminaire& luminaire);
 /// "point", "spot", "directional", "sky", "measured", "sky-dome" or "environment".
 const char* kind_name(const Luminaire& luminaire);
 
-/// What is wrong with it, in words without a subject; empty where nothing is.
+/// Fault of a luminaire, in words without a subject; empty if valid.
 std::string luminaire_fault(const Luminaire& luminaire);
 
 }  // namespace interflect

@@ -13,115 +13,115 @@
 
 namespace interflect {
 
-/// How a path finds the emitting patches. All three have the same expected value; the two parts exist to be compared.
+/// Sampling of emitting patches. All three have the same expected value; the two single strategies serve for
+/// comparison.
 enum class EmitterSampling {
     combined,    ///< Both, by multiple importance sampling with the balance heuristic (Veach and Guibas 1995).
     lights,      ///< Next event estimation alone: patches chosen by LightTree, points uniform on them.
-    directions,  ///< Cosine-distributed directions alone, which hit an emitting patch by chance.
+    directions,  ///< Cosine-distributed directions alone, with chance hits of emitting patches.
 };
 
-/// What a picture shows of the surfaces that it sees.
+/// Quantity shown on visible surfaces.
 enum class PathQuantity {
     radiance,    ///< L = (M + rho H) / pi [cd/m^2 or W/(m^2 sr)].
-    irradiance,  ///< H [lux = lm/m^2, or W/m^2], whatever their reflectance.
+    irradiance,  ///< H [lux = lm/m^2, or W/m^2], independent of reflectance.
 };
 
 struct PathOptions {
     int width = 1280;          ///< [pixels], >= 1.
     int height = 720;          ///< [pixels], >= 1.
-    int samples = 64;          ///< Paths a pixel, >= 2: that many without a target, else the least; see PathTracing.
-    int max_samples = 16'384;  ///< Most paths a pixel where there is a target, >= samples.
-    /// Target of each pixel's relative standard error, >= 0; 0: none, every pixel gets `samples`. Relative to the
-    /// pixel's radiance, but at least to the picture's mean reflected radiance: dark pixels need not be exact.
+    int samples = 64;          ///< Paths per pixel, >= 2; with a target the minimum, see PathTracing.
+    int max_samples = 16'384;  ///< Maximum number of paths per pixel with a target, >= samples.
+    /// Target of each pixel's relative standard error, >= 0; 0: every pixel gets `samples`. Relative to the larger of
+    /// the pixel's radiance and the picture's mean reflected radiance, which relaxes the target for dark pixels.
     double until = 0;
     PathQuantity quantity = PathQuantity::radiance;
-    bool mirrors = true;  ///< Whether the camera sees Material::specular_reflectance, which reflects no other light.
+    bool mirrors = true;  ///< Whether the camera sees mirrors (Material::specular_reflectance).
     EmitterSampling emitter_sampling = EmitterSampling::combined;
     std::uint64_t seed = 1;
 };
 
 /// Progress of a picture.
 struct PathProgress {
-    std::int64_t rays = 0;      ///< So far, of all kinds.
-    double fraction = 0;        ///< Of the work foreseen so far, in [0, 1]; a target not yet reached foresees more.
+    std::int64_t rays = 0;      ///< Rays of all kinds so far.
+    double fraction = 0;        ///< Fraction of the work planned so far, in [0, 1]; a missed target adds work.
     double relative_error = 0;  ///< PathTracing::relative_error of a recent state; NaN if the work has none.
 };
 
-/// How a caller watches the progress of a picture, and ends it early.
+/// Progress reports and early termination of a picture.
 struct PathMonitor {
-    /// Called from the calling thread, about every quarter million paths.
+    /// Called on the calling thread, about every quarter million paths.
     std::function<void(const PathProgress&)> on_progress;
-    const std::atomic<bool>* stop = nullptr;  ///< Once true, what is under way is finished in milliseconds.
+    const std::atomic<bool>* stop = nullptr;  ///< Once true, the work ends within milliseconds.
 };
 
-/// Thrown by work that PathMonitor::stop ends before it has a usable result. The message names the missing part.
+/// Thrown if PathMonitor::stop ends work before it has a usable result. The message names the missing part.
 class Stopped : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// Light of some of a picture's samples.
+/// Reflected light of a subset of a picture's samples.
 struct SampledLight {
     Image direct;    ///< Reflected once, in the picture's unit.
     Image indirect;  ///< Reflected more often.
-    /// Estimated variance of the mean over the channels of `direct` and `indirect`, [y * width + x].
+    /// Estimated variance of the channel mean of `direct` and `indirect`, [y * width + x].
     std::vector<float> direct_variance, indirect_variance;
 };
 
-/// What a picture is made of: means over the samples of each pixel.
+/// Components of a picture: means over the samples of each pixel.
 struct PictureLayers {
-    Image emitted;  ///< Radiance that comes straight from where it is emitted, in the picture's unit.
-    /// Beside what is emitted all light of the picture.
+    Image emitted;  ///< Radiance straight from emitters, in the picture's unit.
+    /// All other light of the picture.
     SampledLight reflected;
-    /// The same of every other batch of samples and of the rest: independent of each other.
+    /// The same for two independent halves of the samples: every other batch, and the rest.
     std::array<SampledLight, 2> halves;
-    Image albedo;              ///< Reflectance of what is seen; 1 in a picture of irradiance.
-    Image normal;              ///< Its normal, towards the eye; shorter than 1 where several are seen.
-    Image position;            ///< Where it is, relative to the scene's origin [m].
-    std::vector<float> depth;  ///< Its distance from the eye [m]; 0 where nothing is hit.
-    std::vector<float> level;  ///< Of the solution's element that is seen; 0 in path tracing.
-    float pixel_angle = 0;     ///< That a pixel's side fills in the middle of the picture [rad]; 0 where orthographic.
-    float pixel_size = 0;      ///< Of a pixel's side in an orthographic picture [m]; else 0.
+    Image albedo;              ///< Reflectance of the visible surface; 1 in a picture of irradiance.
+    Image normal;              ///< Its normal, towards the camera; shorter than 1 if several surfaces are visible.
+    Image position;            ///< Its position, relative to the scene's origin [m].
+    std::vector<float> depth;  ///< Its distance from the camera [m]; 0 without a hit.
+    std::vector<float> level;  ///< Level of the visible element of the solution; 0 in path tracing.
+    float pixel_angle = 0;     ///< Angle of a pixel's side at the centre of the picture [rad]; 0 if orthographic.
+    float pixel_size = 0;      ///< Side of a pixel in an orthographic picture [m]; else 0.
 };
 
 /// A picture with its standard error.
 struct PathTracing {
-    /// Radiance L = (M + rho H) / pi of what each pixel sees, the mean over its square; black where rays escape. In the
-    /// units of render(). No approximation: the expected value is the exact solution's. A pixel that an interrupted run
-    /// has not reached is black.
+    /// Radiance L = (M + rho H) / pi seen by each pixel, the mean over its square; black for escaped rays. In the units
+    /// of render(). Unbiased: the expected value is the exact solution. Pixels not reached by an interrupted run are
+    /// black.
     Image image;
     PictureLayers layers;
-    /// Of each pixel and channel, in the same unit: from the spread of batches of paths, which are independent.
+    /// Standard error of each pixel and channel, in the same unit, from the spread of independent batches of paths.
     Image standard_error;
-    /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (means over
-    /// the channels), root mean square over the pixels; 0 for a picture without light. Infinite where a pixel has fewer
-    /// than two batches of paths.
+    /// Standard error over the larger of the pixel's radiance and the picture's mean reflected radiance (channel
+    /// means), root mean square over the pixels; 0 for a picture without light. Infinite if any pixel has fewer than
+    /// two batches.
     double relative_error = 0;
     std::int64_t rays = 0;         ///< Camera rays, reflected rays and shadow rays.
-    std::int64_t shadow_rays = 0;  ///< Of these.
+    std::int64_t shadow_rays = 0;  ///< Included in `rays`.
     std::int64_t paths = 0;
-    std::vector<std::uint32_t> batches;  ///< Of paths, of each pixel; its standard error needs two.
-    std::int64_t escaped_rays = 0;       ///< Camera rays and reflected rays that hit nothing.
-    std::int64_t non_finite_pixels = 0;  ///< They keep their value (infinite or not a number) in `image`.
+    std::vector<std::uint32_t> batches;  ///< Batches of paths of each pixel; its standard error needs two.
+    std::int64_t escaped_rays = 0;       ///< Camera rays and reflected rays without a hit.
+    std::int64_t non_finite_pixels = 0;  ///< Number of pixels with an infinite or NaN value, which `image` keeps.
     bool interrupted = false;
 };
 
-/// Path tracing (Kajiya 1986) of what `view` sees: an estimate of the picture that shares nothing with the radiosity
-/// solver, to compare it with. Surfaces are diffuse; all light goes straight through thin glass, and mirrors are
-/// followed from the camera alone: other light that they reflect is lost, as in the solver.
+/// Path tracing (Kajiya 1986) of a view: an independent reference for the radiosity solver. Surfaces are diffuse; light
+/// passes straight through thin glass. Mirrors are followed from the camera only; other mirrored light is lost, as in
+/// the solver.
 ///
-/// A path starts at a random point of a pixel's square and goes on in cosine-distributed directions; Russian roulette
-/// by throughput ends it, never a number of bounces. At each vertex an emitting patch is chosen by LightTree and joined
-/// by a shadow ray, which counts where RayCaster answers with that patch. A reflected ray that hits an emitting patch
-/// counts too; the balance heuristic weighs the two. Random numbers are Owen-scrambled Sobol' points.
+/// A path starts at a random point of a pixel's square and continues in cosine-distributed directions until Russian
+/// roulette on its throughput ends it. At each vertex an emitting patch is sampled by LightTree and connected by a
+/// shadow ray, which counts if RayCaster hits that patch. Reflected rays that hit an emitting patch also count; the
+/// balance heuristic weights both. Random numbers are Owen-scrambled Sobol' points.
 ///
-/// Paths come in batches of a power of two, at least 8 batches a pixel where there are as many samples; `samples` is
-/// rounded up to whole batches. Each batch has points of its own, independent of the other batches.
+/// Paths are traced in independent batches of a power of two, at least 8 a pixel if `samples` suffices; `samples` is
+/// rounded up to whole batches.
 ///
-/// Without a target the estimate is unbiased. With one, pixels get samples in rounds that at most double their number.
-/// The samples that a pixel still needs follow from the relative variance of all samples so far, averaged over the 7 x
-/// 7 pixels around it: the noise of one pixel's own variance neither stops nor prolongs its sampling. The bias that
-/// remains is far below the standard error; without a target there is none.
+/// Without a target the estimate is unbiased. With a target, pixels get samples in rounds that at most double their
+/// number. The remaining number follows from the relative variance so far, averaged over 7 x 7 pixels because a single
+/// pixel's variance is too noisy. The bias is far below the standard error.
 ///
 /// @param ray_caster  Of the same scene.
 /// @return            The same bits for the same seed and any number of threads, unless interrupted.

@@ -2,10 +2,10 @@
 
 namespace interflect {
 
-/// Where the four random numbers of a ray come from.
+/// Source of the four random numbers of a ray.
 enum class PointSet {
-    sobol,   ///< Owen-scrambled Sobol' points, a sequence of its own for each source: error falls faster than N^-1/2.
-    random,  ///< Pseudo-random (Philox): error falls like N^-1/2.
+    sobol,   ///< Owen-scrambled Sobol' points, one sequence per source. The error decreases faster than N^-1/2.
+    random,  ///< Pseudo-random (Philox). The error decreases like N^-1/2.
 };
 
 }  // namespace interflect

@@ -10,20 +10,20 @@
 
 namespace interflect {
 
-/// A ray of unit direction. One that leaves a patch starts RayCaster::ray_offset() above it, so that it cannot hit what
-/// lies in the plane that it comes from.
+/// A ray of unit direction. Rays that leave a patch start RayCaster::ray_offset() above it, to avoid hits in its own
+/// plane.
 struct Ray {
     V3f origin;
     V3f direction;
 };
 
-/// What a ray meets first.
+/// First hit of a ray.
 struct Hit {
-    std::uint32_t patch = none;  ///< The side that was hit; none where the ray escapes.
+    std::uint32_t patch = none;  ///< The side that was hit; none if the ray escapes.
     float distance = 0;          ///< [m]
 };
 
-/// The scene as the ray tracer holds it: Embree behind one small interface. Immutable, shared by all threads.
+/// Ray tracer for a scene, based on Embree. Immutable and thread-safe.
 class RayCaster {
   public:
     /// @throws InputError that lists every fault of the scene (scene_faults).
@@ -32,22 +32,21 @@ class RayCaster {
     RayCaster(const RayCaster&) = delete;
     RayCaster& operator=(const RayCaster&) = delete;
 
-    /// Finds the first hit of every ray, on the calling thread. The back of a one-sided face lets a ray through. Of
-    /// faces that coincide always the same one answers, seen from wherever (see coincident.h).
-    /// @throws InputError unless there are as many hits as rays.
+    /// Finds the first hit of every ray, on the calling thread. Rays pass through the back of one-sided faces. Of
+    /// coincident faces always the same one is hit (see coincident.h).
+    /// @throws InputError unless the numbers of rays and hits are equal.
     void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
 
-    /// The ray offset: how far above its patch a ray starts [m]. With c the largest coordinate of the patch's own
-    /// corners, relative to the scene's origin, and u = 2^-24 the rounding of a float, the start point is off its plane
-    /// by at most 8 u c (corners, normal, interpolation, the offset itself), and Embree's robust test, which subtracts
-    /// the start point from the corners, by at most 8 u times their distance, 2 c at the farthest: 24 u c in all. The
-    /// offset is 128 u c = 2^-17 c. Where faces coincide, it is at least 4 times the distance within which they do,
-    /// pair_tolerance(), which is 4 u of the larger one's c: 16 u where 8 are needed. What other faces there are, and
-    /// where, does not matter.
+    /// Height above its patch at which a ray starts [m]: 128 u c = 2^-17 c. Here c is the largest coordinate of the
+    /// patch's corners, relative to the scene's origin, and u = 2^-24 the rounding of a float. The rounding errors sum
+    /// to at most 24 u c: 8 u c for the start point (corners, normal, interpolation, offset), and 16 u c for Embree's
+    /// robust test, which subtracts the start point from corners at a distance of up to 2 c. For coincident faces the
+    /// offset is at least 4 times their distance limit, pair_tolerance(), which is 4 u times the larger face's c: 16 u
+    /// where 8 are needed. Independent of all other faces.
     float ray_offset(std::uint32_t patch) const { return ray_offsets_[patch]; }
 
-    /// The share of a patch's area, in [0, 1], that any ray can hit: below 1 where other faces that coincide with it
-    /// answer in its place. Only that much of it may emit.
+    /// Fraction of a patch's area, in [0, 1], that rays can hit, and from which light may be emitted. Below 1 if
+    /// coincident faces cover it.
     float uncovered_share(std::uint32_t patch) const;
     /// Whether uncovered_share() is below 1 anywhere.
     bool has_covered_patches() const;
@@ -55,10 +54,10 @@ class RayCaster {
     /// @throws InputError unless this ray caster was made for a scene of the same geometry (geometry_fingerprint).
     void require_made_for(const Scene& scene) const;
 
-    /// Scene::origin: world coordinates of what rays have as (0, 0, 0) [m].
+    /// Scene::origin: world coordinates of (0, 0, 0) in ray coordinates [m].
     const Imath::V3d& origin() const { return origin_; }
 
-    /// Bytes that the ray tracer holds for this scene.
+    /// Memory of the ray tracer for this scene [bytes].
     std::size_t memory() const;
 
   private:
@@ -70,11 +69,10 @@ class RayCaster {
     std::vector<float> ray_offsets_;
 };
 
-/// The ways in which Embree takes rays.
+/// Embree's interfaces for tracing rays.
 enum class RayInterface { single, packet8, packet16, stream };
 
-/// Rays that already lie in Embree's own layout, so that tracing them costs what Embree costs and nothing else: the
-/// ceiling that the solver's speed is measured against.
+/// Rays in Embree's own layout, traced without conversion: the upper bound for the solver's ray rate.
 class PreparedRays {
   public:
     PreparedRays(std::span<const Ray> rays, RayInterface interface);
@@ -84,9 +82,9 @@ class PreparedRays {
 
     /// Rays are traced in groups of 1024 (the last may be shorter).
     std::size_t group_count() const;
-    /// Traces one group on the calling thread; once only, since Embree overwrites the rays.
+    /// Traces one group on the calling thread. Call once per group, because Embree overwrites the rays.
     void trace_group(const RayCaster& ray_caster, std::size_t group);
-    /// Rays that have hit something so far.
+    /// Number of rays with a hit so far.
     std::size_t hit_count() const;
 
   private:

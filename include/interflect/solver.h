@@ -17,27 +17,25 @@ class StateArchive;
 
 namespace interflect {
 
-/// Where a run stands.
+/// State of a run when advance() returns.
 struct AdvanceReport {
-    double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite as long as it is not known.
+    double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite before an estimate exists.
     std::int64_t rays = 0;                                   ///< Since the run began.
-    double seconds = 0;                                      ///< Spent in advance(), likewise.
-    bool is_finished = false;                                ///< There is nothing left to do within SolveOptions.
+    double seconds = 0;                                      ///< Spent in advance() since the run began.
+    bool is_finished = false;                                ///< The run has reached the limits given in SolveOptions.
     bool is_stopped = false;                                 ///< Monitor::stop ended it.
 };
 
-/// Solves Eq. 1 of Prikryl et al. 2000 step by step: each iteration shoots N rays, chosen by power (Eq. 3) or by power
-/// and importance (Eq. 9-11), refines the mesh where its method says so (Eq. 14, 15), and is merged with the running
-/// mean (Eq. 6).
+/// Solves Eq. 1 of Prikryl et al. 2000 step by step; see solve().
 ///
-/// SolveOptions are the plan of the whole run: they alone decide how its iterations are sized, and where it ends. The
-/// Limits of advance() only decide when it returns; the work that is then under way goes on with the next call. So many
-/// small calls, or saving and opening in between, give the same bits as one call, on any number of threads. Only
-/// Limits::time of the plan makes iterations depend on how fast they are.
+/// SolveOptions are the plan of the whole run: they determine the size of its iterations and its end. The Limits of
+/// advance() only determine when it returns; the next call continues the unfinished iteration. Many small calls, also
+/// with save() and open() in between, therefore give the same bits as one call, on any number of threads. The exception
+/// is Limits::time of the plan, which makes iterations depend on speed.
 class Solver {
   public:
-    /// @throws InputError listing every option out of range and every fault of the scene; for a view that defines no
-    /// picture. A scene without light is legal.
+    /// @throws InputError listing every option out of range and every fault of the scene; also for a view that defines
+    ///         no picture. A scene without light is valid.
     Solver(Scene scene, const SolveOptions& options);
     Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& options);
     /// @param ray_caster  Of the same scene, otherwise InputError.
@@ -47,41 +45,39 @@ class Solver {
     Solver(Solver&&) noexcept;
     Solver& operator=(Solver&&) noexcept;
 
-    /// Goes on until a limit is reached, the plan is fulfilled, or Monitor::stop is set, which another thread or a
-    /// signal handler may do. Rays that are asked for beyond a plan that is fulfilled are added to it.
-    /// @param limits  Rays and time count from now on. The last iteration is whole: `rays` may be exceeded. No step of
-    ///                rays begins after `time`, but one is always traced.
+    /// Continues until a limit is reached, the plan is complete, or another thread or a signal handler sets
+    /// Monitor::stop. Rays requested beyond a complete plan extend it.
+    /// @param limits  Rays and time count from this call. The last iteration is completed, so `rays` may be exceeded.
+    ///                No step of rays begins after `time`, but at least one is traced.
     AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
 
-    /// Goes on with other views: what is known of the light is kept, importance is found anew.
-    /// @throws InputError as the constructor does; then the views are as before.
+    /// Continues with other views. Keeps the light; recomputes importance.
+    /// @throws InputError as the constructor does; the views are then unchanged.
     void set_views(std::vector<WeightedView> views);
-    /// Scales the sources of a light group of the scene: 1 is what the scene says they emit. The light of the group is
-    /// scaled with them at once.
-    /// @throws InputError for a group that there is not, for a factor that is negative or not finite, and unless the
-    /// method averages iterations (Method::follows_dimming).
+    /// Scales the sources of a light group and their light, relative to the original scene.
+    /// @throws InputError for an unknown group, for a factor that is negative or not finite, and for methods that do
+    ///         not average iterations (Method::follows_dimming).
     void set_exitance(const std::string& group, float factor);
     /// Replaces SolveOptions::limits, which count from the beginning of the run.
-    /// @throws InputError for one out of range.
+    /// @throws InputError for a limit out of range.
     void set_plan(const Limits& limits);
 
-    /// The light as far as it is known. Made when it is first asked for, in O(elements); the reference holds until the
-    /// solver changes, a copy for ever.
+    /// Current solution, computed on first request in O(elements). The reference is valid until the solver changes.
     const Solution& solution() const;
-    /// The same without a copy; the solver is of no use any more.
+    /// The same without a copy. The solver must not be used afterwards.
     Solution take_solution() &&;
-    /// With its sources as set_exitance() has scaled them.
+    /// With its sources as scaled by set_exitance().
     const Scene& scene() const { return *shared_scene(); }
     const RayCaster& ray_caster() const { return *shared_ray_caster(); }
     std::shared_ptr<const Scene> shared_scene() const;
     std::shared_ptr<const RayCaster> shared_ray_caster() const;
     const SolveOptions& options() const;
 
-    /// Writes all that is needed to go on to a solution file (docs/solution-file.md), by way of a temporary file.
-    /// @throws std::runtime_error where it cannot be written.
+    /// Writes the complete state to a solution file (docs/solution-file.md), through a temporary file.
+    /// @throws std::runtime_error if it cannot be written.
     void save(const std::filesystem::path& path);
-    /// What save() wrote. @throws InputError for a file that is missing, damaged, without the state of a run, or of
-    /// another version of Interflect.
+    /// Reads a file of save(). @throws InputError for a file that is missing, damaged, without the state of a run, or
+    /// of another version of Interflect.
     static Solver open(const std::filesystem::path& path);
 
   private:

@@ -10,47 +10,47 @@
 
 namespace interflect {
 
-/// Something in a scene that spoils its light, or that should be known before it is solved.
+/// A problem of a scene that affects its light, or a note to consider before solving.
 struct Finding {
-    /// One place where it is; what does not apply is empty.
+    /// One occurrence; fields that do not apply are empty.
     struct Place {
         std::string object{}, material{};
         std::string where{};           ///< "file:line".
-        Imath::V3d position{0, 0, 0};  ///< In the world [m].
+        Imath::V3d position{0, 0, 0};  ///< In world coordinates [m].
         bool has_position = false;
     };
     std::string kind;           ///< Stable identifier, such as "duplicate-face".
-    bool is_problem = false;    ///< Whether it changes the light, or is nearly certainly a mistake; else a note.
-    std::string message;        ///< What it is, in one sentence.
-    std::string advice;         ///< What to do about it.
-    std::int64_t count = 0;     ///< How often.
-    std::vector<Place> places;  ///< The first of them.
+    bool is_problem = false;    ///< Whether it changes the light or is nearly certainly a mistake; otherwise a note.
+    std::string message;        ///< Description in one sentence.
+    std::string advice;         ///< Recommended action.
+    std::int64_t count = 0;     ///< Number of occurrences.
+    std::vector<Place> places;  ///< The first occurrences.
 };
 
 struct ValidateOptions {
-    std::size_t places = 3;         ///< Most of each kind that are listed.
-    float high_reflectance = 0.9f;  ///< Paints, paper and snow have less; in (0, 1).
+    std::size_t places = 3;         ///< Maximum number of places listed per kind.
+    float high_reflectance = 0.9f;  ///< Above paints, paper and snow; in (0, 1).
 };
 
-/// Looks for what would spoil a solve of the scene as it was read, before cut_at_contacts(). Problems:
-/// "degenerate-face" (without area, left out by the reader), "duplicate-face" (the same corners as another),
-/// "inverted-face" (one-sided, and the scene is behind it), "inverted-lamp" (its front is against a surface, its back
-/// is not), "hidden-lamp" (covered, or enclosed by surfaces close to it), "zero-power-lamp", "high-reflectance",
-/// "no-light", "implausible-size", "maintenance-factor". Notes: "coincident-face" (another in its plane covers a part
-/// of it), "open-edge" (of one face alone) and "no-view"; then the findings of validate_setup(). What faces and lamps
-/// see is found with rays: 64 a face, of at most 4096 of a kind.
+/// Finds problems that would spoil a solution. Call it with the scene as read, before cut_at_contacts(). Problems:
+/// "degenerate-face" (without area, omitted by the reader), "duplicate-face" (same corners as another), "inverted-face"
+/// (one-sided, with the scene behind it), "inverted-lamp" (its front is against a surface, its back is not),
+/// "hidden-lamp" (covered, or enclosed by close surfaces), "zero-power-lamp", "high-reflectance", "no-light",
+/// "implausible-size", "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane),
+/// "open-edge" (belongs to one face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces
+/// and lamps are sampled with 64 rays a face, for at most 4096 faces of a kind.
 /// @param ray_caster  Of this scene.
-/// @return            In the order above. O(n log n) for n patches. @throws InputError where the ray caster is
-/// another's.
+/// @return            In the order above. O(n log n) for n patches.
+/// @throws InputError for a ray caster of another scene.
 std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, const ValidateOptions& options = {});
 
-/// The part of validate() that costs milliseconds: probable mistakes of placing, units or axes. Problems:
-/// "close-luminaire" (more than half of its light is received by a surface within 2 cm, or within a hundredth of a
-/// scene smaller than 2 m), "outside-luminaire" (all of its light escapes; in a closed room, more than half of it
-/// does, or a quarter of all directions are free), "wide-opening" (larger than the scene) and "shut-out-sky" (a sky or
-/// a sun, and a closed scene that is seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT in one scene),
-/// "probable-unit" and "probable-up-axis" (of formats without either). Point lights, spots and measured lights have 256
-/// rays each, at most 1024 of them; 2^14 lines find where a sky enters.
+/// Fast part of validate(), in milliseconds: probable mistakes in placement, units or axes. Problems: "close-luminaire"
+/// (more than half of its light falls on a surface within 2 cm, or within a hundredth of a scene smaller than 2 m),
+/// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or a quarter of all
+/// directions are free), "wide-opening" (larger than the scene) and "shut-out-sky" (a sky or a sun, and a closed scene
+/// seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT in one scene), "probable-unit" and
+/// "probable-up-axis" (for formats without either). Traces 256 rays for each point light, spot and measured light, for
+/// at most 1024 of them, and 2^14 lines to find openings to the sky.
 /// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
 std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
                                     const ValidateOptions& options = {});

@@ -5,11 +5,10 @@
 
 namespace interflect::inline detail {
 
-/// Addresses that the process may still reserve [bytes]: what RLIMIT_AS (ulimit -v) leaves of them; the largest number
-/// where there is no such limit.
+/// Address space still available to the process [bytes], by RLIMIT_AS (ulimit -v); the largest number without a limit.
 std::size_t free_address_space();
 
-/// So many addresses cannot be reserved.
+/// Address space cannot be reserved.
 class AddressSpaceError : public std::runtime_error {
   public:
     explicit AddressSpaceError(std::size_t bytes);

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view hex_digits = "0123456789abcdef";
 constexpr std::size_t escape_length = 4;  // \xNN
 
-/// Continuation bytes that the first byte of a UTF-8 sequence announces, and the least code point that needs as many.
+/// Form of a UTF-8 sequence by its first byte, and the smallest code point that needs this length.
 struct SequenceKind {
     std::uint8_t mask, lead;
     std::size_t length;
@@ -19,9 +19,9 @@ struct SequenceKind {
 constexpr SequenceKind sequence_kinds[] = {
     {0x80, 0x00, 1, 0}, {0xe0, 0xc0, 2, 0x80}, {0xf0, 0xe0, 3, 0x800}, {0xf8, 0xf0, 4, 0x10000}};
 
-/// A character at the front of a text.
+/// The first character of a text.
 struct Character {
-    std::size_t length = 0;  ///< [bytes]; 0 where there is no valid UTF-8.
+    std::size_t length = 0;  ///< [bytes]; 0 for invalid UTF-8.
     std::uint32_t code_point = 0;
 };
 

@@ -9,18 +9,16 @@
 
 namespace interflect::inline detail {
 
-/// Non-negative colours as integers in a common unit: their sums do not depend on the order of the terms, so any number
-/// of threads gets the same bits. The unit is chosen from the total that can at most arrive, so nothing overflows: with
-/// unit = total / 2^61 every partial sum stays below 2^63 even after each term was rounded up, for up to 2^61 terms;
-/// 10^12 equal terms still have 2^21 units each.
+/// Non-negative colours as integers in a common unit. Sums are independent of the order of terms and thus of the number
+/// of threads. The unit is total / 2^61, with an upper bound of the sum as total: up to 2^61 terms stay below 2^63,
+/// even if all are rounded up. Each of 10^12 equal terms still has 2^21 units.
 class FixedPoint {
   public:
     using Value = std::array<std::int64_t, 3>;
 
-    /// @param total  At least the sum of all terms, per channel; finite. Where it is 0, so are all terms.
+    /// @param total  Upper bound of the sum of all terms, per channel; finite. 0 if all terms are 0.
     explicit FixedPoint(double total) : unit_(total * 0x1p-61), per_unit_(total > 0 ? 1 / unit_ : 0) {}
 
-    /// The nearest integers.
     Value from(const RgbD& c) const {
         return {std::llround(c.x * per_unit_), std::llround(c.y * per_unit_), std::llround(c.z * per_unit_)};
     }
@@ -34,7 +32,6 @@ class FixedPoint {
     double unit_, per_unit_;
 };
 
-/// Adds to a sum to which other threads may add at the same time.
 inline void add_concurrently(std::int64_t& sum, std::int64_t term) {
     if (term != 0) std::atomic_ref(sum).fetch_add(term, std::memory_order_relaxed);
 }

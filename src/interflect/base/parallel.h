@@ -26,13 +26,12 @@
 
 namespace interflect::inline detail {
 
-/// One T for each thread that asks for it. Its memory is malloc's: what TBB's own allocator hands from thread to thread
-/// ThreadSanitizer cannot follow.
+/// One T per thread. Uses malloc because ThreadSanitizer cannot follow TBB's allocator between threads.
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
-/// Calls body(begin, end) for ranges that partition [0, count), on all threads; each range is at most `grain` long and
-/// starts at a multiple of it, so that the partition does not depend on the number of threads.
+/// Calls body(begin, end) on all threads for a partition of [0, count). Ranges start at multiples of `grain` and are at
+/// most that long, independent of the number of threads.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
     const std::size_t ranges = (count + grain - 1) / grain;
@@ -42,7 +41,7 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
         return;
     }
 #ifdef INTERFLECT_THREAD_SANITIZER
-    // ThreadSanitizer cannot see into the TBB library and takes its tasks for races: plain threads share the ranges.
+    // ThreadSanitizer reports TBB's tasks as races, so plain threads share the ranges.
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t range = next++; range < ranges; range = next++) do_range(range);
@@ -55,8 +54,8 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
 #endif
 }
 
-/// Sum of body(begin, end) over ranges that partition [0, count) as above, in their order: the same bits for any number
-/// of threads. @param zero  What an empty sum is.
+/// Sum of body(begin, end) over the same ranges in order: equal bits for any number of threads.
+/// @param zero  The empty sum.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {
     std::vector<T> parts((count + grain - 1) / grain, zero);
@@ -67,7 +66,7 @@ T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& 
     return sum;
 }
 
-/// Sorts on all threads. @param less  A total order: of equals it would be open which comes first.
+/// @param less  Must be a total order, because the sort is not stable.
 template <class T, class Less>
 void parallel_sort(std::vector<T>& values, const Less& less) {
 #ifdef INTERFLECT_THREAD_SANITIZER
@@ -77,7 +76,7 @@ void parallel_sort(std::vector<T>& values, const Less& less) {
 #endif
 }
 
-/// Calls both, at the same time if a thread is free.
+/// Calls both functions, in parallel if a thread is free.
 template <class A, class B>
 void parallel_invoke(const A& a, const B& b) {
 #ifdef INTERFLECT_THREAD_SANITIZER

@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The file that a path leads to, which need not exist; symbolic links are followed.
+/// Follows symbolic links. The target need not exist.
 fs::path target_of(fs::path path) {
-    constexpr int most_links = 40;  // as many as the kernel follows
+    constexpr int most_links = 40;  // as in the kernel
     for (int link = 0; fs::is_symlink(fs::symlink_status(path)); ++link) {
         if (link == most_links) throw InputError("too many symbolic links, or a loop of them");
         path = path.parent_path() / fs::read_symlink(path);
@@ -39,7 +39,7 @@ fs::path target_of(fs::path path) {
 
 bool is_standard_output(const fs::path& path) { return path == "-"; }
 
-/// Copies a file into something that is already there. @throws std::runtime_error
+/// Copies a file into an existing device or pipe. @throws std::runtime_error
 void copy_into(const fs::path& from, const fs::path& device) {
     const auto fail = [&] {
         throw std::runtime_error("cannot write '" + device.string() + "': " + std::strerror(errno));
@@ -69,14 +69,13 @@ void copy_into(const fs::path& from, const fs::path& device) {
 
 constexpr std::string_view temporary_mark = ".part";
 
-/// What the names of this host's temporary files begin with.
 std::string temporary_prefix() {
     std::array<char, 256> host{};
     ::gethostname(host.data(), host.size() - 1);
     return ".interflect-" + std::string(host.data()) + "-";
 }
 
-/// Short, whatever the final name is: a file's name has at most 255 bytes.
+/// Short, because file names have at most 255 bytes.
 std::string temporary_name(const fs::path& final_path) {
     static std::atomic<int> made = 0;
     constexpr std::size_t longest_extension = 16;
@@ -85,7 +84,7 @@ std::string temporary_name(const fs::path& final_path) {
            std::string(temporary_mark) + (extension.size() <= longest_extension ? extension : "");
 }
 
-/// Whether a file name is that of a temporary file whose process has ended.
+/// Whether a file name is that of a temporary file of an ended process.
 bool is_stale(std::string_view name, std::string_view prefix) {
     if (!name.starts_with(prefix) || name.find(temporary_mark) == std::string_view::npos) return false;
     pid_t process = 0;
@@ -95,7 +94,7 @@ bool is_stale(std::string_view name, std::string_view prefix) {
            ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Removes what killed processes of this host have left in a folder, as far as that is allowed.
+/// Removes temporary files of killed processes on this host, where permitted.
 void remove_stale_files(const fs::path& folder) {
     const std::string prefix = temporary_prefix();
     std::error_code ignored;
@@ -103,7 +102,7 @@ void remove_stale_files(const fs::path& folder) {
         if (is_stale(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
 }
 
-/// The temporary files that there are, in plain memory for a signal handler. A slot is free while its path is null.
+/// Current temporary files, in plain memory for a signal handler. A slot is free while its path is null.
 constexpr std::size_t slot_count = 16;
 std::array<std::atomic<const char*>, slot_count> listed_paths{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -123,7 +122,7 @@ void unlist(std::size_t slot) {
 }  // namespace
 
 PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path)), slot_(slot_count) {
-    std::error_code loop;  // of symbolic links: target_of() says so
+    std::error_code loop;  // loop of symbolic links, reported by target_of()
     const fs::file_status status = fs::status(final_path_, loop);
     if (final_path_.filename().empty() || fs::is_directory(status))
         throw_cannot_write(final_path_, "it names a folder, expected a file name");
@@ -168,7 +167,7 @@ PendingFile::PendingFile(PendingFile&& other) noexcept
 
 PendingFile::~PendingFile() {
     unlist(slot_);
-    std::error_code ignored;  // nothing useful can be done about a temporary file that will not go
+    std::error_code ignored;  // failure to remove a temporary file is ignored
     if (!temporary_path_.empty()) fs::remove(temporary_path_, ignored);
 }
 

@@ -13,8 +13,8 @@ namespace {
 constexpr int word_bits = 32;
 using Directions = std::array<std::uint32_t, word_bits>;
 
-/// Direction numbers of one dimension, from its primitive polynomial of degree `degree` with inner coefficients
-/// `inner` and the first odd numbers m (Joe and Kuo 2008); bit-reversed: digit 1 of the point is the lowest bit.
+/// Direction numbers of one dimension, from a primitive polynomial of degree `degree` with inner coefficients `inner`
+/// and the first odd numbers m (Joe and Kuo 2008). Bit-reversed: digit 1 of the point is the lowest bit.
 constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::array<std::uint32_t, 3> m) {
     std::array<std::uint32_t, word_bits> v{};  // v[i] = m[i] * 2^(31 - i)
     for (int i = 0; i < word_bits; ++i) {
@@ -38,8 +38,8 @@ constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::arra
 constexpr std::array<Directions, 4> directions = {sobol_directions(0, 0, {}), sobol_directions(1, 0, {1}),
                                                   sobol_directions(2, 1, {1, 3}), sobol_directions(3, 1, {1, 3, 1})};
 
-/// A random bijection of 32-bit words in which a bit depends only on itself and lower bits: on bit-reversed numbers it
-/// is Owen's nested scrambling. Form after Laine and Karras 2011, constants of N. Vegdahl 2021.
+/// A random bijection of words in which bits depend only on themselves and lower bits: Owen's nested scrambling of
+/// bit-reversed numbers. Form after Laine and Karras 2011, constants of N. Vegdahl 2021.
 constexpr std::uint32_t nested_permutation(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -57,8 +57,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return x >> 16 | x << 16;
 }
 
-/// Sobol' points in Gray-code order: consecutive ones differ by one direction number, and every aligned block of 2^k is
-/// the same set as in natural order. Writes points first ... first + count - 1 from `begin` on; must not wrap around.
+/// Sobol' points in Gray-code order: consecutive points differ by one direction number, and aligned blocks of 2^k equal
+/// those in natural order as sets. Writes `count` points from index `begin` on; must not wrap around.
 void fill_sobol(std::uint64_t key, std::uint32_t first, std::size_t begin, std::size_t count, PointBlock& block) {
     std::array<std::uint32_t, PointBlock::capacity> word;
     for (std::size_t d = 0; d < 4; ++d) {
@@ -86,7 +86,7 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
         }
         return;
     }
-    // A sequence has 2^32 points; then the next one, scrambled anew, takes over.
+    // After its 2^32 points a sequence continues with a new scrambling.
     for (std::size_t begin = 0; begin < count;) {
         const std::uint64_t index = first + begin, left = (std::uint64_t{1} << word_bits) - (index & 0xffffffffu);
         const auto run = static_cast<std::size_t>(std::min<std::uint64_t>(left, count - begin));
@@ -96,7 +96,7 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
 }
 
 std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
-    constexpr std::uint32_t shuffled_bits = 0xffffu;  // fewer bits to add up below
+    constexpr std::uint32_t shuffled_bits = 0xffffu;  // fewer bits to sum below
     constexpr std::uint64_t order = 4;                // the number after those of the dimensions' keys
     const auto order_seed = static_cast<std::uint32_t>(mix(key, order) >> 32);
     const std::uint32_t place =

@@ -13,11 +13,11 @@ constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
     return x ^ (x >> 31);
 }
 
-/// Four independent uniform 32-bit words that depend on (key, index) alone: Philox4x32-10, Salmon et al. 2011.
-/// Counter-based, so any thread may ask for any index.
+/// Four independent uniform 32-bit words from (key, index): Philox4x32-10, Salmon et al. 2011. Counter-based, with
+/// random access.
 std::array<std::uint32_t, 4> random_words(std::uint64_t key, std::uint64_t index);
 
-/// A 32-bit word as a number in (0, 1): the middle of one of 2^23 equal cells, so neither 0 nor 1 is ever reached.
+/// Maps a 32-bit word to the middle of one of 2^23 equal cells of (0, 1); excludes 0 and 1.
 constexpr float unit_float(std::uint32_t word) { return (static_cast<float>(word >> 9) + 0.5f) * 0x1p-23f; }
 
 /// A uniform number in [0, 1) with 53 random bits, from (key, index).

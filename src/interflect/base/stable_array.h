@@ -11,8 +11,8 @@
 
 namespace interflect::inline detail {
 
-/// An array of up to `capacity` zeros that never moves: address space is reserved at once, memory comes page by page as
-/// it is touched. So threads may use new entries while others still read old ones.
+/// An array of `capacity` zeros that never moves, so threads may use new entries while others read old ones. Address
+/// space is reserved at once; memory is allocated by page on first access.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -25,7 +25,7 @@ class StableArray {
             ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory == MAP_FAILED) throw AddressSpaceError(bytes());
         data_ = static_cast<T*>(memory);
-        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // entries are looked up at random; refused: slower, no more
+        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // entries are accessed at random; failure costs only time
     }
     ~StableArray() {
         if (data_) ::munmap(data_, bytes());
@@ -42,7 +42,7 @@ class StableArray {
     const T& operator[](std::size_t i) const { return data_[i]; }
     std::size_t capacity() const { return capacity_; }
 
-    /// Gives back the memory of entries that are not needed any more, as far as they fill pages; their values are lost.
+    /// Frees the memory of entries, in whole pages; their values are lost.
     void release(std::size_t begin, std::size_t end) {
         constexpr std::size_t page = 4096;
         const std::size_t first = (begin * sizeof(T) + page - 1) / page * page, last = end * sizeof(T) / page * page;

@@ -18,7 +18,7 @@ namespace interflect::inline detail {
 namespace {
 
 constexpr std::uint64_t rays_of_face = 64, paths_of_lamp = 64, reflections = 8, seed_of_surroundings = 1;
-constexpr float close_by = 0.1f;  // of a face's size
+constexpr float close_by = 0.1f;  // relative to a face's size
 
 Hit first_hit(const RayCaster& ray_caster, const Ray& ray) {
     Hit hit;

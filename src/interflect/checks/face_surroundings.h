@@ -9,21 +9,21 @@ namespace interflect::inline detail {
 
 enum class Side { front, back };
 
-/// Shares of the rays that leave a side of a face.
+/// Fractions of the rays that leave a side of a face.
 struct Surroundings {
-    float blocked = 0;  ///< Hit something closer than a tenth of the face's size.
-    float escaped = 0;  ///< Hit nothing.
+    float blocked = 0;  ///< Hit an object closer than a tenth of the face's size.
+    float escaped = 0;  ///< Left the scene.
 };
 
-/// What faces and lamps see, by rays in cosine-distributed directions.
+/// Samples surroundings of faces and lamps with cosine-distributed rays.
 class FaceSurroundings {
   public:
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
 
-    /// 64 rays.
+    /// Traces 64 rays.
     Surroundings look(std::uint32_t patch, Side side) const;
-    /// Whether light that starts there, and is reflected eight times whatever the reflectances, stays within a tenth of
-    /// the scene's size, and within five times the size of the lamp or half a metre: 64 paths. It goes through glass.
+    /// Whether light from this source, reflected eight times independent of reflectance, stays within a tenth of the
+    /// scene's size and within five times the lamp's size or 0.5 m. Traces 64 paths through glass.
     bool is_enclosed(std::uint32_t patch) const;
     bool is_enclosed(const V3f& position) const;
 

@@ -11,10 +11,10 @@
 
 namespace interflect::inline detail {
 
-/// Counts findings of one kind, and keeps the first places.
+/// Counts findings of one kind and keeps the first places.
 class Finder {
   public:
-    /// @param places  Most that are kept.
+    /// @param places  Maximum number of places to keep.
     Finder(const Scene& scene, std::size_t places, Finding finding)
         : scene_(scene), places_(places), finding_(std::move(finding)) {}
 

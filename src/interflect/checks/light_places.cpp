@@ -21,15 +21,15 @@ constexpr std::size_t most_lights = 1024, rays_per_part = 4,
                       rays_per_light = rays_per_part * Emission::parts_per_emitter;
 constexpr std::uint64_t seed_of_light = 31;
 
-/// A luminaire so close to a surface loses light to it that is meant for the room; of the scene's diagonal, in scenes
-/// smaller than 2 m.
+/// Minimum gap between luminaire and surface [m], or relative to the diagonal of scenes smaller than 2 m. A closer
+/// surface takes light meant for the room.
 constexpr float least_gap = 0.02f, least_gap_relative = 0.01f;
 
-/// Surfaces count as close up to this times that distance along a ray, so that shades of lamps do not.
+/// Multiple of the gap along a ray within which surfaces are close; excludes lamp shades.
 constexpr float most_oblique = 5;
 
-/// Measured light starts this share of the scene's largest coordinate before its opening (Emission), from where a
-/// ceiling just below it is not met. The checks start at an eighth of that: 16 roundings of a coordinate.
+/// Measured light starts this fraction of the scene's largest coordinate before its opening (Emission), where it may
+/// miss a ceiling just below. The checks start at an eighth: 16 roundings.
 constexpr float start_offset = 0x1p-17f, checked_offset = 0x1p-20f;
 
 bool is_local(const Luminaire& luminaire) {
@@ -37,7 +37,7 @@ bool is_local(const Luminaire& luminaire) {
            std::holds_alternative<MeasuredLight>(luminaire.kind);
 }
 
-/// Where a luminaire is and the way that it faces; 0 for a point light.
+/// Direction is 0 for a point light.
 struct Pose {
     V3f position, direction{0, 0, 0};
 };
@@ -49,7 +49,7 @@ Pose pose_of(const Luminaire& luminaire) {
     return {measured.position, measured.direction.normalized()};
 }
 
-/// The luminaires, at most `most_lights`, in a scene that has one face: a triangle with the same bounding box.
+/// At most `most_lights` luminaires, and a triangle with the bounding box of the scene.
 Scene sample_of_lights(const Scene& scene) {
     Imath::Box3f box;
     for (const Patch& patch : scene.patches)
@@ -72,12 +72,12 @@ float reach_of(const Scene& sample) {
     return reach;
 }
 
-/// Where the light of a luminaire goes: numbers of rays.
+/// Numbers of a luminaire's rays.
 struct Outcome {
     std::size_t escaped = 0, close = 0;
 };
 
-/// An Outcome for each luminaire of the sample. Surfaces are close by the distance of their plane.
+/// Surfaces are close by the distance of their plane.
 std::vector<Outcome> outcomes(const Scene& scene, const Scene& sample, const SightLines& lines, float close_distance) {
     const Emission emission(sample);
     const float back = (start_offset - checked_offset) * reach_of(sample);
@@ -101,7 +101,7 @@ std::vector<Outcome> outcomes(const Scene& scene, const Scene& sample, const Sig
     return result;
 }
 
-/// The planes C0 and C90 differ by more than a tenth of the peak.
+/// Whether the planes C0 and C90 differ by more than a tenth of the peak.
 bool depends_on_planes(const PhotometricWeb& web) {
     constexpr int steps = 36;  // of 5 degrees
     const float peak = web.peak();
@@ -151,7 +151,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const SightLines&
         const Luminaire& luminaire = sample.luminaires[i];
         const Pose pose = pose_of(luminaire);
         const V3f before =
-            pose.position + start_offset * reach_of(sample) * pose.direction;  // the surface that it is set in
+            pose.position + start_offset * reach_of(sample) * pose.direction;  // before the surface that contains it
         const auto add_to = [&](Finder& found) {
             found.add_at(pose.position, scene.objects[luminaire.object], luminaire.name);
         };

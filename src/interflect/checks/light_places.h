@@ -8,9 +8,9 @@
 
 namespace interflect::inline detail {
 
-/// Findings about point lights, spots and measured lights: "close-luminaire", "outside-luminaire", "wide-opening" and
-/// "mixed-photometry". Traces 256 rays a luminaire, by its intensities; of more than 1024 lights it samples 1024.
-/// @param is_room  Of the scene's Shell.
+/// Finds "close-luminaire", "outside-luminaire", "wide-opening" and "mixed-photometry" among point lights, spots and
+/// measured lights. Traces 256 rays per luminaire, distributed by its intensities, for at most 1024 luminaires.
+/// @param is_room  Shell::is_room of the scene.
 std::vector<Finding> find_misplaced_lights(const Scene& scene, const SightLines& lines, bool is_room,
                                            std::size_t places);
 

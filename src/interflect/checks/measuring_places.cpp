@@ -24,9 +24,9 @@ bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray,
     return back.patch != none && back.distance < hit.distance * (1 - rounding) - offsets * offset;
 }
 
-/// Measuring starts there: before a surface that the point lies on.
+/// Distance of rays from a surface on which the point lies.
 float offset_of_points(const Scene& scene) {
-    constexpr float relative_offset = 0x1p-17f;  // as measure_irradiance()
+    constexpr float relative_offset = 0x1p-17f;  // as in measure_irradiance()
     float reach = 0;
     for (const V3f& x : scene.vertices)
         for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(x[k]));

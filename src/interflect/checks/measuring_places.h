@@ -13,11 +13,11 @@ namespace interflect::inline detail {
 /// Reasons why a measurement at a point is useless.
 enum class PointFault {
     none,
-    outside,  ///< A quarter of the directions that it faces leave a closed room.
-    behind    ///< Most rays from it pass the back of a one-sided face first: it lies inside a solid.
+    outside,  ///< A quarter of the directions on its front side leave a closed room.
+    behind    ///< Inside a solid: most rays from it first pass the back of a one-sided face.
 };
 
-/// The fault of each point. Traces 32 rays a point and back; of more than 2048 points it looks at 2048, evenly spaced.
+/// Traces 32 rays per point and back, for at most 2048 points, evenly spaced.
 std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
                                      std::span<const MeasuringPoint> points);
 

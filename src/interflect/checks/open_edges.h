@@ -7,13 +7,13 @@
 
 namespace interflect::inline detail {
 
-/// An edge that one face alone has.
+/// An edge of exactly one face.
 struct OpenEdge {
     V3f a, b;  ///< Relative to Scene::origin [m].
     std::uint32_t patch = none;
 };
 
-/// In order of the patches. Vertices at one position count as one, whatever their texture coordinates. O(n log n).
+/// In order of the patches. Merges vertices at one position, regardless of texture coordinates. O(n log n).
 std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace interflect::inline detail

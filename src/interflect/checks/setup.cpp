@@ -1,4 +1,4 @@
-// Probable mistakes of placing, units and axes.
+// Probable mistakes in placement, units and axes.
 
 #include <ImathBox.h>
 #include <fmt/format.h>
@@ -44,14 +44,14 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
     findings.push_back(std::move(found.front()));
 }
 
-/// Formats without a unit and an up axis.
+/// Formats without units and up axis.
 bool is_bare_mesh(const Scene& scene) {
     const std::string extension = std::filesystem::path(scene.name).extension().string();
     constexpr std::string_view bare[] = {".obj", ".ply", ".stl", ".OBJ", ".PLY", ".STL"};
     return std::find(std::begin(bare), std::end(bare), extension) != std::end(bare);
 }
 
-/// Whether 99 of 100 coordinates are integers, of 8 vertices or more: meshes in metres have fractions.
+/// Whether 99 of 100 coordinates of at least 8 vertices are integers. Meshes in metres have fractions.
 bool has_integer_coordinates(const Scene& scene) {
     constexpr std::size_t least_vertices = 8;
     if (scene.vertices.size() < least_vertices) return false;
@@ -68,7 +68,7 @@ bool has_integer_coordinates(const Scene& scene) {
 
 void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& findings) {
     for (const Warnings::Entry& warning : scene.warnings.entries())
-        if (warning.kind == "implausible-size") return;  // the reader has asked for the unit
+        if (warning.kind == "implausible-size") return;  // the reader has already asked for the unit
     constexpr float largest_path = 80;  // a hangar of 300 x 100 x 40 m has 52; a room of 4 x 5 x 3 m in centimetres 230
     constexpr float largest_mesh = 200;
     const float size = core_bounds(scene).size().length();

@@ -14,7 +14,7 @@ namespace {
 constexpr int most_escaped_inside = 2;  // of SightLines::rays_per_point
 constexpr std::uint64_t seed_of_origins = 11, seed_of_directions = 12, seed_of_sides = 13;
 
-/// The line of an index: uniform and isotropic in the sphere around the scene.
+/// Random lines by index: uniform and isotropic in the sphere around the scene.
 class OuterLines {
   public:
     explicit OuterLines(const Scene& scene) {
@@ -33,9 +33,9 @@ class OuterLines {
     float radius_;
 };
 
-/// The two sides of the face that a line meets first.
+/// The two sides of the first face on a line.
 struct MetFace {
-    V3f front, back;  ///< Just before it and behind it [m].
+    V3f front, back;  ///< Points just before and behind the face [m].
     V3f normal;       ///< Towards the start of the line.
 };
 

@@ -4,22 +4,22 @@
 
 namespace interflect::inline detail {
 
-/// Enclosed space of a scene, estimated with random lines from the sphere around it.
+/// Enclosed space of a scene, sampled with random lines from outside.
 struct Shell {
-    /// Whether nine of ten faces that are seen from outside have an inner side, from which at most 2 of 32 rays leave
-    /// the scene: a room with a window, but not one with a wall left out.
+    /// Whether nine of ten faces visible from outside have an inner side from which at most 2 of 32 rays leave the
+    /// scene. True for a room with a window, false for a room with a missing wall.
     bool is_closed = false;
-    /// Whether it is closed and seen from inside: a view lies there, or it has no view and is 2 m or more in each
-    /// direction. Closed solids that are seen from outside are no rooms.
+    /// Whether the shell is closed and seen from inside: a view is inside, or the scene has no view and is at least 2 m
+    /// in each direction. Closed solids seen from outside are no rooms.
     bool is_room = false;
     float mean_free_path = 0;  ///< Mean length of rays between inner sides [m]; 0 unless closed.
 };
 
-/// At most 128 lines and 2 x 32 rays a line.
+/// Traces at most 128 lines and 2 x 32 rays a line.
 Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
 
-/// Whether light from outside reaches an inner side: at least one line of 2^14 does. Finds windows of 1 m^2 in a
-/// building with 1000 m^2 of walls and roof with a probability above 0.998.
+/// Whether at least one of 2^14 lines from outside reaches an inner side. Finds windows of 1 m^2 in a building with
+/// 1000 m^2 of walls and roof with a probability above 0.998.
 bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
 
 }  // namespace interflect::inline detail

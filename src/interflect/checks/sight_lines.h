@@ -6,23 +6,22 @@
 
 namespace interflect::inline detail {
 
-/// Straight lines through a scene, which go on through panes. Random directions depend on a key and an index alone.
+/// Straight lines through a scene that pass through panes. Random directions depend on key and index alone.
 class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// First hit that is no pane, with its distance from the start of the ray.
+    /// First hit that is not a pane, with its distance from the start.
     Hit first_surface(const Ray& ray) const;
 
-    /// Results of the rays from one point.
     struct Outlook {
-        int escaped = 0, met = 0;  ///< Rays without and with a surface in their way.
-        float distance = 0;        ///< Sum over the rays that met one [m].
+        int escaped = 0, met = 0;  ///< Rays that left the scene; rays that hit a surface.
+        float distance = 0;        ///< Sum over the rays that hit a surface [m].
     };
     static constexpr int rays_per_point = 32;
-    /// Cosine-distributed rays from a point just before a surface; ends early once more than `most_escaped` escape.
+    /// Traces cosine-distributed rays from a point just before a surface, until more than `most_escaped` have escaped.
     Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
-    /// Whether at least a quarter of all directions meet nothing. True outside of a closed scene (Shell), false inside.
+    /// Whether at least a quarter of all directions escape. True outside a closed scene (Shell), false inside.
     bool is_open(const V3f& x) const;
 
     /// Uniform over the sphere; cosine-distributed about a normal.

@@ -16,12 +16,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Least cosine between a direction and its axis, and least share of the evidence for that axis.
+/// Minimum cosine between a direction and its axis; minimum fraction of evidence for an axis.
 constexpr double least_cosine = 0.9, least_agreement = 0.5;
 
 constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
 
-/// @param total  What the length of `sum` would be if all that it is the sum of had one direction.
+/// @param total  Length of `sum` for parallel terms.
 const char* axis_of(const Imath::V3d& sum, double total) {
     const double length = sum.length();
     if (!(length > least_agreement * total)) return nullptr;
@@ -47,7 +47,7 @@ const char* axis_of_light(const Scene& scene) {
     return axis_of(sum, total);
 }
 
-/// The bounding boxes of all patches with an equal part_of(patch), which is below `parts`.
+/// Bounding boxes of patches with equal part_of(patch), below `parts`.
 template <class PartOf>
 std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, const PartOf& part_of) {
     std::vector<Imath::Box3f> boxes(parts);
@@ -72,8 +72,8 @@ std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
                           [&](const Patch& patch) { return connected.find(patch.vertices[0]); });
 }
 
-/// For each axis and its opposite, the share of the objects that reach to within a hundredth of the scene's size of its
-/// lower end; all 0 with fewer than four objects.
+/// Per axis and direction: fraction of objects that start within a hundredth of the scene's size of its lower end. All
+/// 0 for fewer than four objects.
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};

@@ -6,18 +6,18 @@
 
 namespace interflect::inline detail {
 
-/// Which way is up, where something tells: no scene file says so.
+/// Estimated up axis, which scene files do not specify.
 struct UpAxis {
     const char* axis;      ///< "x", "-x", "y", ...
-    const char* evidence;  ///< What tells: "views", which is nearly certain, or "light", which is a guess.
+    const char* evidence;  ///< "views": nearly certain; "light": a guess.
 };
 
-/// Up in the views if they agree; else against the way that most of the light is emitted, since most lamps hang.
+/// Common up axis of the views, or the direction opposite to most emitted light, since most lamps hang.
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 
-/// The axis that is probably up in place of z: no view says otherwise, and two of three agree on it: the light
-/// (find_up_axis), half of the objects standing on one floor (and fewer along z), and an extent along it of at most 0.8
-/// of the others. Fewer than four objects are divided into connected faces. Null if z may be right.
+/// An axis other than z that is probably up, or null if z may be right. No view may contradict it, and two of three
+/// criteria must hold: the light (find_up_axis); half of the objects stand on one floor (and fewer along z); extent of
+/// at most 0.8 of the others. Fewer than four objects are divided into connected faces.
 const char* find_other_up_axis(const Scene& scene);
 
 }  // namespace interflect::inline detail

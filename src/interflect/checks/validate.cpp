@@ -45,7 +45,7 @@ class Validator {
         return {scene_, options_.places, {kind, is_problem, message, advice, 0, {}}};
     }
 
-    /// What the reader warned of.
+    /// Adds warnings of the reader.
     void add_warnings(const char* kind, const char* message, const char* advice) {
         Finding finding{kind, true, message, advice, 0, {}};
         for (const Warnings::Entry& warning : scene_.warnings.entries())
@@ -95,7 +95,7 @@ class Validator {
         return result;
     }
 
-    /// One-sided faces that see nothing, and behind which all of the scene is.
+    /// One-sided faces whose front sees only the void and whose back sees only the scene.
     void add_inverted_faces() {
         Finder inverted = finder("inverted-face", "one-sided faces have the scene behind them and nothing before them",
                                  "turn them round: reverse the order of their vertices");

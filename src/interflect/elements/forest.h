@@ -13,24 +13,23 @@
 
 namespace interflect::inline detail {
 
-/// Elements of one task of a sweep over all of them (parallel_for_ranges).
+/// Number of elements per task of a parallel sweep (parallel_for_ranges).
 inline constexpr std::size_t elements_at_once = 1 << 13;
 
-/// Quadtrees of elements over the patches of a scene: element i < patch_count() is patch i whole; children come in
-/// blocks of four, after their parents. 32-bit indices; 11 bytes an element: what the way down a tree looks at for
-/// each, the rest for each block. Threads may subdivide while others walk the trees; what they made gets its final
-/// numbers in put_in_order().
+/// Quadtrees of elements over the patches of a scene. Element i < patch_count() is the whole patch i; children follow
+/// their parents in blocks of four. 32-bit indices, 11 bytes an element: data for tree descent per element, other data
+/// per block. Threads may subdivide while others traverse; put_in_order() then assigns final numbers.
 class ElementForest {
   public:
-    /// Finest level: an element's side is then 2^-15 of its patch's.
+    /// At the finest level an element's side is 2^-15 of its patch's side.
     static constexpr int deepest_level = 15;
 
-    /// One element a patch.
-    /// @param capacity  Most elements ever, >= the number of patches and < 2^32 - 2. Addresses are reserved for them.
-    /// @throws InputError for another capacity, or a vertex index out of range; AddressSpaceError.
+    /// Creates one element per patch.
+    /// @param capacity  Maximum number of elements, >= the number of patches and < 2^32 - 2; reserves address space.
+    /// @throws InputError for another capacity or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
 
-    /// Bytes of addresses that are reserved for an element.
+    /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element = 11;
 
     /// @throws InputError unless the forest was made for a scene of the same geometry (geometry_fingerprint).
@@ -43,73 +42,72 @@ class ElementForest {
     std::uint32_t patch(std::uint32_t e) const { return is_root(e) ? e : block_of(e).patch; }
     std::uint32_t parent(std::uint32_t e) const {
         return is_root(e) ? none : block_of(e).parent;
-    }                                                             ///< none for a root.
+    }                                                             ///< Roots have no parent.
     float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
     int level(std::uint32_t e) const;                             ///< 0 for a root.
-    /// The way from the root: 1, then two binary digits a level, the child's number.
+    /// Path from the root: 1, then two binary digits per level, the number of the child.
     std::uint32_t path(std::uint32_t e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
-    /// Tells the processor that an element will be asked for its area and its children.
     void prefetch(std::uint32_t e) const { __builtin_prefetch(&nodes_[e]); }
-    /// Likewise a patch for its geometry.
     void prefetch_geometry(std::uint32_t patch) const {
         const char* geometry = reinterpret_cast<const char*>(&geometry_[patch]);
         __builtin_prefetch(geometry);
         __builtin_prefetch(geometry + 64);
     }
 
-    /// The first of four children; none for a leaf.
+    /// First of the four children.
     std::uint32_t first_child(std::uint32_t e) const {
         const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
     }
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
     std::vector<std::uint32_t> leaves() const;  ///< In ascending order.
-    /// The leaf under `root` that holds a point of its patch, among elements below `limit` (all of them by default).
+    /// The leaf below `root` that contains a point of its patch, among elements below `limit` (by default all).
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
-    /// The same below any element and its cell, which holds the point.
+    /// The same, starting at an element whose cell contains the point.
     std::uint32_t leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
-    /// Makes the children of `e` unless it has some; any number of threads may call it at the same time.
-    /// @return  The first child; none where the forest is full or `e` is at the deepest level.
+    /// Creates the children of `e` unless they exist. Thread-safe.
+    /// @return  The first child, or none if the forest is full or `e` is at the deepest level.
     std::uint32_t subdivide(std::uint32_t e);
 
-    /// Renumbers the elements made since there were `first` of them, which threads made in any order, by level, patch
-    /// and path. Call while no thread uses the forest.
-    /// @return  Their old numbers: what is element first + i now was old_numbers[i].
+    /// Renumbers the elements from `first` on by level, patch and path, independent of threads. No thread may use the
+    /// forest during the call.
+    /// @return  The old number of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Of every four siblings their parent, in the order of these: what rebuild() takes.
+    /// Parents of all blocks of siblings in order: the input of rebuild().
     std::vector<std::uint32_t> subdivided() const;
-    /// Makes the trees of another forest of the same scene, with the same numbers. Call on a forest without children.
-    /// @throws InputError where an element cannot be subdivided in its turn.
+    /// Recreates the trees of another forest of the same scene with the same numbers. Call on a forest without
+    /// children.
+    /// @throws InputError if an element cannot be subdivided in this order.
     void rebuild(std::span<const std::uint32_t> parents);
 
-    /// Takes back the last four siblings, which must be leaves: their parent is one again. Call while no thread uses
-    /// the forest, and it is in order. @return  The parent.
+    /// Removes the last four siblings, which must be leaves, and returns their parent. The forest must be in order, and
+    /// no thread may use it during the call.
     std::uint32_t drop_last_siblings();
 
-    /// Calls body(first) for the first of every four siblings, on all threads, and for none before it is done with
-    /// their parent. Elements made since they were last put in order are gone through on one thread.
+    /// Calls body(first) for each block of siblings on all threads, parents before children. Elements made since the
+    /// last put_in_order() are processed on one thread.
     template <class Body>
     void for_siblings_from_roots(const Body& body) const;
-    /// The same, for none before it is done with their children.
+    /// The same, children before parents.
     template <class Body>
     void for_siblings_from_leaves(const Body& body) const;
 
   private:
-    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are on their way; none: there are none
+    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are being created
 
     struct Node {
         std::uint32_t first_child;
         float area;
     };
-    /// What four siblings have in common.
+    /// Data shared by four siblings.
     struct Block {
         std::uint32_t parent, patch, parent_path;
     };
@@ -124,9 +122,9 @@ class ElementForest {
     static void for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body);
 
     std::uint64_t scene_fingerprint_;
-    std::vector<PatchGeometry> geometry_;  // of each patch
+    std::vector<PatchGeometry> geometry_;  // per patch
     std::uint32_t patch_count_;
-    /// Where generations begin and, last, where the last one ends: no element of one has its parent in the same.
+    /// First element of each generation, and the end of the last one. Parents belong to an earlier generation.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
@@ -153,15 +151,14 @@ void ElementForest::for_siblings_from_leaves(const Body& body) const {
     for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
 }
 
-/// Makes the values of a new element those of its parent, for all elements from `first` on: nothing recorded is lost.
+/// Copies the parent's value to each element from `first` on.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());
     for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
-/// Adds to every element what its parent has, from the roots down: of what arrived at an element, per unit of area,
-/// each of its parts got the same.
+/// Adds each parent's value to its children, from the roots down. Values are per unit of area.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -170,7 +167,7 @@ void push(const ElementForest& forest, std::vector<T>& values) {
     });
 }
 
-/// Makes every inner element the area-weighted mean of its children, from the leaves up.
+/// Sets inner elements to the area-weighted mean of their children, from the leaves up.
 template <class T>
 void pull(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {

@@ -9,15 +9,15 @@
 
 namespace interflect::inline detail {
 
-/// Means of a scene's textures over parts of its patches, by area. A cell's is the area-weighted mean of its
-/// children's, to rounding, where texture coordinates are linear over the patch, as on triangles and images that are
-/// laid flat on quadrilaterals; elsewhere a cell is taken as 32 triangles. Depends on the patch and the cell alone.
+/// Area-weighted means of a scene's textures over cells of its patches. Where texture coordinates are linear
+/// (triangles, undistorted images on quadrilaterals), a cell's mean is that of its children, to rounding. Elsewhere a
+/// cell is approximated by 32 triangles. Depends on the patch and the cell alone.
 class TextureMeans {
   public:
-    /// @param scene  Without faults; must outlive this.
+    /// @param scene  Without faults; must outlive this object.
     explicit TextureMeans(const Scene& scene);
 
-    /// The mean over `cell` of a patch with texture coordinates. @param texture  Index, or none: 1 then.
+    /// Mean over `cell` of a patch with texture coordinates. @param texture  Index, or none, which gives 1.
     Rgb mean(std::uint32_t texture, const Patch& patch, const PatchGeometry& geometry, const Cell& cell) const;
 
   private:

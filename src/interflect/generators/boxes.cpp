@@ -18,11 +18,11 @@ namespace {
 
 using namespace building;
 
-constexpr float cell = 1.2f;                                       // side of the square in which one box stands [m]
+constexpr float cell = 1.2f;                                       // side of the floor square of one box [m]
 constexpr float luminaire_pitch = 3.6f;                            // [m]
 constexpr Interval half_side{.10f, .36f}, box_height{.10f, 1.4f};  // [m]
 
-/// A box somewhere within a cell, turned at random.
+/// Adds a box at a random position and rotation within a cell.
 void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const Palette& palette,
              RandomSequence& random) {
     const float x = random.between(half_side.low, half_side.high), y = random.between(half_side.low, half_side.high);
@@ -34,7 +34,7 @@ void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const P
              random.pick(std::span(palette.papers)));
 }
 
-/// Puts images on the floor, the boxes and the luminaires.
+/// Adds textures to the floor, the boxes and the luminaires.
 void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
     constexpr float tiles = 1.2f;  // side of the image on the floor [m]
     scene.materials[floor].reflectance_texture = add_texture(scene, make_tiles());
@@ -51,7 +51,7 @@ void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
 Scene make_boxes(const BoxesOptions& options) {
     if (options.boxes < 1 || options.boxes > BoxesOptions::most_boxes)
         throw InputError(fmt::format("there can be 1 to {} boxes, not {}", BoxesOptions::most_boxes, options.boxes));
-    // The first cell is left free, for the eye.
+    // The first cell stays free for the camera.
     const auto columns = std::max(4u, static_cast<std::uint32_t>(std::ceil(std::sqrt(options.boxes + 1.0))));
     const float half = cell * static_cast<float>(columns) / 2;
     FloorPlan plan;

@@ -10,15 +10,15 @@ struct BoxesOptions {
     static constexpr std::uint32_t most_boxes = 100'000;
 
     std::uint32_t boxes = 20;  ///< 1 to most_boxes.
-    std::uint64_t seed = 1;    ///< Same options, same scene.
+    std::uint64_t seed = 1;    ///< Equal options give equal scenes.
     bool texture = false;      ///< Tiles on the floor, labels on the boxes, louvres before the luminaires.
 };
 
-/// One closed room, square, 2.8 m high and about the origin, with boxes of random sizes, turns and colours on its
-/// floor, about one to 1.4 m^2, and luminaires on its ceiling. Six one-sided patches a box and a luminaire, and ten of
-/// the room. Views "room-0", from a corner, and "overview". Boxes keep at least 4 mm distance from each other and the
-/// room. With textures, the patches that have one have vertices of their own. Time and memory are linear in the boxes.
-/// @throws InputError where their number is out of range.
+/// Creates a closed, square room about the origin, 2.8 m high, with luminaires on its ceiling and about one box per 1.4
+/// m^2 of floor, of random size, rotation and colour. Boxes and luminaires have six one-sided patches each, the room
+/// ten. Views "room-0", from a corner, and "overview". Boxes keep at least 4 mm distance. Textured patches have their
+/// own vertices. Time and memory are linear in the boxes.
+/// @throws InputError if the number of boxes is out of range.
 Scene make_boxes(const BoxesOptions& options);
 
 }  // namespace interflect::inline detail

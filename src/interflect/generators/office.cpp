@@ -16,7 +16,7 @@ namespace {
 
 using namespace building;
 
-constexpr float aisle = 1.5f;                         // between the desks and the walls all round [m]
+constexpr float aisle = 1.5f;                         // between the desks and all walls [m]
 constexpr float desk_pitch = 1.7f, row_pitch = 2.2f;  // [m]
 constexpr float office_luminaire_pitch = 2.6f;        // [m]
 constexpr float share_of_extra_doors = 0.3f;
@@ -41,7 +41,7 @@ FloorPlan plan_office(const OfficeOptions& options) {
                             .seed = options.seed});
 }
 
-/// Desks in rows within the aisles; who sits there looks south.
+/// Rows of desks within the aisles, for workers facing south.
 void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnisher) {
     for (std::uint32_t row = 0; row < options.desk_rows; ++row)
         for (std::uint32_t desk = 0; desk < options.desks_per_row; ++desk)
@@ -51,7 +51,7 @@ void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnis
                                                     0));
 }
 
-/// What stands along the walls of a room with that many rows of desks.
+/// Furniture along the walls for this number of rows.
 std::vector<const Furniture*> furniture_along_walls(std::uint32_t desk_rows) {
     std::vector<const Furniture*> pieces;
     for (std::uint32_t row = 0; row < desk_rows; ++row) {

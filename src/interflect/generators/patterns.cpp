@@ -13,7 +13,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// @param shade  Of column x and row y from the top: sRGB, each channel 0 to 255.
+/// @param shade  sRGB at column x and row y from the top, each channel 0 to 255.
 template <class Shade>
 Texture draw(const char* name, std::uint32_t side, const Shade& shade) {
     Texture texture{name, side, side, {}};

@@ -4,20 +4,20 @@
 
 namespace interflect::inline detail {
 
-// Images for made scenes, of 8 bit sRGB values, so that a .png keeps them as they are.
+// Generated images of 8-bit sRGB values, which a .png preserves.
 
-/// Two by two tiles of two tones, between joints.
+/// Two by two tiles of two tones, with joints.
 Texture make_tiles();
-/// A printed box: a letter that shows which way is up and right, in a frame.
+/// A box label: a framed letter that shows which way is up and right.
 Texture make_label();
-/// A luminaire behind louvres: six by six bright cells, brighter in their middles.
+/// A luminaire behind louvres: six by six bright cells, brightest at their centres.
 Texture make_louvres();
 
-/// Adds a texture. @return its index.
+/// Adds a texture and returns its index.
 std::uint32_t add_texture(Scene& scene, Texture texture);
 
-/// Gives a quadrilateral vertices of its own, whose texture coordinates lay an image on it once, or, with a `repeat`
-/// [m] above 0, in squares of that side. The image's bottom is at the lowest edge.
+/// Gives a quadrilateral its own vertices with texture coordinates. The image covers it once, or in squares of side
+/// `repeat` [m] if that is above 0. Its bottom is at the lowest edge.
 void lay_image(Scene& scene, std::uint32_t patch, float repeat = 0);
 
 }  // namespace interflect::inline detail

@@ -5,15 +5,14 @@
 namespace interflect::inline detail {
 
 struct TwoRoomsOptions {
-    float turn = 0;          ///< Of the wall between the rooms about the vertical [degrees], -40 to 40.
-    bool furniture = false;  ///< Cabinets against that wall, two on each side, and a paper on one of them.
+    float turn = 0;          ///< Rotation of the partition wall about the vertical [degrees], -40 to 40.
+    bool furniture = false;  ///< Two cabinets on each side of that wall, and a sheet of paper on one of them.
 };
 
-/// Two sealed rooms of 4 x 4 x 3 m under one ceiling polygon, on one floor polygon, between undivided outer walls. What
-/// separates them is a wall 1 cm thick that stands on the floor, ends at the ceiling and, where it is turned, sticks in
-/// the outer walls. The luminaire is in the first room (x < 4): any light in the second has leaked. Views "lit" and
-/// "dark", one in each room.
-/// @throws InputError where the turn is out of range.
+/// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons. The partition is 1 cm
+/// thick, stands on the floor and ends at the ceiling; a rotated one penetrates the outer walls. The luminaire is in
+/// the first room (x < 4): any light in the second has leaked. Views "lit" and "dark", one in each room.
+/// @throws InputError if the turn is out of range.
 Scene make_two_rooms(const TwoRoomsOptions& options);
 
 }  // namespace interflect::inline detail

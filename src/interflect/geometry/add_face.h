@@ -7,13 +7,12 @@
 
 namespace interflect::inline detail {
 
-/// The material on the back of a patch's face, which may be another one, as that of a lamp which emits on one side;
-/// none where the face is one-sided.
+/// Material of the back of a face; may differ from the front's. none: one-sided.
 inline std::uint32_t back_material(const Scene& scene, const Patch& patch) {
     return patch.other_side == none ? none : scene.patches[patch.other_side].material;
 }
 
-/// Adds a face to a scene: its front, and its back, with the vertices the other way round, where that has a material.
+/// Adds the front of a face and, if the back has a material, the back with reversed vertex order.
 inline void add_face(Scene& scene, Patch patch, std::uint32_t back_material) {
     const auto index = static_cast<std::uint32_t>(scene.patches.size());
     patch.other_side = back_material == none ? none : index + 1;

@@ -9,14 +9,13 @@
 
 namespace interflect::inline detail {
 
-/// The box, larger by `margin` in all directions [m].
+/// Enlarges the box in all directions.
 inline Imath::Box3f widened(Imath::Box3f box, float margin) {
     box.min -= V3f(margin);
     box.max += V3f(margin);
     return box;
 }
 
-/// The bounding box of a patch [m].
 inline Imath::Box3f bounds_of(const Scene& scene, const Patch& patch) {
     Imath::Box3f box;
     for (int i = 0; i < patch.vertex_count(); ++i)
@@ -24,8 +23,7 @@ inline Imath::Box3f bounds_of(const Scene& scene, const Patch& patch) {
     return box;
 }
 
-/// Whether a box meets a plane, or comes as close to it as `distance` [m].
-/// @param normal  Of the plane, unit length.
+/// Returns whether a box is within `distance` of a plane with a unit `normal`.
 /// @param height  Signed distance of a point from the plane (V3d -> [m]).
 template <class Height>
 bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height& height, double distance) {

@@ -11,14 +11,13 @@
 
 namespace interflect::inline detail {
 
-/// An element of a box tree: an object, by its index, and its bounding box.
 struct Boxed {
-    Imath::Box3f box;         ///< In an arranged tree: of all elements of its subtree.
-    std::uint32_t index = 0;  ///< Of the object.
+    Imath::Box3f box;  ///< In an arranged tree: bounds of the whole subtree.
+    std::uint32_t index = 0;
 };
 
-/// Orders `elements` as an implicit bounding volume hierarchy: the middle element is the root, those before and after
-/// it are its subtrees. O(n log n).
+/// Arranges `elements` as an implicit bounding volume hierarchy. The middle element is the root, with its subtrees
+/// before and after it. O(n log n).
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
     Imath::Box3f all, centres;  // of twice the centres
@@ -44,8 +43,8 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
     elements[middle].box = all;
 }
 
-/// Calls visit(index) for every element of an arranged tree whose subtree's box, and those of all subtrees around it,
-/// `reaches` (box -> bool) accepts. An element's own box is not kept, so the element itself may lie outside.
+/// Calls visit(index) for each element of an arranged tree if `reaches` (box -> bool) accepts the boxes of its subtree
+/// and of all enclosing ones. The element itself may be outside, because its own box is not stored.
 template <class Reaches, class Visit>
 void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
     if (tree.empty()) return;

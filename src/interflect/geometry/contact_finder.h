@@ -14,10 +14,10 @@
 
 namespace interflect::inline detail {
 
-/// A segment on a facet, and for a part of the outline of a coplanar face the side on which that face lies.
+/// A segment on a facet. If it belongs to the outline of a coplanar face, `outline` is the side of that face.
 struct FoundSegment {
-    PlanarSegment segment;  ///< From the lexicographically lower end.
-    int outline = 0;        ///< 1 or -1: left or right of it; 0 where a face stands on the facet or passes through it.
+    PlanarSegment segment;  ///< `a` is the lexicographically lower end.
+    int outline = 0;        ///< 1: left, -1: right; 0 if a face stands on the facet or passes through it.
 };
 
 /// Finds the segments in which other facets meet one facet.
@@ -30,19 +30,17 @@ class ContactFinder {
     const PlanarPolygon& polygon() const { return polygon_; }
     const PlaneFrame& frame() const { return frame_; }
 
-    /// How far from the facet another may be to touch it [m].
+    /// Maximum distance of a touching facet [m].
     float reach() const;
-    /// Whether the facet's plane comes as close as reach() to the box.
     bool plane_meets(const Imath::Box3f& box) const;
-    /// Finds the segments in which `other` meets the facet.
     void add_contacts_with(const Facet& other);
-    /// The segments to cut along: those that are connected to others over at least `least_extent`.
+    /// Segments to cut along: those in connected components with an extent of at least `least_extent`.
     std::vector<PlanarSegment> segments(double least_extent);
 
   private:
-    /// The segments, each once, without the borders between coplanar faces that hide the facet on both sides.
+    /// Removes duplicates, and borders between coplanar faces that hide the facet on both sides.
     std::vector<PlanarSegment> distinct_segments();
-    /// For each segment the lowest one of its connected component: segments that share ends, within the tolerance.
+    /// Lowest segment index of each connected component. Segments with a common end are connected.
     std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
@@ -54,11 +52,10 @@ class ContactFinder {
         return (s.a - t.a).length() <= facet_.detail() && (s.b - t.b).length() <= facet_.detail();
     }
 
-    /// @param outline  The side of the segment from a to b on which a coplanar face lies, or 0.
+    /// @param outline  Side of a coplanar face, as in FoundSegment.
     void add(const Imath::V3d& a, const Imath::V3d& b, int outline);
     void add_outline(const Facet& other);
-    /// The other facet's intersection with this one's plane: between two corners that lie in it, or points where edges
-    /// pass through it.
+    /// Adds the intersection of the other facet with this facet's plane.
     void add_section(const Facet& other, const std::array<double, 4>& height, double touching);
 
     const Scene& scene_;

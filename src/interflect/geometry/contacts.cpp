@@ -23,7 +23,7 @@ namespace interflect {
 
 namespace {
 
-/// Strips narrower than this share of a face's diameter are not divided across.
+/// Strips narrower than this fraction of a face's diameter are not divided across.
 constexpr double narrow = 2e-3;
 
 constexpr std::size_t facets_at_once = 256;
@@ -35,7 +35,7 @@ constexpr double longest_sliver_share = 1.0 / 16;
 
 /// The pieces of a facet; none where it stays whole.
 struct CutFacet {
-    std::vector<PlanarPolygon> patches;  ///< Of three or four corners.
+    std::vector<PlanarPolygon> patches;
     std::vector<PlanarSegment> contacts;
     bool reached_limit = false;
 };
@@ -99,10 +99,10 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     return cut;
 }
 
-/// Adds patches in place of a face.
+/// Writes whole and cut faces to `result`.
 class PieceWriter {
   public:
-    /// @param surfaces  The number of each patch's flat surface, or none.
+    /// @param surfaces  Number of each patch's flat surface, or none.
     PieceWriter(const Scene& scene, std::span<const std::uint32_t> surfaces, Scene& result)
         : scene_(scene), surfaces_(surfaces), result_(result), weld_(result) {}
 
@@ -141,13 +141,13 @@ class PieceWriter {
     VertexWeld weld_;
 };
 
-/// The facets of one face, and the number of patches that it is cut into.
+/// Facets of one face, and its number of pieces.
 struct FacetRange {
     std::size_t first, last;
-    std::uint64_t patches = 0;  ///< 0: it stays whole.
+    std::uint64_t patches = 0;  ///< 0: not cut.
 };
 
-/// Decides which faces are cut, within the limit of all patches, and reports the limits that were reached.
+/// Decides which faces are cut within the total limit of patches. Warns about limits.
 std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
                                const ContactOptions& options, Warnings& warnings) {
     std::vector<FacetRange> faces;
@@ -180,7 +180,7 @@ std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& fac
     return faces;
 }
 
-/// A number for each patch in a flat surface of which a face is cut, or which had one; none for the others.
+/// Surface number of each patch whose flat surface has a cut face or already had a number; otherwise none.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);

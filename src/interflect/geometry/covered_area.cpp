@@ -16,16 +16,16 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// Parts of the difference that are smaller than this share of the patch are rounding.
+/// Smaller fractions of the patch count as rounding error.
 constexpr double negligible_share = 1e-12;
-/// Up to this many others are subtracted one after the other; for more, the patch is halved first.
+/// Maximum number of polygons to subtract one by one; for more, the patch is halved first.
 constexpr std::size_t cut_at_once = 4;
-/// Halvings after which all others are subtracted one after the other: they overlap in nearly one place.
+/// Limit of halvings: the others overlap in nearly one place and are then subtracted one by one.
 constexpr int most_halvings = 24;
 
 double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }
 
-/// The part of a polygon to the left of the line from a to b, or to its right.
+/// Part of a polygon to the left, or right, of the line from a to b.
 PlanarPolygon half_of(const PlanarPolygon& polygon, const V2d& a, const V2d& b, bool left) {
     const V2d along = left ? b - a : a - b;
     PlanarPolygon result;
@@ -45,7 +45,7 @@ PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
     return polygon;
 }
 
-/// The area of a polygon outside all others. @param negligible  [m^2]
+/// @param negligible  [m^2]
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
                     int halvings) {
     const double area = area_of(polygon);
@@ -73,7 +73,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     }
     const PlanarPolygon& first = *others.back();
     others.pop_back();
-    PlanarPolygon rest = polygon;  // what is beyond each of its edges, and within those before
+    PlanarPolygon rest = polygon;  // part inside all edges of `first` processed so far
     for (std::size_t i = 0; i < first.size() && rest.size() > 2; ++i) {
         const V2d &a = first[i].position, &b = first[(i + 1) % first.size()].position;
         outside += area_outside(half_of(rest, a, b, false), others, negligible, halvings);

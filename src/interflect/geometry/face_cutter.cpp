@@ -13,10 +13,10 @@ namespace {
 
 using Imath::V2d;
 
-/// Segments of a piece that are considered for the next cut.
+/// Segments of a piece considered for the next cut.
 constexpr std::size_t candidates_per_cut = 24;
 
-/// A line through two points; height() is the signed distance, positive on its left.
+/// height() is the signed distance, positive on the left.
 struct Line {
     V2d origin, direction;
 
@@ -25,7 +25,7 @@ struct Line {
     double along(const V2d& x) const { return direction.dot(x - origin); }
 };
 
-/// -1, 0 or 1: right of a line, on it within the tolerance, or left of it.
+/// -1 right, 0 on the line within the tolerance, 1 left.
 int side_of(double height, double tolerance) { return (height > tolerance) - (height < -tolerance); }
 
 struct Piece {
@@ -33,12 +33,12 @@ struct Piece {
     std::vector<PlanarSegment> segments;
 };
 
-/// Orders candidates of equal cost by their geometry, whatever their order in memory.
+/// Makes the choice among equal candidates independent of their order in memory.
 auto geometric_order(const PlanarSegment& s) {
     return std::make_tuple(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), s.a.x + s.b.x, s.a.y + s.b.y);
 }
 
-/// The longest segments of a piece, in an order that depends on the segments alone.
+/// The longest segments, in an order that depends on geometry alone.
 std::vector<PlanarSegment> candidates(const std::vector<PlanarSegment>& segments) {
     std::vector<PlanarSegment> longest = segments;
     const std::size_t count = std::min(candidates_per_cut, segments.size());
@@ -51,7 +51,6 @@ std::vector<PlanarSegment> candidates(const std::vector<PlanarSegment>& segments
     return longest;
 }
 
-/// Length of the line's part inside the polygon.
 double chord_length(const PlanarPolygon& polygon, const Line& line) {
     double from = std::numeric_limits<double>::infinity(), to = -from;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -65,8 +64,8 @@ double chord_length(const PlanarPolygon& polygon, const Line& line) {
     return std::max(0.0, to - from);
 }
 
-/// Cost of a cut: segments that it divides, which then need a cut on each side; its own length where nothing touches
-/// the face; and, with less weight, unequal halves.
+/// Cost of a cut: number of divided segments, which then need a cut on each side; length of the cut without contact;
+/// and, with a smaller weight, imbalance of the halves.
 double cost_of(const Piece& piece, const Line& line, double tolerance) {
     constexpr double of_division = 2, of_free_length = 1, of_imbalance = 0.5;
     std::size_t divided = 0;
@@ -95,8 +94,7 @@ Line best_cut(const Piece& piece, double tolerance) {
     return Line(choice[best]);
 }
 
-/// The parts of a polygon on both sides of a line, and the edge between them. Corners within the tolerance of the line
-/// become corners of both.
+/// Parts of a polygon on both sides of a line, with the edge between them. Corners within the tolerance belong to both.
 struct Halves {
     PlanarPolygon left, right;
     PlanarSegment chord;
@@ -128,7 +126,7 @@ Halves halves_of(const PlanarPolygon& polygon, const Line& line, double toleranc
     return halves;
 }
 
-/// Where `s`, which lies along `edge`, projects onto it.
+/// Projects `s`, which lies along `edge`, onto it.
 PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     const Line line(edge);
     const auto moved = [&](const V2d& x) {
@@ -137,7 +135,7 @@ PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     return {moved(s.a), moved(s.b)};
 }
 
-/// Distributes a piece's segments over its halves; those on the line become contacts.
+/// Distributes a piece's segments over its halves. Segments on the line become contacts.
 void distribute(const std::vector<PlanarSegment>& segments, const Line& line, const PlanarSegment& chord,
                 double tolerance, Piece& left, Piece& right, std::vector<PlanarSegment>& contacts) {
     const auto add_to = [&](Piece& piece, PlanarSegment s) {
@@ -158,7 +156,6 @@ void distribute(const std::vector<PlanarSegment>& segments, const Line& line, co
     }
 }
 
-/// How compact a polygon is: its area over its squared perimeter.
 double compactness(const PlanarPolygon& polygon) {
     const double border = perimeter(polygon);
     return doubled_area(polygon) / (border * border);
@@ -173,7 +170,7 @@ PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size
     }
 }
 
-/// Divides a quadrilateral across where it is too long for its width.
+/// Divides a quadrilateral across if it is too long.
 void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
     constexpr double most_parts = 16;
     const auto edge = [&](std::size_t i) {
@@ -263,7 +260,7 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
         }
         const Line line = best_cut(piece, tolerance);
         Halves halves = halves_of(piece.polygon, line, tolerance);
-        if (!halves.proper) {  // the line runs along the border: its segments are done with
+        if (!halves.proper) {  // the line runs along the border; its segments are finished
             std::erase_if(piece.segments, [&](const PlanarSegment& s) {
                 return side_of(line.height(s.a), tolerance) == 0 && side_of(line.height(s.b), tolerance) == 0;
             });
@@ -291,7 +288,7 @@ void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, 
     std::array<PlanarPolygon, 2> best;
     double most = -1;
     for (std::size_t first = 0; first < n; ++first)
-        for (const std::size_t step : {2, 3}) {  // a triangle or a quadrilateral off the rest
+        for (const std::size_t step : {2, 3}) {  // cut off a triangle or a quadrilateral
             std::array<PlanarPolygon, 2> parts{part_of(polygon, first, (first + step) % n),
                                                part_of(polygon, (first + step) % n, first)};
             const double worse = std::min(compactness(parts[0]), compactness(parts[1]));

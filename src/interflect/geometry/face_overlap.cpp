@@ -15,21 +15,18 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Cosine of the angle between normals above which two faces can be said to lie in one plane at all: what stands
-/// upright on a face and is lower than the tolerance does not coincide with it. Generous, for small faces' normals are
-/// noisy.
+/// Minimum cosine between the normals of coplanar faces. Excludes upright faces lower than the tolerance. Generous,
+/// because the normals of small faces are noisy.
 constexpr double least_facing = 0.7;
 
-/// Faces of one task of the search.
 constexpr std::size_t search_grain = 1024;
 
-/// A face of three or four corners, or what clipping leaves of it, which has up to four more.
+/// A face of three or four corners; clipping adds up to four.
 struct ClippedFace {
     std::array<V3d, 8> corners;
     std::size_t count = 0;
 
     void add(const V3d& corner) { corners[count++] = corner; }
-    /// Of a polygon that is not clipped.
     std::span<const V3d> face_corners() const { return {corners.data(), count}; }
 };
 
@@ -40,7 +37,7 @@ ClippedFace polygon_of(const Scene& scene, const Patch& patch) {
     return polygon;
 }
 
-/// {x: normal . x >= offset}, of unit normal; offset - normal . x is how far x lies outside.
+/// {x: normal . x >= offset}, with a unit normal.
 struct HalfSpace {
     V3d normal;
     double offset = 0;
@@ -64,8 +61,7 @@ ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
     return result;
 }
 
-/// A face as the larger one of possible pairs: its plane, and the half spaces through its edges whose intersection is
-/// the prism over its polygon.
+/// The larger face of possible pairs: its plane, and half-spaces that bound the prism over its polygon.
 class LargerFace {
   public:
     LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
@@ -96,7 +92,7 @@ class LargerFace {
             return half_space;
         };
         for (std::size_t i = 0; i < polygon_.count; ++i)
-            if (lies_outside(shared, narrowed(inside_[i]))) return false;  // as most neighbours do
+            if (lies_outside(shared, narrowed(inside_[i]))) return false;  // true for most neighbours
         const V3d area = doubled_area_vector<double>(shared.face_corners());
         const double facing = area.dot(plane_.normal);
         if (!is_smaller(face, area.length()) || std::abs(facing) < least_facing * area.length()) return false;
@@ -116,12 +112,12 @@ class LargerFace {
     std::uint32_t face_;
     std::span<const float> tolerance_;
     ClippedFace polygon_;
-    double area_;  // twice
+    double area_;  // twice the area
     HalfSpace plane_;
     std::array<HalfSpace, 4> inside_;
 };
 
-/// Of boxes that reach out by the tolerance of their faces.
+/// Face boxes are enlarged by the face's tolerance.
 std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
                                  std::span<const float> tolerance) {
     std::vector<Boxed> tree;

@@ -9,22 +9,22 @@
 
 namespace interflect::inline detail {
 
-/// Two faces that coincide somewhere; each named by its patch, of a two-sided one by the first.
+/// Two overlapping faces, each identified by its (first) patch.
 struct FacePair {
-    std::uint32_t larger, smaller;  ///< By area; of equal ones the later face counts as larger.
+    std::uint32_t larger, smaller;  ///< By area; of equal faces the later one counts as larger.
 };
 
-/// Within what distance two faces lie in one place [m]: the tolerance of the smaller one, where the two are compared;
-/// of the larger one only what moves its plane, the rounding of its corners, an eighth of its tolerance.
+/// Distance within which two faces coincide [m]: the tolerance of the smaller face. The larger face contributes only
+/// the rounding of its corners, an eighth of its tolerance, which moves its plane.
 inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pair) {
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
-/// All pairs of faces that overlap in (nearly) one plane: the smaller's polygon reaches more than pair_tolerance()
-/// into the larger's, measured in the larger's plane, and what they share lies within it of that plane. Not those of
-/// two one-sided faces that face opposite ways: each answers rays that the other lets through.
-/// @param ignored   Faces that are ignored; size scene.patches.size().
-/// @param tolerance  Of each face [m], > 0; size scene.patches.size().
+/// Finds all pairs of faces that overlap in (nearly) one plane: the smaller polygon reaches more than pair_tolerance()
+/// into the larger one, and the common part is within that distance of the larger one's plane. Skips pairs of one-sided
+/// faces with opposite normals, which intercept different rays.
+/// @param ignored    Faces to ignore; size scene.patches.size().
+/// @param tolerance  Tolerance of each face [m], > 0; size scene.patches.size().
 /// @return           In order of the larger face. O(n log n + pairs) time for n faces of bounded local density.
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);

@@ -13,7 +13,7 @@ namespace {
 
 using Imath::V3d;
 
-/// What is shorter than this share of a face's diameter is not cut off it: 40 um of 10 m.
+/// Minimum detail relative to a face's diameter: 40 um of 10 m.
 constexpr double least_detail = 4e-6;
 
 /// Four roundings of a coordinate in single precision, relative to it.
@@ -53,7 +53,7 @@ std::vector<Facet> facets_of(const Scene& scene) {
         const Facet whole(scene, i, std::span(v).first(static_cast<std::size_t>(patch.vertex_count())));
         if (patch.is_triangle() || is_planar(scene, v)) {
             facets.push_back(whole);
-        } else {  // as Embree does
+        } else {  // split as in Embree
             facets.emplace_back(scene, i, std::array{v[0], v[1], v[3]});
             facets.emplace_back(scene, i, std::array{v[2], v[3], v[1]});
         }

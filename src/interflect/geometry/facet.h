@@ -12,33 +12,33 @@
 
 namespace interflect::inline detail {
 
-/// A planar convex polygon of three or four corners: a face, or one of the two triangles of a warped quadrilateral.
+/// A planar convex polygon of three or four corners: a face, or half of a warped quadrilateral.
 struct Facet {
-    std::uint32_t face = none;  ///< Its patch; of a two-sided face the front.
+    std::uint32_t face = none;  ///< Its patch; the front of a two-sided face.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::size_t count = 0;
     std::array<Imath::V3d, 4> corners;  ///< [m]
     Imath::V3d normal;                  ///< Unit length.
     double diameter = 0;                ///< [m]
-    double rounding = 0;                ///< Of the corners [m].
+    double rounding = 0;                ///< Rounding error of the corners [m].
 
     /// @param corner_vertices  Three or four.
     Facet(const Scene& scene, std::uint32_t face_index, std::span<const std::uint32_t> corner_vertices);
 
     double area() const { return area_; }  ///< [m^2]
 
-    /// Signed distance from the facet's plane [m].
+    /// Signed [m].
     double height(const Imath::V3d& x) const { return normal.dot(x - corners[0]); }
-    /// What is shorter than this is ignored [m].
+    /// Shorter lengths are ignored [m].
     double detail() const;
 
-    Imath::Box3f box(float margin) const;  ///< Larger by `margin` [m].
+    Imath::Box3f box(float margin) const;  ///< Enlarged by `margin` [m].
 
   private:
     double area_ = 0;
 };
 
-/// The facets of all faces, in their order.
+/// The facets of all faces, in order of the faces.
 std::vector<Facet> facets_of(const Scene& scene);
 
 /// A right-handed frame in a facet's plane, along its longest edge.

@@ -16,16 +16,16 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Cosine of the angle (0.8 degrees) up to which neighbours count as one plane: above the rounding of the normals of
-/// small patches, below the creases that people model.
+/// Maximum angle (0.8 degrees) between coplanar neighbours, as cosine: above the rounding of small patches' normals,
+/// below modelled creases.
 constexpr float same_plane_cosine = 0.9999f;
 
 constexpr std::size_t patches_at_once = 4096;
 
-/// Faces beyond this that meet in one edge are compared with the last ones only, so that no file makes this quadratic.
+/// Number of preceding faces at an edge to compare with; bounds the cost for any file.
 constexpr std::size_t most_faces_at_edge = 8;
 
-/// Surfaces whose areas differ by less than this share are equal: the same thing, divided or rounded differently.
+/// Relative difference of equal areas: the same surface divided or rounded differently.
 constexpr double equal_areas = 1e-4;
 
 struct Edge {
@@ -39,7 +39,7 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
 
 bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
 
-/// For each vertex one at the same position, the same for all that differ only in coordinates.
+/// Common vertex index per position, ignoring other coordinates.
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
     std::iota(joined.begin(), joined.end(), 0u);
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     return joined;
 }
 
-/// The edges of all faces, those of the same two vertices together, in order of their patches.
+/// Edges of all faces, by vertices, then by patch.
 std::vector<Edge> sorted_edges(const Scene& scene) {
     const std::vector<std::uint32_t> joined = joined_vertices(scene);
     std::vector<Edge> edges;
@@ -67,7 +67,7 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// The place of each surface, by its representative, in the order of their areas. @param area  Of each surface.
+/// Position of each surface in the order of areas, and the area itself, are indexed by representative.
 std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
                                              const std::vector<double>& area) {
     std::vector<std::uint32_t> order;
@@ -113,7 +113,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
         for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
-    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // of each surface that has a number
+    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // per numbered surface
     for (std::uint32_t i = 0; i < count; ++i)
         if (!is_back(scene, i) && scene.patches[i].surface != none)
             surfaces.unite(first_patch.try_emplace(scene.patches[i].surface, i).first->second, i);
@@ -127,7 +127,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
-    std::vector<double> area(count, 0.0);  // of the surface that each patch represents
+    std::vector<double> area(count, 0.0);  // indexed by the surface's representative
     for (std::uint32_t i = 0; i < count; ++i)
         if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
 

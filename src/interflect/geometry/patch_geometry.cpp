@@ -7,12 +7,12 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Relative size below which the twist of a quadrilateral is rounding, and it counts as a parallelogram.
+/// Relative rounding of the twist of a parallelogram.
 constexpr float parallelogram_tolerance = 1e-5f;
 
 /// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a and a + b are >= 0.
 float warp_linear(float a, float b, float uniform) {
-    // a x + b x^2 / 2 = uniform (a + b / 2), solved in the form that does not cancel when b is small.
+    // Solves a x + b x^2 / 2 = uniform (a + b / 2) without cancellation for small b.
     const float target = uniform * (a + 0.5f * b);
     const float root = std::sqrt(std::max(0.0f, a * a + 2 * b * target));
     return a + root > 0 ? std::clamp(2 * target / (a + root), 0.0f, 1.0f) : uniform;
@@ -32,10 +32,10 @@ PatchGeometry::PatchGeometry(const Scene& scene, const Patch& patch) : triangle_
     shape_.edge_v = x[count - 1] - x[0];
     if (triangle_) {
         jacobian_ = {2 * area_, 0, 0};
-        parallelogram_ = true;  // in the sense that x is affine in (u, v)
+        parallelogram_ = true;  // x is affine in (u, v)
     } else {
         shape_.twist = x[2] - x[1] - shape_.edge_v;
-        // normal . (dx/du x dx/dv); the u v term vanishes for a planar quadrilateral.
+        // normal . (dx/du x dx/dv); the u v term is zero for a planar quadrilateral.
         jacobian_ = {normal_.dot(shape_.edge_u.cross(shape_.edge_v)), normal_.dot(shape_.edge_u.cross(shape_.twist)),
                      normal_.dot(shape_.twist.cross(shape_.edge_v))};
         parallelogram_ =
@@ -64,7 +64,7 @@ Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner
         else
             local = {a - 0.5f * b, 0.5f * b};
     } else if (!parallelogram_) {
-        // Marginal density of u: the jacobian at the middle of v; then that of v given u. Both are linear.
+        // Samples the marginal density of u (the Jacobian at the middle of v), then v given u. Both are linear.
         const auto density = [&](float s, float t) {
             return std::max(0.0f, jacobian({corner.u + size * s, corner.v + size * t}));
         };
@@ -78,8 +78,8 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
     const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
     if (!parallelogram_) {
-        // d = u edge_u + v edge_v + u v twist in the plane: a quadratic equation for v, of which the root that stays
-        // finite as the twist vanishes is the one within a convex quadrilateral.
+        // d = u edge_u + v edge_v + u v twist in the plane: a quadratic equation for v. The root within a convex
+        // quadrilateral stays finite for a vanishing twist.
         using Imath::V3d;
         const V3d n(normal_), h(d), e(shape_.edge_u), f(shape_.edge_v), g(shape_.twist);
         const auto cross = [&](const V3d& a, const V3d& b) { return n.dot(a.cross(b)); };

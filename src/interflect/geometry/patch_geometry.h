@@ -8,13 +8,13 @@
 
 namespace interflect::inline detail {
 
-/// A point of a patch by its parameters. Triangle v0 v1 v2: x = v0 + u (v1 - v0) + v (v2 - v0), u, v >= 0, u + v <= 1.
-/// Quadrilateral v0 v1 v2 v3: bilinear, (0,0) (1,0) (1,1) (0,1) are its vertices in order.
+/// Parameters of a point of a patch. Triangle v0 v1 v2: x = v0 + u (v1 - v0) + v (v2 - v0), u, v >= 0, u + v <= 1.
+/// Quadrilateral v0 v1 v2 v3: bilinear; (0,0) (1,0) (1,1) (0,1) are its vertices in order.
 struct Parameters {
     float u = 0, v = 0;
 };
 
-/// The geometry of one patch, gathered for repeated use: sampling, areas of cells, parameters of a point.
+/// Geometry of one patch, precomputed for sampling, areas of cells and parameters of points.
 class PatchGeometry {
   public:
     /// x = origin + u edge_u + v edge_v + u v twist.
@@ -35,16 +35,15 @@ class PatchGeometry {
     const Shape& shape() const { return shape_; }
     V3f point(Parameters p) const { return shape_.point(p); }
 
-    /// Maps a uniform point (a, b) of the unit square to parameters whose points are uniform over the area of the
-    /// patch, or of the part of it that corner + size (s, t) covers, where (s, t) runs over the patch's parameter
-    /// domain.
+    /// Maps a uniform point (a, b) of the unit square to parameters of points uniform over the patch's area, or over
+    /// its part corner + size (s, t), with (s, t) in the patch's parameter domain.
     Parameters uniform_parameters(float a, float b, Parameters corner = {}, float size = 1) const;
 
-    /// The parameters of a point on (or close to) the patch; the inverse of point(), clamped to the patch.
+    /// Parameters of a point on (or close to) the patch: the inverse of point(), clamped to the patch.
     Parameters parameters_of(const V3f& x) const;
 
-    /// |dx/du x dx/dv| at p [m^2]: 2 area() everywhere on a triangle, linear in u and v on a planar quadrilateral, so
-    /// that the area of a cell of the parameter square is this at its centre times the cell's size.
+    /// |dx/du x dx/dv| at p [m^2]. Constant, 2 area(), on a triangle; linear in u and v on a planar quadrilateral. The
+    /// area of a cell is this value at its centre times the cell's size.
     float jacobian(Parameters p) const;
 
   private:

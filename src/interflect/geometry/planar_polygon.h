@@ -10,10 +10,9 @@
 
 namespace interflect::inline detail {
 
-/// A corner of a planar polygon.
 struct PlanarCorner {
-    Imath::V2d position;          ///< In the plane's own frame [m].
-    std::uint32_t vertex = none;  ///< Its vertex in the scene; none for a new one.
+    Imath::V2d position;          ///< In the frame of the plane [m].
+    std::uint32_t vertex = none;  ///< Scene vertex; none for a new vertex.
 };
 
 /// Convex, counter-clockwise.
@@ -24,7 +23,7 @@ struct PlanarSegment {
     double length() const { return (b - a).length(); }
 };
 
-/// Twice the polygon's area [m^2].
+/// Twice the area [m^2].
 inline double doubled_area(const PlanarPolygon& polygon) {
     double sum = 0;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
@@ -32,7 +31,6 @@ inline double doubled_area(const PlanarPolygon& polygon) {
     return sum;
 }
 
-/// Length of the polygon's border [m].
 inline double perimeter(const PlanarPolygon& polygon) {
     double sum = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i)

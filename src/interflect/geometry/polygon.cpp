@@ -21,13 +21,13 @@ namespace {
 using Imath::V3d;
 using Loop = std::vector<std::uint32_t>;
 
-/// A height below this many units in the last place of the largest coordinate is noise: one for each vertex of a
-/// triangle and one for the differences.
+/// Roundings of the largest coordinate below which a height is noise: one per vertex of a triangle and one for the
+/// differences.
 constexpr double noise_in_roundings = 4;
 
 V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
 
-/// Successive vertices at one position, also across the end of the loop, become one.
+/// Merges successive vertices at one position, cyclically.
 Loop without_repeats(const Scene& scene, const Loop& loop) {
     Loop kept;
     for (const std::uint32_t v : loop)
@@ -36,8 +36,7 @@ Loop without_repeats(const Scene& scene, const Loop& loop) {
     return kept;
 }
 
-/// Twice the vector area of a loop (Newell's formula), about its first vertex so that far from the origin nothing
-/// cancels.
+/// Twice the vector area of a loop (Newell's formula), relative to the first vertex to avoid cancellation.
 V3d doubled_area(const Scene& scene, const Loop& loop) {
     const V3d origin = position(scene, loop[0]);
     V3d sum(0);
@@ -46,13 +45,13 @@ V3d doubled_area(const Scene& scene, const Loop& loop) {
     return sum;
 }
 
-/// Size, normal and rounding of an outline, by which polygons are classified.
+/// Size, normal and rounding of an outline.
 struct OutlinePlane {
-    V3d normal{0};        ///< Unit length; zero where the outline has no area.
+    V3d normal{0};        ///< Unit length; zero if the outline has no area.
     double size = 0;      ///< Diagonal of the bounding box [m].
-    double rounding = 0;  ///< Heights below this are noise [m].
+    double rounding = 0;  ///< Smaller heights are noise [m].
     bool degenerate = true;
-    bool self_crossing = false;  ///< Degenerate only since the outline goes round both ways.
+    bool self_crossing = false;  ///< Degenerate only because areas of opposite orientation cancel.
 
     OutlinePlane(const Scene& scene, const Loop& outline) {
         if (outline.size() < 3) return;
@@ -72,7 +71,7 @@ struct OutlinePlane {
     }
 
   private:
-    /// How far the outline reaches from the line through two of its vertices that are far apart.
+    /// Maximum distance of the outline from a line through two distant vertices.
     static double width(const Scene& scene, const Loop& outline) {
         const V3d start = position(scene, outline[0]);
         V3d chord(0);
@@ -96,7 +95,7 @@ bool is_convex_planar_quadrilateral(const Scene& scene, const Loop& loop, const 
     return true;
 }
 
-/// Adds one side, and the other where asked for. Fewer than four vertices: a triangle.
+/// Adds one patch, and its other side if requested.
 class PatchAdder {
   public:
     PatchAdder(Scene& scene, std::uint32_t material, std::uint32_t object, bool two_sided)
@@ -108,7 +107,7 @@ class PatchAdder {
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = none) {
         Patch front = front_;
         front.vertices = {a, b, c, d};
-        // In single precision, as all later computations.
+        // In single precision, as in all later computations.
         if (!(patch_area(scene_, front) >= smallest_face_area)) return;
         add_face(scene_, front, two_sided_ ? front.material : none);
         added_ = true;
@@ -122,17 +121,17 @@ class PatchAdder {
     bool two_sided_, added_ = false;
 };
 
-/// GLU's tessellator with the odd winding rule: handles concave outlines, holes, seams and self-intersection.
+/// GLU tessellator with the odd winding rule.
 class Triangulation {
   public:
     Triangulation(Scene& scene, const OutlinePlane& frame, std::uint32_t origin)
         : scene_(scene), frame_(frame), origin_(position(scene, origin)) {}
 
-    /// The corners of the triangles, three each; empty where the tessellator gave up.
+    /// Corners, three per triangle; empty if the tessellator failed.
     std::vector<std::uint32_t> operator()(std::span<const Loop> loops);
 
   private:
-    // Coordinates as the tessellator sees them: about the first vertex, and of size 1.
+    // Tessellator coordinates: relative to the first vertex, of size 1.
     V3d local(const V3d& x) const { return (x - origin_) / frame_.size; }
     V3d global(const V3d& x) const { return origin_ + x * frame_.size; }
 
@@ -153,12 +152,12 @@ class Triangulation {
     Scene& scene_;
     const OutlinePlane& frame_;
     V3d origin_;
-    std::deque<std::uint32_t> handles_;  // what the tessellator's vertex pointers point to; a deque does not move them
+    std::deque<std::uint32_t> handles_;  // targets of the tessellator's vertex pointers; a deque keeps addresses valid
     std::vector<std::uint32_t> corners_;
     bool failed_ = false;
 };
 
-/// The vertex for a point where loops meet: one of those that meet there if it is at that place, else a new one.
+/// Vertex at a crossing: an existing neighbour at that position, else a new vertex.
 std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours, const GLfloat* weights) {
     std::vector<std::uint32_t> vertices;
     std::vector<float> weights_of_vertices;
@@ -181,7 +180,7 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
     gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
     gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
     gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
-    // Whoever wants edge flags gets plain triangles, no strips and fans.
+    // This callback makes GLU emit separate triangles instead of strips and fans.
     gluTessCallback(t, GLU_TESS_EDGE_FLAG_DATA, callback(&ignore_edge_flag));
 
     gluTessBeginPolygon(t, this);

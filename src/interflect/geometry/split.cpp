@@ -17,13 +17,13 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Pieces of each direction of a patch: along its first edge and along its last; a triangle has one number for both.
+/// Pieces along the first and the last edge of a patch; equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
 
 std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
-    constexpr float most = 1e9f;  // far beyond any limit, and the division may give infinity
+    constexpr float most = 1e9f;  // far beyond any limit; the division may overflow to infinity
     return static_cast<std::uint64_t>(std::clamp(std::ceil((b - a).length() / largest_edge), 1.0f, most));
 }
 
@@ -38,7 +38,7 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
 
-/// @param vertex  Of the piece that is the i-th along the first edge, the j-th along the last.
+/// @param vertex  Vertex at grid position (i, j): i along the first edge, j along the last.
 template <class Vertex, class AddPiece>
 void split_quadrilateral(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
     for (std::uint64_t j = 0; j < n.v; ++j)
@@ -80,7 +80,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
     VertexWeld weld(split);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
-        if (patch.other_side != none && patch.other_side < i) continue;  // went in with its front
+        if (patch.other_side != none && patch.other_side < i) continue;  // added with its front
         const PatchGeometry geometry(scene, patch);
         const Pieces n = pieces_of(scene, patch, largest_edge);
         const auto vertex = [&](std::uint64_t along_first, std::uint64_t along_last) {

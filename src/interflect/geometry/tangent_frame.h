@@ -6,7 +6,7 @@
 
 namespace interflect::inline detail {
 
-/// Two unit vectors that make a right-handed frame s, t, n with the unit vector n (Duff et al. 2017).
+/// Two unit vectors that form a right-handed frame s, t, n with the unit vector n (Duff et al. 2017).
 struct TangentFrame {
     V3f s, t;
     explicit TangentFrame(const V3f& n) {

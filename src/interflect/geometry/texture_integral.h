@@ -11,17 +11,16 @@
 
 namespace interflect::inline detail {
 
-/// Means of a texture, filtered and repeated as texel_at() has it, over triangles of its plane. They are exact, by
-/// Green's theorem: the integral of f over a triangle is that of F dy along its border, where dF/dx = f; between two
-/// lines of texel centres, F is a cubic, which Simpson's rule integrates exactly. Memory: 3 bytes a texel.
+/// Exact means of a texture over triangles, with filtering and repetition as in texel_at(). By Green's theorem the
+/// integral of f over a triangle is that of F dy along its border, with dF/dx = f. Between lines of texel centres F is
+/// a cubic, which Simpson's rule integrates exactly. Memory: 3 bytes a texel.
 class TextureIntegral {
   public:
-    /// @param texture  Without faults; must outlive this.
+    /// @param texture  Without faults; must outlive this object.
     explicit TextureIntegral(const Texture& texture);
 
-    /// The mean over the triangle with these corners, texture coordinates; of one without an area that over the line
-    /// that it is. In the range of the texels. O(texels along the border), but where these are more than a million,
-    /// the whole texture's mean is given.
+    /// Mean over a triangle in texture coordinates, or over a line if it has no area. Within the range of the texels.
+    /// O(texels along the border); above a million of them, the mean of the whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:
@@ -36,7 +35,7 @@ class TextureIntegral {
 
     const Texture& texture_;
     std::size_t sums_per_row_;
-    std::vector<RgbD> sums_;  // of each row's texels before every eighth one, and of all of them
+    std::vector<RgbD> sums_;  // per row: sum of the texels before every eighth one, then of the whole row
     Rgb largest_;
     RgbD mean_{0, 0, 0};
 };

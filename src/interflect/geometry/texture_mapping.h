@@ -6,15 +6,14 @@
 
 namespace interflect::inline detail {
 
-/// Texture coordinates at a point of a patch: linear on a triangle, bilinear on a quadrilateral, between its vertices.
-/// @param scene  Has texture coordinates.
+/// Interpolated texture coordinates at a point of a patch. @param scene  With texture coordinates.
 V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p);
 
-/// The coordinates of a vertex there, interpolated likewise: those that the scene has.
+/// All coordinates of a new vertex at this point.
 VertexCoordinates coordinates_at(const Scene& scene, const Patch& patch, Parameters p);
 
-/// Reflectance, exitance [lm/m^2 or W/m^2] and transmittance at a point of a patch: those of its material, times the
-/// texels there.
+/// Reflectance, exitance [lm/m^2 or W/m^2] and transmittance at a point of a patch: the material's value times the
+/// texel.
 Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p);

@@ -15,14 +15,13 @@ namespace {
 
 using Imath::V3d;
 
-/// Sine of the angle by which the outline must turn at each end of the shared edge.
+/// Minimum sine of the turn of the outline at each corner.
 constexpr double least_turn = 0.1;
-/// How far texture coordinates may be from those of the linear map.
+/// Maximum deviation of texture coordinates from the linear map.
 constexpr double coordinate_tolerance = 1e-4;
 
-/// An edge of a triangle, with the corner that it starts from.
 struct Edge {
-    std::uint64_t vertices = 0;  // the lower one in the upper half
+    std::uint64_t vertices = 0;  // the lower index in the upper half
     std::uint32_t triangle = 0;
     std::uint32_t corner = 0;
 
@@ -59,7 +58,7 @@ class PairFinder {
         return length >= squared_length(triangle, k + 1) && length >= squared_length(triangle, k + 2);
     }
 
-    /// Exporters write the halves of a quadrilateral one after the other: most pairs need no search.
+    /// Pairs consecutive triangles. Exporters write halves in sequence, so most pairs need no search.
     void pair_neighbours_in_order() {
         for (std::uint32_t t = 0; t + 1 < faces_.size(); ++t)
             for (std::uint32_t i = 0; i < 3 && is_single(t); ++i)
@@ -85,7 +84,7 @@ class PairFinder {
                 pair(first->triangle, first->corner, other->triangle, other->corner, longest_only);
     }
 
-    /// Merges two triangles along these edges, if that gives a quadrilateral as wanted.
+    /// Merges two triangles along these edges if the result is valid.
     void pair(std::uint32_t t, std::uint32_t i, std::uint32_t u, std::uint32_t j, bool longest_only) {
         if (!is_single(t) || !is_single(u)) return;
         if (corner(t, i) != corner(u, j + 1) || corner(t, i + 1) != corner(u, j)) return;
@@ -96,7 +95,7 @@ class PairFinder {
         faces_[std::max(t, u)] = {none, none, none, none};
     }
 
-    /// @param face  [0] and [2] are the ends of the edge that was shared.
+    /// @param face  [0] and [2] are the ends of the shared edge.
     bool is_planar_and_convex(const FaceVertices& face) const {
         const V3d a = position(face[0]), b = position(face[1]), c = position(face[2]), d = position(face[3]);
         const V3d normal = (c - a).cross(d - a).normalized();
@@ -122,7 +121,7 @@ class PairFinder {
 
     const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
-    std::vector<FaceVertices> faces_;  // the first vertex is none where the face became part of another
+    std::vector<FaceVertices> faces_;  // first vertex none: the face was merged into another
 };
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace interflect::inline detail {
 
 /// Attributes of a vertex beside its position.
 struct VertexCoordinates {
-    std::optional<V2f> texture;   ///< As Scene::texture_coordinates; missing ones are kept, and compared, as (0, 0).
-    std::optional<V2f> lightmap;  ///< As Scene::lightmap_coordinates; missing ones are kept as NaN.
+    std::optional<V2f> texture;  ///< As Scene::texture_coordinates. Missing values are stored, and compared, as (0, 0).
+    std::optional<V2f> lightmap;  ///< As Scene::lightmap_coordinates. Missing values are stored as NaN.
     V3f normal{0, 0, 0};          ///< As Scene::normals.
 
     friend bool operator==(const VertexCoordinates& a, const VertexCoordinates& b) {
@@ -20,7 +20,6 @@ struct VertexCoordinates {
     }
 };
 
-/// Those of a vertex of `scene`.
 VertexCoordinates coordinates_of(const Scene& scene, std::uint32_t vertex);
 
 /// Interpolates the attributes of some vertices. Lightmap coordinates are missing if one of the vertices has none, and

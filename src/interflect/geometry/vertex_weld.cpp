@@ -26,7 +26,7 @@ std::uint64_t hash(const V3f& x, const VertexCoordinates& coordinates) {
 
 }  // namespace
 
-/// The slot that holds this vertex, or the empty one where it belongs.
+/// Slot of this vertex, or the empty slot at which to insert it.
 std::uint32_t& VertexWeld::slot_of(const V3f& position, const VertexCoordinates& coordinates) {
     const auto is_other = [&](std::uint32_t v) {
         return scene_.vertices[v] != position || coordinates_of(scene_, v) != coordinates;

@@ -8,15 +8,14 @@
 
 namespace interflect::inline detail {
 
-/// Gives one vertex to each distinct position with its attributes: faces that meet in a point share a vertex there.
-/// Numbers are compared as they are, in single precision; -0 counts as 0. Holds at most 16 bytes a vertex: a hash table
-/// with linear probing, of indices into the vertices.
+/// Merges vertices with equal position and attributes in single precision (-0 equals 0). A hash table of vertex indices
+/// with linear probing; at most 16 bytes a vertex.
 class VertexWeld {
   public:
-    /// @param scene  New vertices go at the end; those that others add are not found.
+    /// @param scene  New vertices are appended; vertices added by others are not found.
     explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// The index of the vertex at `position`, which add_vertex() adds where it is new. All numbers are finite.
+    /// Index of the vertex, added by add_vertex() if new. All numbers must be finite.
     std::uint32_t vertex(const V3f& position, const VertexCoordinates& coordinates = {});
 
   private:

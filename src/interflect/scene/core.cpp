@@ -10,12 +10,11 @@ namespace {
 
 using Imath::V3d;
 
-/// Distance of the middle from the origin, in reaches, up to which the origin stays where it is.
+/// Maximum distance of the middle from an unchanged origin, in reaches.
 constexpr double near_in_reaches = 8;
-/// Faces farther from the middle than this many reaches do not count for the scene's size.
+/// Maximum distance from the middle, in reaches, of faces that define the scene's size.
 constexpr double stray_in_reaches = 64;
 
-/// The value below and above which lies half of the weight.
 double weighted_median(std::span<const double> values, std::span<const double> weights) {
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -10,19 +10,18 @@
 
 namespace interflect::inline detail {
 
-/// A face as the search for the core of a scene sees it.
+/// Bounding box of a face.
 struct FaceExtent {
-    Imath::V3d centre{0, 0, 0};  ///< Of its bounding box [m].
-    double size = 0;             ///< That box's diagonal [m]; > 0.
+    Imath::V3d centre{0, 0, 0};  ///< [m]
+    double size = 0;             ///< Diagonal [m]; > 0.
 };
 
-/// Keeps every k-th of the faces that it is offered, with k such that at most `capacity` are kept: enough for medians,
-/// in little memory whatever the size of the scene. Deterministic.
+/// Keeps every k-th face, k being a power of two, so at most `capacity` are kept: enough for medians. Deterministic.
 class FaceSample {
   public:
     static constexpr std::size_t capacity = 1 << 13;
 
-    /// Whether the next face will be kept; each face is offered once, by this function.
+    /// Whether the next face will be kept. Call once per face.
     bool wants_next() { return offered_++ % stride_ == 0; }
     void add(const FaceExtent& face);
     std::span<const FaceExtent> faces() const { return faces_; }
@@ -32,22 +31,22 @@ class FaceSample {
     std::size_t offered_ = 0, stride_ = 1;
 };
 
-/// Where most of a scene lies. A few faces far away do not move it.
+/// Location of most of a scene, robust against distant faces.
 struct Core {
-    Imath::V3d middle{0, 0, 0};  ///< On each axis the median of the faces' centres, weighted by their sizes [m].
-    double reach = 0;            ///< Median, weighted alike, of how far the faces reach from there [m].
+    Imath::V3d middle{0, 0, 0};  ///< Per axis: median of the face centres, weighted by face size [m].
+    double reach = 0;            ///< Extent of the faces from the middle: weighted median [m].
 };
 
-/// O(n log n). All zero where there is no face.
+/// O(n log n). All zero without faces.
 Core core_of(std::span<const FaceExtent> faces);
 
-/// The origin that keeps the precision of single-precision vertices: 0 where the middle is no farther from it than 8
-/// times the reach (at most 3 bits are lost), else the middle, rounded to a power of two of about the reach: what is
-/// exact in the file stays exact.
+/// Origin that preserves the precision of single-precision vertices. 0 if the middle is within 8 times the reach, which
+/// costs at most 3 bits. Otherwise the middle, rounded to a power of two near the reach, which keeps exact coordinates
+/// exact.
 Imath::V3d origin_for(const Core& core);
 
-/// The bounding box of what counts as the scene's size: of the vertices of all faces but those whose centre is farther
-/// from the middle than 64 times the reach. Relative to the scene's origin [m]. O(patches).
+/// Bounding box that defines the scene's size, relative to its origin [m]. Excludes faces whose centre is farther from
+/// the middle than 64 times the reach. O(patches).
 Imath::Box3f core_bounds(const Scene& scene);
 
 }  // namespace interflect::inline detail

@@ -6,14 +6,14 @@
 
 namespace interflect::inline detail {
 
-/// Tells scenes apart by their geometry: a hash of the origin, of each patch's corners and of which patches are sides
-/// of one face. Two different scenes have the same with a chance of 2^-64. Materials, names and views do not count.
-/// The same for any number of threads. Cost: one pass over the patches.
-/// @throws InputError where a vertex index is out of range.
+/// 64-bit hash of a scene's origin, the corners of its patches, and which patches are sides of one face. Two scenes
+/// collide with probability 2^-64. Independent of materials, names, views and the number of threads. Cost: one pass
+/// over the patches.
+/// @throws InputError if a vertex index is out of range.
 std::uint64_t geometry_fingerprint(const Scene& scene);
 
-/// @param fingerprint  geometry_fingerprint() of the scene that `what` ("the ray caster") was made for.
-/// @throws InputError where that is another scene.
+/// @param fingerprint  geometry_fingerprint() of the scene of `what` ("the ray caster").
+/// @throws InputError if `scene` has another fingerprint.
 void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char* what);
 
 }  // namespace interflect::inline detail

@@ -22,7 +22,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Whether a pattern matches an object, or one that it is within.
+/// Whether a pattern matches an object or an enclosing object.
 bool matches_object(std::string_view pattern, std::string_view name) {
     for (std::size_t end = name.find('.'); end != name.npos; end = name.find('.', end + 1))
         if (matches(pattern, name.substr(0, end))) return true;
@@ -31,12 +31,12 @@ bool matches_object(std::string_view pattern, std::string_view name) {
 
 std::string outermost(const std::string& object) { return object.substr(0, object.find('.')); }
 
-/// Finds groups by names, and remembers what it found.
+/// Finds groups by names, with a cache.
 class Matcher {
   public:
     explicit Matcher(const Scene& scene) : scene_(scene) {}
 
-    /// Index of the group, or as many as there are.
+    /// Index of the group, or the number of groups if none matches.
     std::size_t group_of(std::uint32_t object, const std::string& own_name) {
         const auto [entry, is_new] = known_.try_emplace({object, own_name}, scene_.light_groups.size());
         if (!is_new) return entry->second;
@@ -80,7 +80,7 @@ void scale(Luminaire& luminaire, float factor) {
 
 bool matches(std::string_view pattern, std::string_view name) {
     std::size_t p = 0, n = 0;
-    std::optional<std::size_t> star, resume;  // the last '*', and what is matched after it
+    std::optional<std::size_t> star, resume;  // the last '*', and the text position after its match
     while (n < name.size()) {
         if (p < pattern.size() && pattern[p] == '*') {
             star = p++, resume = n;
@@ -161,7 +161,7 @@ std::vector<LightGroup> groups_by_name(const Scene& scene) {
 
 Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors) {
     Scene result = scene;
-    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // materials
+    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // material index per (material, factor)
     for (std::size_t i = 0; i < result.patches.size(); ++i) {
         std::uint32_t& material = result.patches[i].material;
         const float factor = factors[groups.of_patch[i]];

@@ -37,7 +37,7 @@ std::string placement_fault(const DirectionalLight& light) {
 }
 std::string placement_fault(const UniformSky&) { return {}; }
 std::string placement_fault(const SkyDome& sky) {
-    constexpr float rounding = -1e-4f;  // cosine
+    constexpr float rounding = -1e-4f;  // of the cosine
     for (const std::string& fault : {direction_fault(sky.zenith), direction_fault(sky.sun), sky_fault(sky.model)})
         if (!fault.empty()) return fault;
     if (sky.sun.normalized().dot(sky.zenith.normalized()) < rounding) return "has its sun below the horizon";

@@ -7,9 +7,8 @@
 
 namespace interflect::inline detail {
 
-/// The cross product of two edges of a triangle, or of the diagonals of a convex, (nearly) planar quadrilateral: twice
-/// its area [m^2] times its unit normal.
-/// @param corners  3 or 4, counter-clockwise seen from where the normal points.
+/// Twice the area [m^2] times the unit normal of a triangle or a convex, (nearly) planar quadrilateral.
+/// @param corners  3 or 4, counter-clockwise seen against the normal.
 template <class T>
 Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {
     assert(corners.size() == 3 || corners.size() == 4);
@@ -17,7 +16,7 @@ Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {
                                : (corners[2] - corners[0]).cross(corners[3] - corners[1]);
 }
 
-/// Area of a patch [m^2].
+/// [m^2]
 float patch_area(const Scene& scene, const Patch& patch);
 
 }  // namespace interflect::inline detail

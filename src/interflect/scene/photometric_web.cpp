@@ -12,13 +12,13 @@ namespace interflect {
 
 namespace {
 
-/// Where a number lies between two of a table: at `index` + `share`.
+/// Position of a number in a table: `index` + `share`.
 struct Place {
     std::size_t index;
     float share;
 };
 
-/// @param x  Within the table.
+/// @param x  Within the range of the table.
 Place place_in(const std::vector<float>& table, double x) {
     const auto above = std::upper_bound(table.begin() + 1, table.end() - 1, x);
     const auto index = static_cast<std::size_t>(above - table.begin()) - 1;

@@ -7,16 +7,16 @@
 
 namespace interflect::inline detail {
 
-/// Largest warp of a planar quadrilateral over its largest coordinate: 16 steps of a float, more than a transform
-/// moves a corner off its plane, and a quarter of the ray offset (RayCaster::ray_offset).
+/// Largest warp of a planar quadrilateral, relative to its largest coordinate: 16 steps of a float. Exceeds the
+/// rounding of a transform; a quarter of the ray offset (RayCaster::ray_offset).
 inline constexpr double relative_planarity = 0x1p-19;
 
-/// Distance of the corners of a convex quadrilateral from their mean plane [m]. It is also the largest distance between
-/// the bilinear surface, on which rays start, and the two triangles, which rays hit.
+/// Distance of a convex quadrilateral's corners from their mean plane [m]. Also the largest distance between the
+/// bilinear surface, where rays start, and the two triangles, which rays hit.
 double warp(const Scene& scene, const std::array<std::uint32_t, 4>& vertices);
 
-/// Whether a convex quadrilateral may be one patch. A more strongly warped one must become two triangles: rays that
-/// start on its bilinear surface would pass through its triangles.
+/// Whether a convex quadrilateral may be one patch. Otherwise rays from its bilinear surface would pass through its two
+/// triangles.
 bool is_planar(const Scene& scene, const std::array<std::uint32_t, 4>& vertices);
 
 }  // namespace interflect::inline detail

@@ -19,14 +19,14 @@ constexpr std::size_t listed_faults = 20;
 bool is_share(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0; }
 bool is_reflectance(const Rgb& c) { return is_share(c) && largest_channel(c) < 1; }
 
-/// The faults found so far, up to as many as are listed.
+/// Collects faults, up to the number that is listed.
 class Faults {
   public:
     template <class Describe>
     void check(bool holds, const Describe& describe) {
         if (!holds && list_.size() < listed_faults) list_.push_back(describe());
     }
-    /// @param fault  Empty where there is none.
+    /// @param fault  Empty if valid.
     template <class Name>
     void add(const std::string& fault, const Name& name) {
         check(fault.empty(), [&] { return name() + fault; });
@@ -68,7 +68,7 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
-    const bool are_added = m.transmittance_texture == none;  // else check_products() does, texel by texel
+    const bool are_added = m.transmittance_texture == none;  // else checked per texel by check_products()
     faults.check(is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), [&] {
         return fmt::format(
             "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
@@ -78,7 +78,7 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
     faults.add(exitance_fault(m.exitance), [&] { return fmt::format("material '{}': ", m.name); });
 }
 
-/// @param largest  Of all textures, as largest_texels().
+/// @param largest  largest_texels() of all textures.
 void check_products(const Material& m, const std::vector<Texture>& textures, const std::vector<Rgb>& largest,
                     Faults& faults) {
     const Rgb r = textured(m.reflectance, m.reflectance_texture, largest);

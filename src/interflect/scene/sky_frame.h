@@ -4,8 +4,8 @@
 
 namespace interflect::inline detail {
 
-/// A direction as a place in an image of all directions: `s` is the azimuth in turns, 1/2 at north and rising towards
-/// east; `cosine` that of the angle from the zenith.
+/// A direction as a position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of
+/// the angle from the zenith.
 struct SkyPlace {
     float s, cosine;
 };
@@ -13,7 +13,7 @@ struct SkyPlace {
 /// Axes of a sky in the scene, of unit length.
 struct SkyFrame {
     V3f east, north, zenith;
-    /// North is towards the axis y of the scene, or -z where y is close to the zenith.
+    /// North is towards the scene's y axis, or -z if y is close to the zenith.
     explicit SkyFrame(const V3f& up);
     SkyFrame(const V3f& up, const V3f& towards_north);
     V3f direction(const SkyPlace& place) const;

@@ -6,23 +6,21 @@
 
 namespace interflect::inline detail {
 
-/// What is wrong with a view, in words without its name; empty where it shows something: eye, look-at and up are
-/// finite, eye and look-at no farther out than farthest_coordinate (limits.h) and far enough apart for the direction
-/// not to be rounding, `up` has a length and is not along it, fov is in (0, 180), extent in [0, farthest_coordinate].
+/// Fault of a view, in words without its name; empty if valid. Eye, look-at and up must be finite. Eye and look-at must
+/// be within farthest_coordinate (limits.h) and far enough apart to define a direction. `up` must be non-zero and not
+/// along it; fov in (0, 180); extent in [0, farthest_coordinate].
 std::string view_fault(const View& view);
 
-/// The view of that name. @throws InputError that lists the views there are.
+/// @throws InputError that lists the available views.
 const View& find_view(const Scene& scene, const std::string& name);
 
-/// A view for a scene that names none: from high up in a corner of its bounding box (core_bounds), just inside, towards
-/// its middle; `up` is the z axis.
+/// Default view from an upper corner inside the scene's bounding box (core_bounds) to its middle; `up` is the z axis.
 View overview(const Scene& scene);
 
-/// An orthographic view without a name of the scene cut open: of what lies beyond a plane. It shows the whole scene
-/// with a margin, the middle of its bounding box (core_bounds) in the middle of the picture. `up` is the z axis, or the
-/// y axis where the view goes along z.
-/// @param point      On the plane [m], in the world.
-/// @param direction  Of the view, at a right angle to the plane; not 0.
+/// Unnamed orthographic view of the part of a scene beyond a plane. Shows the whole scene with a margin, centred at the
+/// middle of its bounding box (core_bounds). `up` is the z axis, or the y axis for a view along z.
+/// @param point      On the plane [m], in world coordinates.
+/// @param direction  View direction, perpendicular to the plane; not 0.
 /// @param aspect     Width over height of the picture.
 View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
 

@@ -12,20 +12,19 @@ namespace {
 
 constexpr float wall_thickness = 0.2f;  // [m]
 constexpr float door_width = 0.9f;      // [m]
-constexpr float least_pier = 0.5f;      // of wall between a doorway and a corner [m]
+constexpr float least_pier = 0.5f;      // minimum wall between a doorway and a corner [m]
 
-/// A wall between two rooms.
 struct SharedWall {
     std::array<std::uint32_t, 2> rooms;
     Side side;  // of the first room
 };
 
-/// Sets of rooms that doorways join (union-find with path halving).
+/// Sets of rooms connected by doorways (union-find with path halving).
 class Connected {
   public:
     explicit Connected(std::size_t rooms) : parent_(rooms) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-    /// Joins the sets of two rooms. @return false where they were one already
+    /// Joins the sets of two rooms. @return  false if they were already joined.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -41,7 +40,7 @@ class Connected {
     std::vector<std::uint32_t> parent_;
 };
 
-/// `count` stretches with walls between, about 0.
+/// `count` intervals separated by walls, centred at 0.
 std::vector<Interval> draw_intervals(std::uint32_t count, const Interval& length, RandomSequence& random) {
     std::vector<Interval> intervals;
     float end = -wall_thickness;
@@ -55,7 +54,6 @@ std::vector<Interval> draw_intervals(std::uint32_t count, const Interval& length
     return intervals;
 }
 
-/// Each wall in which a doorway could be.
 std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns) {
     std::vector<SharedWall> walls;
     for (std::uint32_t room = 0; room < rooms; ++room) {
@@ -65,7 +63,7 @@ std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns)
     return walls;
 }
 
-/// Which walls get a doorway: those of a spanning tree (Kruskal's algorithm on random weights), and some more.
+/// Chooses walls for doorways: a spanning tree (Kruskal's algorithm on random weights) and random others.
 std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanOptions& options,
                                RandomSequence& random) {
     std::vector<std::uint32_t> order(walls.size());
@@ -79,7 +77,7 @@ std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanO
     return chosen;
 }
 
-/// A doorway takes one of the places that divide a wall evenly, so that two across a room are abreast or apart.
+/// Chooses one of several evenly spaced places, so opposite doorways are aligned or apart.
 Interval draw_opening(const Interval& wall, RandomSequence& random) {
     const float places = std::floor((wall.length() - 2 * least_pier) / door_width);
     const float first = wall.middle() - places * door_width / 2;

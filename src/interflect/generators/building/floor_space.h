@@ -12,18 +12,17 @@
 
 namespace interflect::inline detail::building {
 
-/// What of a room's floor is still free for furniture.
+/// Free floor area of a room, for placing furniture.
 class FloorSpace {
   public:
-    /// Free but for the ways through the doorways.
+    /// Reserves only the ways through the doorways.
     FloorSpace(const FloorPlan& plan, const Room& room);
 
-    /// Takes a part of the floor that furniture must leave free.
     void reserve(const Imath::Box2f& part) { taken_.push_back(part); }
 
-    /// A place with the back to a wall, which is then taken; nothing where there is none.
+    /// Finds and reserves a place with the back to a wall; nullopt if none is free.
     std::optional<Placement> against_wall(const Furniture& piece, RandomSequence& random);
-    /// A place away from the walls.
+    /// The same, away from the walls.
     std::optional<Placement> in_the_open(const Furniture& piece, RandomSequence& random);
 
   private:

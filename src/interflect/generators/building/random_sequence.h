@@ -8,7 +8,7 @@
 
 namespace interflect::inline detail::building {
 
-/// Random choices one after the other; the same key gives the same ones everywhere.
+/// A sequence of random choices that depends on the key alone.
 class RandomSequence {
   public:
     explicit RandomSequence(std::uint64_t key) : key_(key) {}

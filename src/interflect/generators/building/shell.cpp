@@ -10,12 +10,10 @@ namespace interflect::inline detail::building {
 
 namespace {
 
-/// The corners of an opening in the face of a wall, once round: from the floor at its low end to the floor at its high
-/// end, up, and back down.
+/// Corners of an opening in a wall, in order: low and high end at the floor, high and low end at the top.
 using DoorFrame = std::array<std::uint32_t, 4>;
 
-/// The coordinates at which the walls of a room are divided along one axis: its ends, and those of the doorways in the
-/// two walls along that axis.
+/// Coordinates that divide the walls of a room along one axis: its ends and doorway edges.
 std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side side) {
     const Interval& extent = room.along(side);
     std::vector<float> lines{extent.low, extent.high};
@@ -29,7 +27,7 @@ std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side 
     return lines;
 }
 
-/// One room as a box divided by the same lines on opposite faces.
+/// A room as a box with equal dividing lines on opposite faces.
 class RoomShell {
   public:
     RoomShell(Scene& scene, const FloorPlan& plan, const Room& room, const Finish& finish, std::uint32_t object)
@@ -48,13 +46,13 @@ class RoomShell {
             for (const bool high : {false, true}) add_face(axis, high);
     }
 
-    /// The corners of the opening in each wall that has a doorway; known after add_faces().
+    /// Corners of the opening in each wall with a doorway; valid after add_faces().
     const std::array<DoorFrame, side_count>& frames() const { return frames_; }
 
   private:
-    using GridPoint = std::array<std::size_t, 3>;  // indices of a grid point
+    using GridPoint = std::array<std::size_t, 3>;  // indices
 
-    /// The floor (axis z, low), a wall or the ceiling.
+    /// Adds the floor (axis z, low), a wall or the ceiling.
     void add_face(int axis, bool high) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         GridPoint cell;
@@ -74,7 +72,7 @@ class RoomShell {
         std::array<std::uint32_t, 4> corners{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
         const auto side = static_cast<Side>(axis + (high ? 2 : 0));  // of a wall
         if (axis < 2 && is_opening(side, cell)) {
-            // A frame starts along the wall: for walls along y that is u, for those along x it is v.
+            // A frame starts along the wall: u for walls along y, v for walls along x.
             frames_[side] = along_x(side) ? DoorFrame{corners[0], corners[3], corners[2], corners[1]} : corners;
             return;
         }
@@ -104,11 +102,11 @@ class RoomShell {
     const Finish& finish_;
     std::uint32_t object_;
     std::array<std::vector<float>, 3> lines_;  // in x, y and z
-    std::vector<std::uint32_t> vertices_;      // of the grid, made when first needed
+    std::vector<std::uint32_t> vertices_;      // of the grid, made on demand
     std::array<DoorFrame, side_count> frames_{};
 };
 
-/// Threshold, jambs and soffit, between the openings in the two faces of a wall.
+/// Adds threshold, jambs and soffit between the openings in the two faces of a wall.
 void add_passage(Scene& scene, const Doorway& doorway, const std::array<DoorFrame, 2>& frames, const Finish& finish,
                  std::uint32_t object) {
     const auto& [near, far] = frames;

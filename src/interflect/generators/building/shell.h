@@ -7,15 +7,14 @@
 
 namespace interflect::inline detail::building {
 
-/// Materials of a room's surfaces.
 struct Finish {
     std::uint32_t wall = 0, floor = 0, ceiling = 0;
 };
 
-/// Adds floors, walls, ceilings and the insides of doorways, all one-sided and lit from where people are. Together they
-/// are one closed surface without T-vertices: every edge belongs to exactly two patches, which run along it in opposite
-/// directions. Walls, floors and ceilings are divided only where the edges of doorways ask for it. Object names are
-/// "room-0.shell" and so on; a doorway belongs to its first room and has that one's materials.
+/// Adds floors, walls, ceilings and the insides of doorways: one closed surface of one-sided faces lit from inside,
+/// without T-vertices. Every edge belongs to exactly two patches, in opposite directions. Faces are divided only at the
+/// edges of doorways. Objects are named "room-0.shell" and so on; a doorway belongs to its first room, with that room's
+/// materials.
 /// @param finishes  One for each room.
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
 

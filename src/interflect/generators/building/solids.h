@@ -6,12 +6,12 @@
 
 namespace interflect::inline detail::building {
 
-/// What is kept between any two solids, and between solids and walls [m]. Nothing touches, so no two faces coincide;
-/// and it is more than RayCaster::ray_offset() in the largest scenes made here (2.5 mm at 330 m from the origin), so
-/// that a ray from the underside of a thing does not start below what the thing stands on.
+/// Distance between solids, and between solids and walls [m]; prevents coincident faces. Exceeds
+/// RayCaster::ray_offset() in the largest generated scenes (2.5 mm at 330 m from the origin), so rays from an underside
+/// start above the surface below.
 inline constexpr float gap = 0.004f;
 
-/// A place to stand: an origin on a floor, and a turn about the vertical.
+/// An origin on the floor and a rotation about the vertical.
 class Placement {
   public:
     Placement() = default;
@@ -22,7 +22,6 @@ class Placement {
     V3f point(const V3f& local) const {
         return origin_ + V3f(cosine_ * local.x - sine_ * local.y, sine_ * local.x + cosine_ * local.y, local.z);
     }
-    /// A place that is given relative to this one.
     Placement at(const V3f& local, float radians = 0) const;
 
   private:
@@ -30,24 +29,23 @@ class Placement {
     float cosine_ = 1, sine_ = 0;
 };
 
-/// A place in a scene where solids are added, closed ones, each of six one-sided faces that look outwards, with eight
-/// vertices of its own.
+/// Adds closed solids of six one-sided faces, which face outwards and have their own eight vertices.
 class Solids {
   public:
     Solids(Scene& scene, const Placement& placement, std::uint32_t object)
         : scene_(&scene), placement_(placement), object_(object) {}
 
-    /// The same, for parts that are placed relative to this placement.
+    /// Solids at a placement relative to this one.
     Solids at(const V3f& local, float radians = 0) const {
         return Solids(*scene_, placement_.at(local, radians), object_);
     }
 
     /// @param low, high  Opposite corners, low < high in each coordinate.
-    /// @param underside  Material of the lower face, where it is another.
+    /// @param underside  Material of the lower face, if different.
     void box(const V3f& low, const V3f& high, std::uint32_t material,
              std::optional<std::uint32_t> underside = std::nullopt) const;
 
-    /// A box whose top is `top_scale` times as large as its bottom, about the same vertical axis; top_scale > 0.
+    /// A box with its top scaled by `top_scale` > 0 about the vertical axis.
     void tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) const;
 
   private:
