@@ -1,4 +1,4 @@
-"""`interflect export`: what it writes, what it refuses, and that nothing is left half written."""
+"""`interflect export`: outputs, refusals, and no partial files after a failure."""
 
 import base64
 import json
@@ -9,7 +9,7 @@ import zlib
 from command import BAD_INPUT, WRONG_USAGE, CommandTest, room
 
 def png_texels(png):
-    """Of an image of 8 bits and three channels."""
+    """Texels of an image of 8 bits and three channels."""
     position, data = 8, b""
     while position < len(png):
         length, kind = struct.unpack(">I4s", png[position : position + 8])

@@ -1,4 +1,4 @@
-"""The lighting designer's report: one page that needs nothing else, with the numbers of probe."""
+"""The lighting designer's report: a self-contained page with the numbers of probe."""
 
 import re
 import signal
@@ -15,7 +15,7 @@ FEW = ("--size", "32x18", "--samples")
 
 
 def rectangle(name, origin, u, v, number):
-    """A face of its own object."""
+    """A face as a separate object."""
     corners = [
         tuple(o + a * s + b * t for o, a, b in zip(origin, u, v, strict=True)) for s, t in ((0, 0), (1, 0), (1, 1), (0, 1))
     ]
@@ -39,7 +39,7 @@ def two_rooms():
 
 
 class Page(HTMLParser):
-    """Checks that tags close in order, and collects the tables, by id, and all addresses that the page refers to."""
+    """Checks that tags are balanced, and collects the tables, by id, and all referenced addresses."""
 
     def __init__(self, text):
         super().__init__()

@@ -54,7 +54,7 @@ class GltfBuilder {
     }
     /// A mesh of one primitive.
     int add_mesh(json primitive) { return add("meshes", {{"primitives", {std::move(primitive)}}}); }
-    /// In the scene itself.
+    /// Adds a node at the root of the scene.
     int add_node(json node) {
         const int index = add("nodes", std::move(node));
         file["scenes"][0]["nodes"].push_back(index);
@@ -87,7 +87,7 @@ class GltfBuilder {
                word(padded.size()) + std::string("BIN\0", 4) + padded;
     }
     Scene read(const ReadOptions& options = {}) const { return read_gltf_bytes(glb(), "test.glb", options); }
-    /// What reading it is refused with.
+    /// The message that refuses the file.
     std::string fault(const ReadOptions& options = {}) const {
         try {
             read(options);
@@ -98,7 +98,7 @@ class GltfBuilder {
     }
 };
 
-/// Positions of a patch's corners in the world.
+/// World positions of a patch's corners.
 inline std::vector<V3f> corners(const Scene& scene, std::size_t patch) {
     std::vector<V3f> result;
     for (int k = 0; k < scene.patches[patch].vertex_count(); ++k)

@@ -8,7 +8,7 @@
 
 namespace interflect::testing_support {
 
-/// The message of the InputError that `read` throws; "no error" where it throws none.
+/// The message of the InputError that `read` throws; "no error" without an exception.
 template <class Read>
 std::string message_of(const Read& read) {
     try {
