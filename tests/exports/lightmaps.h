@@ -38,7 +38,7 @@ inline ExportOptions at(float texels_per_metre) {
     return options;
 }
 
-/// As a graphics card interpolates, from the centres of the four nearest texels.
+/// Bilinear interpolation from the centres of the four nearest texels, as on a graphics card.
 inline Rgb sample(const Lightmap& lightmap, std::uint32_t patch, Parameters place) {
     const Image& image = lightmap.images[static_cast<std::size_t>(lightmap.page(patch))];
     const V2f at = lightmap.coordinate(patch, place);
