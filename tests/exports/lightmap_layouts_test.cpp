@@ -50,7 +50,7 @@ Solution of_each_patch(const Scene& scene) {
     return solution;
 }
 
-// Image coordinates, in texels, are an affine function of those of the file: three corners define the map, and all
+// Image coordinates, in texels, are an affine function of the file's: three corners define the map, and all
 // others agree with it. Fails without flipping the file's v, and with a chart for each face.
 TEST(LightmapLayout, IsMovedAndScaledAsAWhole) {
     const Scene scene = corner_with_layout();

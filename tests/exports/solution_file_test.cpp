@@ -131,7 +131,7 @@ std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     return parents;
 }
 
-/// Finds the only array with these contents in a file's bytes, and replaces it by one of the same size.
+/// Finds the only array with these contents in a file's bytes, and replaces it by another of equal size.
 template <class T>
 std::string replaced(std::string bytes, const std::vector<T>& before, const std::vector<T>& after) {
     const auto raw = [](const std::vector<T>& values) {
@@ -325,7 +325,7 @@ TEST_F(SolutionFile, CannotBeWrittenIntoAMissingFolder) {
                  std::runtime_error);
 }
 
-/// The message that refuses a solution, which is first written by bytes_of().
+/// The message of a refused write of `solved` to `path`, whose previous file (from bytes_of()) must stay unchanged.
 std::string refusal(const fs::path& path, const SolvedScene& solved) {
     const std::string before = contents(path);
     try {

@@ -12,7 +12,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-/// A rectangle made ready for many rays.
+/// A rectangle preprocessed for many rays.
 struct Target {
     V3d corner, normal, to_u, to_v;  // to_u . (x - corner) is the coordinate along u, in [0, 1] inside
     explicit Target(const Rectangle& r)
@@ -31,10 +31,10 @@ V3d cosine_direction(const V3d& normal, Random& random) {
     }
 }
 
-/// Index of the nearest rectangle whose lit side the ray meets; targets.size() if there is none.
+/// Index of the nearest rectangle whose lit side the ray hits, or targets.size().
 std::size_t nearest(const std::vector<Target>& targets, const V3d& origin, const V3d& direction) {
-    constexpr double start = 1e-9;   // [m], so that a ray does not meet the rectangle it leaves
-    constexpr double slack = 1e-12;  // so that none slips through between two rectangles
+    constexpr double start = 1e-9;   // [m], prevents hits on the starting rectangle
+    constexpr double slack = 1e-12;  // closes gaps between rectangles
     double distance = std::numeric_limits<double>::infinity();
     std::size_t hit = targets.size();
     for (std::size_t i = 0; i < targets.size(); ++i) {
