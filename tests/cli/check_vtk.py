@@ -29,7 +29,6 @@ def arrays(data):
 
 
 def everything(grid):
-    """All arrays of a grid, by name."""
     cells = grid.GetCells()
     named = {
         "connectivity": vtk_to_numpy(cells.GetConnectivityArray()),

@@ -1,4 +1,4 @@
-"""Verifies the checksums of a solution file with the Python code of docs/solution-file.md."""
+"""Runs the Python code of docs/solution-file.md."""
 
 import re
 import subprocess

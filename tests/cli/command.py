@@ -1,4 +1,4 @@
-"""Shared by the tests of the command: a temporary folder, small scenes, and runs with an expected exit code."""
+"""Shared by the tests of the command."""
 
 import json
 import os
@@ -58,7 +58,7 @@ class CommandTest(unittest.TestCase):
         return path
 
     def interflect(self, *arguments, exit_code=DONE, timeout=60):
-        """Runs the command in the test's folder. Fails on another exit code and on a hang."""
+        """Fails on another exit code and on a hang."""
         result = subprocess.run(
             [COMMAND, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=timeout
         )

@@ -28,7 +28,7 @@ def area(points):
 
 
 class Ply:
-    """A binary PLY file with one list per face."""
+    """Binary, with one list per face."""
 
     TYPES = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
 
@@ -94,7 +94,7 @@ class Meshes(Exported):
             self.assertAlmostEqual(float(channel), 1000 / math.pi, places=3)
 
     def check_vtk(self, solution, *grids):
-        """Number of cells, bounds and area for each grid, in VTK's two formats."""
+        """Number of cells, bounds and area for each grid."""
         for name in grids:
             self.interflect("export", solution, "-o", name)
         command = ["/usr/bin/python3", "-B", Path(__file__).parent / "check_vtk.py", solution, *grids]

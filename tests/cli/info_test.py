@@ -1,4 +1,4 @@
-"""Output of `info`, as text and as JSON."""
+"""Output of `info`."""
 
 import json
 import math

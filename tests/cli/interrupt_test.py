@@ -214,7 +214,7 @@ class Interrupt(CommandTest):
         self.assertEqual(self.temporary_files(), [])
 
     def start_writing_into_a_pipe(self):
-        """Starts a process that has solved, written a temporary file, and waits for a reader of the result."""
+        """Starts a process that has solved and waits for a reader of the result."""
         os.mkfifo(self.folder / "pipe.h5")
         process = self.start("solve", "room.mgf", "-o", "pipe.h5", "--rays", "20k")
         while not process.stderr.readline().startswith("info:"):

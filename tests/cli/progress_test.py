@@ -20,7 +20,6 @@ class Progress(CommandTest):
         self.write("room.mgf", room())
 
     def on_terminal(self):
-        """Output of the command to stderr on a terminal."""
         terminal, stderr = pty.openpty()
         process = subprocess.Popen([COMMAND, *self.SOLVE], cwd=self.folder, stderr=stderr, stdout=subprocess.DEVNULL)
         os.close(stderr)

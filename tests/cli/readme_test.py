@@ -15,7 +15,7 @@ LESS_WORK = {r"--rays \d+M": "--rays 300k", r"--time \d+": "--time 1", r"--until
 
 
 def examples():
-    """(command, quoted output lines) for each indented line that begins with `interflect`, with or without a prompt."""
+    """(command, quoted output lines) of each indented line with `interflect`, with or without a prompt."""
     found = []
     for line in (ROOT / "README.md").read_text().splitlines():
         command = re.match(r" {4}(?:\$ )?interflect (.*)", line)

@@ -70,7 +70,7 @@ class Views(RenderTest):
     def test_all_ways_to_name_a_view_agree(self):
         self.write("door.vf", "rvu -vtv -vp .3 .2 1.6 -vd .9 2.8 -.6 -vu 0 0 1 -vh 73.7 -vv 45\n")
         by_name = self.picture("--view", "door")
-        self.assertEqual(self.picture(), by_name)  # the first one is the default
+        self.assertEqual(self.picture(), by_name)
         self.assertEqual(self.picture(*VIEW), by_name)
         self.assertEqual(self.picture(*VIEW, "--fov", "45", "--up", "0,0,2"), by_name)
         # A view file has a direction instead of a point: the same picture except for rounding.
@@ -461,7 +461,7 @@ class PathTracing(CommandTest):
         return self.interflect("render", source, "-o", name, *self.PATH, *VIEW, *options).stderr
 
     def test_agrees_with_the_solver(self):
-        """Two independent estimates of one scene; a wrong factor of rho, pi or the area would fail."""
+        """Two independent estimates; a wrong factor of rho, pi or the area would fail."""
         self.trace("path.exr", "--samples", "256")
         self.interflect("render", "room.mgf", "-o", "solved.exr", *self.SIZE, *VIEW, "--samples", "16", "--rays", "2M")
         difference = self.json("compare", "path.exr", "solved.exr")

@@ -19,7 +19,6 @@ class Resume(CommandTest):
         self.write("room.mgf", room())
 
     def start_and_end(self, *arguments, signal_number, seconds):
-        """Sends a signal after `seconds`."""
         process = subprocess.Popen(
             [COMMAND, *arguments], cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
         )

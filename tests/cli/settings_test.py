@@ -40,7 +40,7 @@ class Settings(CommandTest):
     def setUp(self):
         super().setUp()
         help_text = self.interflect("solve", "--help").stdout
-        self.headings = {}  # headings of the help, by option
+        self.headings = {}  # by option
         heading = ""
         for line in help_text.splitlines():
             if match := re.match(r"(\w.*):$", line):

@@ -71,7 +71,7 @@ class Statistics(CommandTest):
                 + ["largest_quantum", "high_quantum"],
             )
             self.assertEqual(line["power_rays"] + line["importance_rays"], line["rays"])
-            self.assertEqual(line["escaped_power"], [0, 0, 0])  # the room is closed
+            self.assertEqual(line["escaped_power"], [0, 0, 0])  # closed room
         rays = [line["rays"] for line in iterations]
         self.assertEqual(rays, sorted(set(rays)))
         self.assertEqual([line["iteration"] for line in iterations], list(range(len(iterations))))

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-/// Position of an array in a file, in bytes.
+/// In bytes.
 struct Place {
     std::size_t begin, size;
 };
@@ -45,7 +45,7 @@ class DamagedRun : public testing::Test {
         bytes_ = {std::istreambuf_iterator<char>(file), {}};
     }
 
-    /// The message of Solver::open() for the file; empty if it opens. Does not catch other exceptions than InputError.
+    /// Message of Solver::open(); empty if it opens. Does not catch other exceptions than InputError.
     std::string error() const {
         try {
             Solver::open(path_);
@@ -57,7 +57,6 @@ class DamagedRun : public testing::Test {
 
     void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes; }
 
-    /// Writes the undamaged file with one bit flipped.
     void write_flipped(std::size_t at, std::size_t bit) const {
         std::string damaged = bytes_;
         damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));

@@ -18,7 +18,6 @@ using testing_support::closed_box;
 
 const Material grey{"grey", Rgb(0.5f), Rgb(0)};
 
-/// Every quadrilateral cut along a diagonal.
 Scene in_triangles(Scene scene) {
     const std::vector<Patch> quadrilaterals = std::exchange(scene.patches, {});
     for (const Patch& patch : quadrilaterals)
@@ -30,7 +29,7 @@ Scene in_triangles(Scene scene) {
     return scene;
 }
 
-/// Subdivides elements at random, down to eight levels, to put large leaves beside small ones everywhere.
+/// Down to eight levels, to put large leaves beside small ones everywhere.
 void subdivide_at_random(ElementForest& forest) {
     constexpr int deepest = 8;
     for (std::uint32_t e = 0; e < forest.size(); ++e)

@@ -16,7 +16,7 @@ using testing_support::TemporaryFolder;
 
 constexpr hsize_t length = 6;  // of the external array
 
-/// Writes a file; `add` creates its arrays.
+/// `add` creates the arrays.
 template <class Add>
 fs::path made(const TemporaryFolder& folder, const Add& add) {
     const fs::path path = folder.path() / "made.h5";

@@ -42,7 +42,6 @@ Scene corner_with_layout() {
     return scene;
 }
 
-/// H = 100 (1 + patch), different for each face.
 Solution of_each_patch(const Scene& scene) {
     Solution solution = uniform(scene, 0);
     for (std::size_t p = 0; p < solution.irradiance.size(); ++p)

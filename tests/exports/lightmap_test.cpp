@@ -227,7 +227,6 @@ INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
 
 class LightmapOfGroups : public testing::TestWithParam<std::tuple<LightmapShading, LightmapContent>> {};
 
-// A box with two lamps; each lamp is a group.
 TEST_P(LightmapOfGroups, SumsToTheTotal) {
     const auto [shading, content] = GetParam();
     Scene scene = closed_box(V3f(1, 1.5f, 2), 1, {{"white", Rgb(0.5f), Rgb(0)}});

@@ -14,7 +14,7 @@ namespace {
 
 using namespace lightmap_testing;
 
-/// A point of a curved surface, of parameters from 0 to 1.
+/// Parameters from 0 to 1.
 using CurvedSurface = V3f (*)(float u, float v);
 
 /// Triangles, two per grid cell, or one if two corners coincide. @param pairs  Planar cells stay undivided.

@@ -212,7 +212,6 @@ View turned(double degrees) {
     return view;
 }
 
-/// A run that has solved one view.
 Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed = 1) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);

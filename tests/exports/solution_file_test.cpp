@@ -123,7 +123,6 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Expected contents of /elements/subdivided.
 std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     std::vector<std::uint32_t> parents;
     for (std::uint32_t e = solution.forest->patch_count(); e < solution.forest->size(); e += 4)
@@ -131,7 +130,7 @@ std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     return parents;
 }
 
-/// Finds the only array with these contents in a file's bytes, and replaces it by another of equal size.
+/// The contents `before` must occur once; sizes are equal.
 template <class T>
 std::string replaced(std::string bytes, const std::vector<T>& before, const std::vector<T>& after) {
     const auto raw = [](const std::vector<T>& values) {

@@ -35,7 +35,6 @@ double volume(const PolygonMesh& mesh) {
     return sum;
 }
 
-/// Returns whether every edge is used once in each direction.
 bool is_closed(const PolygonMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const auto& face : mesh.faces)

@@ -90,7 +90,6 @@ TEST_F(TiltFiles, OfFilesWithinAGltfLieInItsFolder) {
     EXPECT_THAT(fault_of("secret"), HasSubstr("has no TILT data"));
 }
 
-/// A scene, and a file beside it that the scene names.
 struct NamingScene {
     const char *name, *scene, *text, *file;
 };

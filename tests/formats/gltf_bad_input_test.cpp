@@ -46,7 +46,7 @@ std::string png_of_zeros(std::uint32_t width, std::uint32_t height, std::size_t 
 
 struct Fault {
     const char* name;
-    std::function<void(GltfBuilder&)> damage;  ///< Damages a file with a triangle.
+    std::function<void(GltfBuilder&)> damage;  ///< Of a file with a triangle.
     const char* expected;                      ///< Part of the message.
 };
 
@@ -64,12 +64,11 @@ TEST_P(GltfFaults, AreNamed) {
     EXPECT_THAT(error, HasSubstr(GetParam().expected));
 }
 
-/// Sets the value at a JSON pointer: "/accessors/0/count".
+/// For example "/accessors/0/count".
 std::function<void(GltfBuilder&)> put(const char* pointer, const json& value) {
     return [=](GltfBuilder& file) { file.file[json::json_pointer(pointer)] = value; };
 }
 
-/// Adds indices of the triangle to a file without indices.
 std::function<void(GltfBuilder&)> index(std::vector<std::uint16_t> values) {
     return [=](GltfBuilder& file) { file.file["meshes"][0]["primitives"][0]["indices"] = file.add_indices(values); };
 }
@@ -80,7 +79,7 @@ std::function<void(GltfBuilder&)> show_image(const std::string& bytes) {
     };
 }
 
-/// Indices without data: `count` zeros.
+/// Indices without data are zero.
 std::function<void(GltfBuilder&)> index_zeros(std::uint64_t count) {
     return [=](GltfBuilder& file) {
         file.file["meshes"][0]["primitives"][0]["indices"] =
@@ -222,7 +221,7 @@ class GltfPaths : public testing::Test {
     }
     static std::string binary() { return triangle().binary; }
 
-    /// The message that refuses a file whose buffer has that URI; empty if the file is read.
+    /// Refusal of a file whose buffer has that URI; empty if the file is read.
     std::string fault(const std::string& uri, const ReadOptions& options = {}) {
         GltfBuilder file = triangle();
         file.file["buffers"] = {{{"uri", uri}, {"byteLength", binary().size()}}};

@@ -52,9 +52,8 @@ class GltfBuilder {
     int add_indices(const std::vector<std::uint16_t>& values) {
         return add_accessor(add_view(bytes_of_values(values)), ushort_type, values.size(), "SCALAR");
     }
-    /// A mesh of one primitive.
     int add_mesh(json primitive) { return add("meshes", {{"primitives", {std::move(primitive)}}}); }
-    /// Adds a node at the root of the scene.
+    /// A root node.
     int add_node(json node) {
         const int index = add("nodes", std::move(node));
         file["scenes"][0]["nodes"].push_back(index);
@@ -87,7 +86,7 @@ class GltfBuilder {
                word(padded.size()) + std::string("BIN\0", 4) + padded;
     }
     Scene read(const ReadOptions& options = {}) const { return read_gltf_bytes(glb(), "test.glb", options); }
-    /// The message that refuses the file.
+    /// The error message.
     std::string fault(const ReadOptions& options = {}) const {
         try {
             read(options);
@@ -98,7 +97,7 @@ class GltfBuilder {
     }
 };
 
-/// World positions of a patch's corners.
+/// In world coordinates.
 inline std::vector<V3f> corners(const Scene& scene, std::size_t patch) {
     std::vector<V3f> result;
     for (int k = 0; k < scene.patches[patch].vertex_count(); ++k)

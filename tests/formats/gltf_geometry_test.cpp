@@ -241,7 +241,7 @@ std::vector<V3f> from_origin(std::vector<V3f> found) {
     return found;
 }
 
-/// Compresses the triangle's view of positions. @param mode, filter  As in the extension.
+/// @param mode, filter  As in the extension.
 void compress_view(GltfBuilder& file, int view, const std::string& compressed, std::size_t count, std::size_t stride,
                    const char* mode, const char* filter = "NONE") {
     const int packed = file.add_view(compressed);
@@ -305,7 +305,7 @@ TEST(GltfMeshopt, QuaternionFilterIsUndone) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((found[i] - expected[i]).length(), 1e-3f) << "16 bits";
 }
 
-/// The triangle with positions and two sets of texture coordinates, compressed with Draco.
+/// Positions and two sets of texture coordinates.
 std::string draco_triangle() {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(1);

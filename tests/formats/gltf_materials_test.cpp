@@ -27,7 +27,7 @@ using testing::Not;
 using testing::Pointwise;
 using namespace testing_support;
 
-/// The bytes of an image file. @param pixels  Linear; 8 bit values.
+/// @param pixels  Linear; 8 bit values.
 std::string encoded(const std::vector<Rgb>& pixels, int width, const char* extension = ".png") {
     Image image(width, static_cast<int>(pixels.size()) / width);
     image.pixels = pixels;
@@ -207,7 +207,6 @@ TEST_F(GltfAlpha, GlassIsWhereItIsThere) {
         EXPECT_NEAR(open[static_cast<std::size_t>(i)].x, 1 - share + share * 0.5f * grey, 1e-5f);
 }
 
-/// Reflectance of the first patch at a texel of its texture.
 Rgb reflectance_at(const Scene& scene, std::size_t texel) {
     const Material& material = scene.materials[scene.patches.at(0).material];
     return material.reflectance * scene.textures.at(material.reflectance_texture).texels.at(texel);

@@ -55,7 +55,7 @@ struct Oddity {
     std::string kind, text;
 };
 
-/// Returns the file with the n-th line, from 1, replaced.
+/// Counts lines from 1.
 std::string with_line(const LdtText& ldt, int n, const std::string& line) {
     std::string text = ldt.str();
     std::size_t begin = 0;

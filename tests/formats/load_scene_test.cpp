@@ -1,4 +1,4 @@
-// Scenes that are generated from a name.
+// Scenes generated from a name.
 #include "interflect/load_scene.h"
 
 #include <gtest/gtest.h>

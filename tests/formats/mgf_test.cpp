@@ -1,4 +1,4 @@
-// Results of the reader for each entity, on texts small enough to work out by hand.
+// The reader's results for each entity.
 #include "interflect/formats/mgf.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Scene read(const std::string& text, const ReadOptions& options = {}) {
     return scene;
 }
 
-/// Reads faces between the vertices above, one-sided and grey.
+/// Faces between the vertices above, one-sided and grey.
 Scene read_faces(const std::string& text) { return read(vertices + one_sided + text); }
 
 const Material& material_of(const Scene& scene, std::size_t patch) {

@@ -1,4 +1,4 @@
-// OBJ files and their material libraries.
+// OBJ files and material libraries.
 #include "interflect/formats/obj.h"
 
 #include <gtest/gtest.h>

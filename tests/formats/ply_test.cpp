@@ -1,4 +1,3 @@
-// PLY files, ASCII and binary.
 #include "interflect/formats/ply.h"
 
 #include <gtest/gtest.h>

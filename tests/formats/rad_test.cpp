@@ -27,7 +27,7 @@ Scene read(const std::string& text, const ReadOptions& options = {}) {
     return read_rad_text(text, "room.rad", options);
 }
 
-/// The material of the first patch of a surface with this definition.
+/// Material of the first patch.
 Material material_of(const std::string& definition, const std::string& name) {
     const Scene scene = read(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
     return scene.materials[scene.patches[0].material];
@@ -80,8 +80,8 @@ TEST(Rad, SeamLeadsToAHole) {
 struct Curve {
     const char* name;
     const char* surface;
-    double area;    // area of the true surface [m^2]
-    double volume;  // volume between it and the origin [m^3], positive if its front faces away from there
+    double area;    // of the true surface [m^2]
+    double volume;  // between it and the origin [m^3], positive if its front faces away from there
 };
 class RadCurve : public testing::TestWithParam<Curve> {};
 
@@ -118,7 +118,7 @@ TEST(Rad, PowerOfASphereIsThatOfItsArea) {
 
 struct MaterialCase {
     const char* name;
-    const char* definition;  // definition of the material m
+    const char* definition;  // of the material m
     Rgb reflectance, specular_reflectance, transmittance;
 };
 class RadMaterial : public testing::TestWithParam<MaterialCase> {};

@@ -1,4 +1,3 @@
-// STL files, ASCII and binary.
 #include "interflect/formats/stl.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +20,6 @@ Scene read(const std::string& bytes, const ReadOptions& options = {}) {
 const std::string facet =
     "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 2 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
 
-/// A triangle with corners (0, 0, 0), (2, 0, 0) and (0, y, 0).
 std::string binary(float y = 1, std::uint32_t count = 1) {
     std::string bytes(80, '\0');
     bytes.replace(0, 5, "solid");  // some programs write this in binary files

@@ -179,7 +179,6 @@ TEST_F(MgfTextures, NeedCoordinates) {
                 HasSubstr("only faces (f, fh) have texture"));
 }
 
-/// Writes the scene and its images to `path`, and reads them back.
 Scene there_and_back(const Scene& scene, const fs::path& path) {
     const std::vector<std::string> names = texture_files(scene, path);
     write_mgf(scene, path, names);
@@ -187,7 +186,7 @@ Scene there_and_back(const Scene& scene, const fs::path& path) {
     return load_scene(path);
 }
 
-/// The same except for the textures' names; every textured patch has its own vertices in `expected`.
+/// Except for textures' names; every textured patch has its own vertices in `expected`.
 void expect_same(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     ASSERT_FALSE(expected.textures.empty());

@@ -41,7 +41,7 @@ void expect_colour(const Rgb& actual, const Rgb& expected, const std::string& wh
 
 const Material& material_of(const Scene& scene, const Patch& patch) { return scene.materials[patch.material]; }
 
-/// The same patches in the same order at identical positions, with equal materials and objects.
+/// The same patches in the same order at identical positions.
 void expect_same(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     for (std::size_t i = 0; i < expected.patches.size(); ++i) {
@@ -59,7 +59,6 @@ void expect_same(const Scene& actual, const Scene& expected) {
     EXPECT_TRUE(actual.warnings.entries().empty());
 }
 
-/// Adds a triangle for a material under test.
 void add_triangle(Scene& scene, std::uint32_t material, const V3f& at, bool two_sided = false) {
     const auto v = static_cast<std::uint32_t>(scene.vertices.size());
     scene.vertices.insert(scene.vertices.end(), {at, at + V3f(1, 0, 0), at + V3f(0, 1, 0.25f)});

@@ -73,7 +73,6 @@ TEST(Camera, NarrowFieldOfView) {
     EXPECT_NEAR(std::atan2(top.direction.z, top.direction.y), 5 * std::numbers::pi / 180, 1e-6);
 }
 
-/// The message that refuses a view.
 std::string refusal(const View& view, int width = 16, int height = 9) {
     try {
         Camera(view, width, height, world);

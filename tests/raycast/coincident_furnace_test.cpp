@@ -57,13 +57,10 @@ TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
     EXPECT_LT(bonferroni(p_values_of_one_percent), false_alarm);
 }
 
-/// Power emitted by the surfaces of a solution [W].
 double emitted(const Solution& solution) { return solution.emitted_power.x; }
 
-/// Method to duplicate a wall.
 enum class Copy { same_corners, other_first_corner, in_quarters };
 
-/// Adds a copy of each wall of a box.
 void double_walls(Scene& scene, Copy copy) {
     const std::vector<Patch> walls = scene.patches;
     for (Patch doubled : walls) {

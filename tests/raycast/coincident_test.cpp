@@ -273,7 +273,6 @@ TEST(Decal, OfAThousandOnOneFloorEachAnswers) {
     }
 }
 
-/// The five visible sides of a box that stands at `corner`.
 std::uint32_t add_box(Scene& scene, V3f corner, V3f s) {
     const V3f x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
     const std::uint32_t front = add_rectangle(scene, corner, x, z, 0, 1, 1, true);
@@ -351,7 +350,6 @@ TEST(Covered, IsAllOfAFaceUnderManyTilesAndNothingOfTheTiles) {
     for (std::uint32_t i = tiles; i < scene.patches.size(); ++i) ASSERT_EQ(faces.uncovered_share(i), 1);
 }
 
-/// Adds a material that emits.
 std::uint32_t add_lamp(Scene& scene) { return add_material(scene, Rgb(0), Rgb(100)); }
 
 // If equal surfaces were ranked only by their order in the scene, the ceiling would hide the lamp.

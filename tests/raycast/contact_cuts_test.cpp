@@ -46,7 +46,6 @@ std::vector<Hit> hits_of(const Scene& scene, const std::vector<Ray>& rays) {
     return hits;
 }
 
-/// The area of each material [m^2].
 std::map<std::uint32_t, double> material_areas(const Scene& scene) {
     std::map<std::uint32_t, double> areas;
     for (const auto& [material_and_object, area] : face_areas(scene)) areas[material_and_object.first] += area;

@@ -49,7 +49,6 @@ std::ptrdiff_t count_escaped(const std::vector<Hit>& hits) {
     return std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.patch == none; });
 }
 
-/// Every quadrilateral as two triangles.
 Scene triangulated(const Scene& scene) {
     Scene result = scene;
     result.patches.clear();
@@ -62,7 +61,6 @@ Scene triangulated(const Scene& scene) {
     return result;
 }
 
-/// Rotated about a slanting axis, then translated.
 Scene placed(Scene scene, float angle, const V3f& offset) {
     Imath::M44f matrix;
     matrix.setAxisAngle(V3f(1, 2, 3).normalized(), angle);
@@ -178,7 +176,7 @@ TEST_P(ClosedBox, HitsLieOnThePatchThatWasHit) {
     }
 }
 
-/// A face in the plane z = height, lit from above (or also from below), as a quadrilateral or as triangles.
+/// Lit from above (or also from below).
 std::uint32_t add_horizontal(Scene& scene, float height, bool up, bool two_sided, bool as_triangle) {
     const V3f x(2, 0, 0), y(0, 2, 0), corner(-1, -1, height);
     const std::uint32_t first = add_rectangle(scene, corner, up ? x : y, up ? y : x, 0, 1, 1, two_sided);
@@ -283,7 +281,7 @@ TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
     }
 }
 
-/// Counts the escaping rays among those that start on the walls of a closed box.
+/// Number of escaping rays from the walls of a closed box.
 std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
     const RayCaster ray_caster(scene);
     Random random(11);

@@ -1,4 +1,4 @@
-// Faces with holes (Material::transmittance_texture) in the solver, in paths and in pictures.
+// Faces with holes (Material::transmittance_texture).
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Cuts holes into a material. `open` is the open share at each texel; the remainder reflects like the material.
+/// Cuts holes into a material. `open` is the open share at each texel.
 void cut_out(Scene& scene, std::uint32_t material, Texture open) {
     Texture there = open;
     for (Rgb& texel : there.texels) texel = Rgb(1) - texel;
@@ -35,8 +35,8 @@ void cut_out(Scene& scene, std::uint32_t material, Texture open) {
 
 const Rgb light{60, 50, 40};
 
-/// A room of 2 x 1 x 1 m, divided by two screens with random holes, some of them coloured glass. Every surface emits M
-/// = (1 - rho) B per opaque share, so the radiosity is B everywhere, as without screens.
+/// A room of 2 x 1 x 1 m, divided by two screens with random holes, some of coloured glass. Every surface emits M = (1
+/// - rho) B per opaque share, so the radiosity is B everywhere.
 Scene divided_furnace() {
     constexpr float rho = 0.6f;
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"wall", Rgb(rho), light * (1 - rho)}});
@@ -116,7 +116,7 @@ TEST(CutOuts, AreAsTheFacesThatTheyLeave) {
     for (std::uint32_t p = 0; p < 16; ++p) brightest = std::max(brightest, by_face.irradiance[p].x);
     for (std::uint32_t p = 0; p < 16; ++p)
         EXPECT_NEAR(by_texture.irradiance[p].x, by_face.irradiance[p].x, 0.02f * brightest) << "patch " << p;
-    EXPECT_LT(by_face.irradiance[0].x, 0.1f * brightest);  // it is dark below the board
+    EXPECT_LT(by_face.irradiance[0].x, 0.1f * brightest);
 
     const std::vector<MeasuringPoint> points{{{0.7, 2, 0}}, {{1.8, 1, 0}}, {{2.3, 2, 0}}, {{3.4, 3, 0}}};
     const auto measured = [&](const Scene& scene, const RayCaster& ray_caster, const Solution* solution) {

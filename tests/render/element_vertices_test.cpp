@@ -23,7 +23,7 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 
 const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
-constexpr std::size_t plenty = 1 << 16;  // capacity of a forest in elements
+constexpr std::size_t plenty = 1 << 16;  // elements
 
 void expect_near(const Rgb& found, const Rgb& expected, float tolerance = 1e-5f) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance);
@@ -73,7 +73,6 @@ std::vector<Rgb> random_values(const ElementForest& forest, std::uint64_t seed) 
     return values;
 }
 
-/// Values that depend on the element.
 template <class ValueOf>
 std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of) {
     std::vector<Rgb> values;
@@ -81,7 +80,7 @@ std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of)
     return values;
 }
 
-/// Corners of an element, in the order of ElementVertices [m].
+/// Corners in the order of ElementVertices [m].
 std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
     const PatchGeometry& patch = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
@@ -91,7 +90,7 @@ std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
             patch.point(cell.at(0, 1))};
 }
 
-/// Value at a point of a flat scene, from the patch that contains it.
+/// Value at a point of a flat scene.
 std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& field, const V3f& x) {
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
         const Parameters parameters = forest.geometry(p).parameters_of(x);
@@ -100,7 +99,7 @@ std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& fiel
     return std::nullopt;
 }
 
-/// The largest difference between two points on opposite sides of a leaf's edge, both at `distance` [m] from it.
+/// The largest difference across the edges of leaves, between points at `distance` [m] from the edge.
 float largest_jump(const ElementForest& forest, const SmoothField& field, float distance) {
     float largest = 0;
     for (const std::uint32_t leaf : forest.leaves()) {
@@ -172,7 +171,7 @@ TEST(VertexValues, AreWeightedByAngles) {
 }
 
 using Point = std::tuple<long, long, long>;
-Point rounded(const V3f& x) {  // rounded to 0.1 mm
+Point rounded(const V3f& x) {  // to 0.1 mm
     return {std::lround(1e4f * x.x), std::lround(1e4f * x.y), std::lround(1e4f * x.z)};
 }
 
@@ -200,7 +199,6 @@ TEST(ElementVertices, AreThePointsWhereElementsMeet) {
     }
 }
 
-/// Linear in space.
 Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(0, 5, 2) * x.y; }
 
 /// The leaves of a square and of its two halves, all divided equally, behave like a fine grid of patches.

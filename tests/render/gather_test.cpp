@@ -113,7 +113,7 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     EXPECT_LT(z_test(mean, 1.02 * in_front, error), false_alarm);
 }
 
-/// A wall, 1 m away and evenly lit: layers without light.
+/// A wall, 1 m away and evenly lit, without noise.
 PictureLayers wall(int side) {
     PictureLayers layers;
     layers.emitted = layers.albedo = layers.normal = layers.position = Image(side, side);
@@ -171,7 +171,7 @@ TEST(Denoise, RemovesNoiseAlone) {
 /// One batch in twenty has twenty times the light of the others. The mean stays, which would not hold if the weights of
 /// pixels depended on their own values.
 TEST(Denoise, KeepsTheMeanOfSkewedNoise) {
-    constexpr int side = 192, batches = 4;  // batches per half
+    constexpr int side = 192, batches = 4;  // per half
     PictureLayers layers = wall(side);
     for (std::size_t i = 0; i < layers.albedo.pixels.size(); ++i)
         for (std::size_t h = 0; h < 2; ++h) {

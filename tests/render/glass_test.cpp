@@ -1,4 +1,4 @@
-// Thin glass in the solver, in paths and in pictures; mirrors in pictures.
+// Thin glass and mirrors.
 
 #include <gtest/gtest.h>
 
@@ -106,7 +106,6 @@ TEST(Glass, PicturesOfAFurnaceAreEven) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c] / expected[c], 1, 0.04);
 }
 
-/// A lamp and a floor with a coloured pane between them.
 struct LampBehindGlass {
     Scene scene;
     V3f x{2, 2, 0};
@@ -172,7 +171,6 @@ TEST(Mirror, ShowsWhatIsBehindTheCamera) {
     for (const Rgb& pixel : trace_paths(scene, ray_caster, view, options).image.pixels) EXPECT_EQ(pixel, Rgb(0));
 }
 
-/// Paths between two facing mirrors end.
 TEST(Mirror, FacingAnotherEnds) {
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(1)}});
     scene.materials[0].specular_reflectance = Rgb(0.9f);

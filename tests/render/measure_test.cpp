@@ -21,7 +21,6 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-/// A black room with a point light of 1000 cd in the middle of its ceiling.
 Scene black_room(const Luminaire& light) {
     Scene scene = closed_box({6, 6, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});
     scene.luminaires.push_back(light);

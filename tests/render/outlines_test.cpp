@@ -15,7 +15,7 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 
 const Rgb grey(0.2f, 0.2f, 0.2f), red(1, 0, 0);
-constexpr int size = 32;  // size of the picture [pixels]
+constexpr int size = 32;  // [pixels]
 
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
 const View view{"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90};

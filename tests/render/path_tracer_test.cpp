@@ -38,7 +38,6 @@ using testing_support::V3d;
 
 constexpr double pi = std::numbers::pi;
 
-/// Pictures of one view with different seeds.
 struct Pictures {
     std::vector<PathTracing> runs;
 
@@ -56,7 +55,6 @@ struct Pictures {
         for (const PathTracing& run : runs) result.push_back(run.image.pixels[pixel][channel]);
         return result;
     }
-    /// Mean of each picture over pixels and channels.
     std::vector<double> means() const {
         std::vector<double> result;
         for (const PathTracing& run : runs) {
@@ -151,7 +149,7 @@ const Rgb floor_reflectance(0.8f, 0.4f, 0.2f);
 /// The floor from (-1, -1) to (1, 1), seen from below the lamps.
 const View view_of_floor{"floor", V3f(0, 0, 1), V3f(0, 0, 0), V3f(0, 1, 0), 90};
 
-/// A rectangle in a plane z = height that faces down.
+/// Faces down in the plane z = height.
 struct Lamp {
     double left, front, width, depth, height;
     Rectangle rectangle() const { return {V3d(left, front, height), V3d(0, depth, 0), V3d(width, 0, 0)}; }
@@ -170,7 +168,7 @@ struct LampAndFloor {
                       add_material(scene, floor_reflectance, Rgb(0, 0, 0)));
         light = add_material(scene, Rgb(0, 0, 0), Rgb(exitance, exitance, exitance));
     }
-    /// Expected pixels for lamps of this exitance with these form factors from a rectangle.
+    /// Expected pixels for lamps with these form factors from a rectangle.
     std::vector<RgbD> expected(const std::function<double(const Rectangle&)>& form_factor) const {
         const double exitance = scene.materials[light].exitance.x;
         std::vector<RgbD> result;

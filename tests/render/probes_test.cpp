@@ -26,7 +26,6 @@ ProbeGrid probes(const Scene& scene, const ProbeOptions& options = {}) {
     return irradiance_probes(scene, solve(scene, ray_caster, solve_options), ray_caster, options);
 }
 
-/// A scene with only a small black square, far below.
 Scene open_space() {
     Scene scene;
     scene.objects = {""};

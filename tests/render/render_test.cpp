@@ -30,12 +30,12 @@ const Rgb luminance_of_quad = (exitance + reflectance * irradiance) / pi;
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
 View view_of_plane() { return {"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90}; }
 
-/// A rectangle in the plane y = 0 that faces the camera.
+/// In the plane y = 0, facing the camera.
 void add_facing(Scene& scene, float left, float right, float bottom, float top, std::uint32_t material) {
     add_rectangle(scene, V3f(left, 0, bottom), V3f(right - left, 0, 0), V3f(0, 0, top - bottom), material);
 }
 
-/// Renders undivided patches: element i is patch i.
+/// Undivided patches: element i is patch i.
 Rendering rendering(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
                     const View& view = view_of_plane()) {
     return render(scene, ElementForest(scene, scene.patches.size()), RayCaster(scene), view, h, options);
@@ -56,7 +56,7 @@ TEST_P(FlatAndSmooth, LuminanceIsRadiosityOverPi) {
         for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(pixel[c], luminance_of_quad[c]);
 }
 
-/// Surfaces fill the left half of the picture; the right half is empty and has no sky.
+/// Surfaces fill the left half; the right half is empty.
 TEST_P(FlatAndSmooth, IrradianceIsThatOfTheElements) {
     Scene scene;
     add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
@@ -160,7 +160,7 @@ TEST(Render, CountsWhatIsNotANumberAndDoesNotHideIt) {
     EXPECT_TRUE(is_finite(result.image.at(0, 0)));
 }
 
-/// A box lit unevenly, seen from inside, so that the picture contains every kind of edge.
+/// A box lit unevenly, seen from inside, with every kind of edge.
 struct UnevenBox {
     Scene scene = testing_support::closed_box(V3f(1, 2, 3), 3, {{"grey", Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0)}});
     std::vector<Rgb> irradiance;
@@ -220,7 +220,7 @@ TEST(Render, RefusesWhatDoesNotFitTogether) {
     EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}), InputError);
 }
 
-/// A scene with the same number of patches at other positions.
+/// The same number of patches at other positions.
 struct OtherScene {
     Scene scene, other;
     OtherScene() {

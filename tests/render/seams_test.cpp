@@ -18,7 +18,7 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 
 const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f);
-constexpr std::size_t plenty = 1 << 18;  // capacity of a forest in elements
+constexpr std::size_t plenty = 1 << 18;  // elements
 
 /// A floor of 2 x 2 m about the origin, material 0, with walls of material 1 on it. The first is along x = 0 over y in
 /// [-1, `wall_end`], the optional one along y = `second_wall` over x in [0.5, 1]. The first divides the floor, the
@@ -58,7 +58,6 @@ float value_at(const Scene& scene, const ElementForest& forest, const SmoothFiel
     return 0;
 }
 
-/// The largest difference between both sides of x = 0, over y in [from, to].
 float largest_jump(const Scene& scene, const ElementForest& forest, const SmoothField& field, float from, float to) {
     float largest = 0;
     for (int i = 0; i <= 500; ++i) {

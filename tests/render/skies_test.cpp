@@ -155,7 +155,6 @@ TEST_P(EverySky, IsSampledByItsDensity) {
     EXPECT_GT(chi_square_test(often_observed, often_expected), false_alarm);
 }
 
-/// A map of constant radiance is a uniform sky.
 TEST(EnvironmentMap, OfOneRadianceIsAUniformSky) {
     const auto image = image_of(7, 5, std::vector<Rgb>(35, Rgb(3, 2, 1)));
     const auto of_map = measured(under({{"", 0, EnvironmentMap{image}}}), EmitterSampling::combined, 1 << 12);

@@ -18,7 +18,6 @@ using testing_support::add_rectangle;
 
 const Rgb black(0, 0, 0), white(1, 1, 1), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
 
-/// A field that is linear in space.
 Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(0, 5, 2) * x.y; }
 
 std::vector<Rgb> at_centres(const Scene& scene) {
@@ -39,7 +38,7 @@ Scene grid(int n, bool two_sided = false) {
     return scene;
 }
 
-/// Every square of grid(n) cut along a diagonal, in alternating directions.
+/// Alternates the direction of the diagonal.
 Scene triangle_grid(int n) {
     Scene scene = grid(n);
     const std::vector<Patch> squares = std::move(scene.patches);
@@ -55,7 +54,6 @@ Scene triangle_grid(int n) {
     return scene;
 }
 
-/// Gives every patch its own vertices, like many files.
 Scene unwelded(const Scene& scene) {
     Scene copy = scene;
     copy.vertices.clear();
@@ -78,7 +76,7 @@ Scene hinge(float degrees, bool same_material = true) {
     return scene;
 }
 
-/// A smooth field of undivided patches: element i is patch i.
+/// Undivided patches: element i is patch i.
 class SmoothPatches {
   public:
     SmoothPatches(const Scene& scene, const std::vector<Rgb>& values, const SmoothingOptions& options = {})
@@ -102,7 +100,7 @@ Rgb at_hinge(const Scene& scene, const SmoothingOptions& options = {}) {
 TEST(SmoothPatches, ReproducesALinearFieldInsideAGrid) {
     for (const Scene& scene : {grid(4), unwelded(grid(4))}) {
         const SmoothPatches smooth(scene, at_centres(scene));
-        for (const std::uint32_t patch : {5u, 6u, 9u, 10u})  // patches away from the border
+        for (const std::uint32_t patch : {5u, 6u, 9u, 10u})  // inner patches
             for (const Parameters p : {Parameters{0, 0}, {1, 1}, {0.3f, 0.8f}, {0.5f, 0.1f}}) {
                 const V3f x = PatchGeometry(scene, scene.patches[patch]).point(p);
                 expect_near(smooth.at(patch, p), linear_field(x));
@@ -130,7 +128,7 @@ TEST(SmoothPatches, IsContinuousAcrossPatchesEverywhere) {
         // Every patch with the point returns the same value; the points lie on vertical grid lines.
         for (const float y : {0.1f, 0.25f, 0.4f, 0.9f})
             for (const float x : {0.25f, 0.5f, 0.75f}) {
-                std::set<int> answers;  // rounded to 1e-4
+                std::set<int> answers;  // to 1e-4
                 int patches = 0;
                 for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
                     const PatchGeometry geometry(scene, scene.patches[i]);

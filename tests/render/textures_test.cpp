@@ -25,7 +25,6 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-/// A picture's mean over pixels and channels, for several seeds.
 std::vector<double> means(const Scene& scene, const View& view, PathOptions options, int runs) {
     const RayCaster ray_caster(scene);
     std::vector<double> result;
@@ -68,7 +67,6 @@ Scene ramp(bool emits) {
     return scene;
 }
 
-/// A pixel's mean is the value at its middle.
 double ramp_at(int column, int row, int side) { return 1 + 3 * (column + 0.5) / side + 30 * (side - row - 0.5) / side; }
 
 const View in_front{"front", V3f(0.5f, -10, 0.5f), V3f(0.5f, 0, 0.5f), V3f(0, 0, 1),
@@ -120,7 +118,7 @@ TEST(PathTracedLamp, HasOneAnswerHoweverItIsSampled) {
     }
 }
 
-/// The root mean square difference of two pictures in blocks of 8 x 8 pixels, relative to the mean.
+/// Root mean square difference in blocks of 8 x 8 pixels, relative to the mean.
 double block_difference(const Image& a, const Image& b) {
     const Image blocks_a = box_downsample(a, 8), blocks_b = box_downsample(b, 8);
     double squares = 0, sum = 0;

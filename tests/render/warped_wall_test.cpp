@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Made, WarpedWall, testing::Values(Wall::polygon, Wall::
     return std::string(made.param == Wall::polygon ? "AsPolygon" : "AsPatch");
 });
 
-/// Traces rays from both sides of the wall. They start on its bilinear surface and must not hit the wall.
+/// Rays from both sides start on the bilinear surface of the wall and must not hit it.
 TEST_P(WarpedWall, IsLeftByRaysThatStartOnIt) {
     const Scene scene = two_rooms(GetParam());
     const RayCaster ray_caster(scene);
