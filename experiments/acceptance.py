@@ -409,7 +409,7 @@ def measure_errors(bench: Bench, case: str, scene: str, view: str, method: str, 
 
 
 def needed(bench: Bench, case: str, method: str):
-    """Million rays and elements for SAME_ERROR, and whether they are extrapolated; None with fewer than two
+    """Returns the million rays and elements for SAME_ERROR, and whether they are extrapolated; None with fewer than two
     measurements."""
     errors, elements = bench.values("f", "relative MSE"), bench.values("f", "elements")
     prefix = f"{case} {method} "

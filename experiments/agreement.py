@@ -78,7 +78,7 @@ def gathered(command: program.Program, scene_and_view: str, options: str) -> np.
 
 
 def put_side_by_side(left: np.ndarray, right: np.ndarray, path: Path) -> None:
-    """Both at one exposure, which maps the 98th percentile of luminance to white."""
+    """Shows both at one exposure, which maps the 98th percentile of luminance to white."""
     both = np.concatenate([left, np.ones((left.shape[0], 8, 3)) * np.inf, right], axis=1)
     linear = np.clip(both / np.percentile(luminance(right), 98), 0, 1)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)  # sRGB

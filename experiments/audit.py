@@ -87,21 +87,21 @@ class Reference:
         return float(picture[self.counts].mean() / self.mean)
 
     def error_of_mean(self) -> float:
-        """Relative standard error of the reference's mean."""
+        """Returns the relative standard error of the reference's mean."""
         differences = (self.pictures[0] - self.pictures[1])[self.counts]
         return float(np.sqrt((differences**2).sum()) / 2 / self.mean / differences.size)
 
     def block_error(self, picture: np.ndarray) -> float:
-        """Root mean square error of blocks over the mean of the picture."""
+        """Returns the root mean square error of blocks over the mean of the picture."""
         first, second = (self._blocks(picture - p) for p in self.pictures)
         return math.sqrt(max(0.0, float(np.mean(first * second)))) / self.mean
 
     def block_noise(self) -> float:
-        """Noise of the mean of both pictures, in the unit of block_error()."""
+        """Returns the noise of the mean of both pictures, in the unit of block_error()."""
         return float(np.sqrt(np.mean(self._blocks(self.pictures[0] - self.pictures[1]) ** 2))) / 2 / self.mean
 
     def _blocks(self, values: np.ndarray) -> np.ndarray:
-        """Means of the blocks in which at least half of the pixels are compared."""
+        """Returns the means of the blocks in which at least half of the pixels are compared."""
         rows, columns = (side // self.side for side in values.shape)
         cut = lambda v: v[: rows * self.side, : columns * self.side].reshape(rows, self.side, columns, self.side)
         weights = cut(self.counts.astype(float)).mean(axis=(1, 3))
@@ -197,7 +197,7 @@ class Bench:
             return read_exr(Path(file.name))
 
     def total(self, path: Path, scene: Scene) -> float:
-        """Total over emitted power by random walks, which need no mesh."""
+        """Estimates the total over emitted power by random walks, which need no mesh."""
         options = f"{scene.options} --method random-walk --rays {self.scale.total_rays} --seed 97"
         key = hashlib.sha256(scene.text.encode() + options.encode()).hexdigest()[:16]
         kept = self.folder / f"{path.stem}-{key}.total"
@@ -221,7 +221,7 @@ def read_rows(table: Path) -> list[dict]:
 
 
 def misses(row: dict) -> list[str]:
-    """Names of the targets that a row misses; columns without a figure are nan and miss none."""
+    """Returns the names of the targets that a row misses; columns without a figure are nan and miss none."""
     found = {"mean": row["mean"], "blocks": row["blocks"], "estimate": row["estimate_over_error"], "total": row["total_over_reference"]}
     return [name for name, (low, high) in TARGETS.items() if not math.isnan(found[name]) and not low <= found[name] <= high]
 

@@ -32,7 +32,7 @@ class Mgf:
         self._lines += [f"\t{line}" for line in (f"sides {sides}", *properties)]
 
     def lamp(self, name: str, exitance: float, reflectance: float = 0.1) -> None:
-        """A white lamp; resets the colour."""
+        """Adds a white lamp; resets the colour."""
         self.material(name, f"rd {reflectance}", f"ed {exitance}")
 
     def vertex(self, point: Point, *properties: str) -> str:
@@ -46,13 +46,12 @@ class Mgf:
         self._lines += [f"m {material}", f"f {' '.join(corners)}"]
 
     def quad(self, material: str, corner: Point, u: Point, v: Point) -> None:
-        """A parallelogram, visible from the side of u x v."""
+        """Adds a parallelogram, visible from the side of u x v."""
         a, u, v = np.array(corner, float), np.array(u, float), np.array(v, float)
         self.face(material, a, a + u, a + u + v, a + v)
 
     def box(self, material: str, low: Point, size: Point, turn: float = 0.0, inwards: bool = False, without: str = "") -> None:
-        """Rotated about the vertical axis through its middle by `turn` degrees; omits the sides in `without`, such as
-        "-z"."""
+        """Adds a box, rotated about the vertical axis through its middle by `turn` degrees, without some sides ("-z")."""
         self.sides(dict.fromkeys(("-x", "+x", "-y", "+y", "-z", "+z"), material), low, size, turn, inwards, without)
 
     def sides(self, materials: dict[str, str], low: Point, size: Point, turn=0.0, inwards=False, without="") -> None:
@@ -76,7 +75,7 @@ class Mgf:
                 self.face(materials[name], *(points[::-1] if inwards else points))
 
     def fixture(self, lamp: str, low: Point, size: Point, ceiling: float | None = None, shines: str = "-z") -> None:
-        """A closed box with one luminous side; with `ceiling`, it reaches up to the ceiling."""
+        """Adds a closed box with one luminous side; with `ceiling`, it reaches up to the ceiling."""
         size = [*size[:2], ceiling - low[2]] if ceiling else size
         housing = dict.fromkeys(("-x", "+x", "-y", "+y", "-z", "+z"), "grey")
         self.sides(housing | {shines: lamp}, low, size, without="+z" if ceiling else "")
@@ -91,7 +90,7 @@ class Mgf:
         self.sides(paints, (0, 0, 0), size, inwards=True, without=without)
 
     def wall_with_hole(self, material: str, corner: Point, u: Point, v: Point, hole: Point) -> None:
-        """A parallelogram without the part from u0, v0 to u1, v1 (`hole`, as shares of its sides)."""
+        """Adds a parallelogram without the part from u0, v0 to u1, v1 (`hole`, as shares of its sides)."""
         a, u, v = np.array(corner, float), np.array(u, float), np.array(v, float)
         u0, v0, u1, v1 = hole
         for left, bottom, right, top in ((0, 0, u0, 1), (u1, 0, 1, 1), (u0, 0, u1, v0), (u0, v1, u1, 1)):
@@ -188,7 +187,7 @@ def huge_lamp() -> Scene:
 
 
 def furnish(m: Mgf) -> None:
-    """Four boxes in a room of 5.2 x 4.1 x 2.8 m."""
+    """Adds four boxes in a room of 5.2 x 4.1 x 2.8 m."""
     m.box("blue", (1.4, 2.1, 0), (0.9, 0.7, 0.75), 20, without="-z")
     m.box("white", (3.3, 1.0, 0), (0.6, 0.6, 1.6), -35, without="-z")
     m.box("red", (2.5, 3.2, 0), (1.1, 0.4, 1.1), 4, without="-z")
@@ -263,7 +262,7 @@ def coincident_faces() -> Scene:
 
 
 def house(m: Mgf, hole: Point) -> None:
-    """A house of 5.2 x 4.1 x 2.8 m with walls of zero thickness, and a window in its wall x = 0."""
+    """Adds a house of 5.2 x 4.1 x 2.8 m with walls of zero thickness, and a window in its wall x = 0."""
     for name, share in (("white", 0.71), ("grey", 0.34), ("red", 0.27), ("blue", 0.42)):
         m.material(name, f"rd {share}", sides=2)
     m.sides({s: "grey" if s == "-z" else "white" for s in ("+x", "-y", "+y", "-z", "+z")} | {"-x": "white"}, (0, 0, 0), (5.2, 4.1, 2.8), without="-x")
@@ -345,7 +344,7 @@ def slit() -> Scene:
 
 
 def landscape(m: Mgf, clear: float) -> None:
-    """Hills of 1 km x 1 km around a flat square of side 2 `clear` at height 0."""
+    """Adds hills of 1 km x 1 km around a flat square of side 2 `clear` at height 0."""
     m.material("grass", "rd 0.19", sides=2, colour=(0.35, 0.42))
     random_, n, step = random.Random(5), 24, 1000 / 24
     heights = [[random_.uniform(0, 22) for _ in range(n + 1)] for _ in range(n + 1)]
@@ -418,7 +417,7 @@ def t_junctions() -> Scene:
 
 
 def quad_or_triangles(m: Mgf, material: str, corners: Sequence[Point], triangles: bool) -> None:
-    """The triangles used for ray intersection: quadrilaterals are split between the second corner and the fourth."""
+    """Adds a quadrilateral, or its triangles for ray intersection: split between the second corner and the fourth."""
     a, b, c, d = corners
     for points in ((a, b, d), (c, d, b)) if triangles else (corners,):
         m.face(material, *points)

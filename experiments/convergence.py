@@ -52,7 +52,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
 
 
 def relative_rmse(runs: list[Row]) -> Curve:
-    """Error against rays. Link methods have one run per threshold in a single budget; these are sorted by their rays.
+    """Returns error against rays. Link methods have a run per threshold, all in one budget, sorted by rays.
     """
     if len({row["seed"] for row in runs}) == 1:
         x, y = np.array(sorted((row["rays"], row["relative_mse_flat"]) for row in runs)).T

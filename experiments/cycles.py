@@ -78,8 +78,8 @@ def gathered(command: program.Program, scene_and_view: str) -> tuple[np.ndarray,
 
 
 def differences(ours: np.ndarray, references: list[np.ndarray], counts: np.ndarray) -> dict:
-    """Difference of the means; root mean square of blocks relative to the reference's, without its noise; share of
-    blocks beyond the target."""
+    """Compares the means, and the blocks: root mean square relative to the reference, without its noise, and the
+    share of blocks beyond the target."""
     found, (first, second) = luminance(ours), map(luminance, references)
     mean = (first + second) / 2
     weight = box_mean(counts.astype(float), BLOCK_RADIUS)

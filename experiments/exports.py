@@ -85,7 +85,7 @@ def pictures(
 
 
 def blocks(picture: np.ndarray) -> np.ndarray:
-    """Means over squares of pixels."""
+    """Returns means over squares of pixels."""
     rows, columns = (side // BLOCK for side in picture.shape)
     return picture[: rows * BLOCK, : columns * BLOCK].reshape(rows, BLOCK, columns, BLOCK).mean(axis=(1, 3))
 

@@ -34,7 +34,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
 
 
 def write_ratios(config: dict, series: dict[str | float, list[Row]], folder: Path) -> None:
-    """Ratio of the error with importance to that without, at times that both have reached."""
+    """Writes the ratio of the error with importance to that without, at times that both have reached."""
     importance, none = (series[method["name"]] for method in config["methods"])
     curves = {d: [results.curve(runs, "seconds", d) for runs in (importance, none)] for d in DISTANCES}
     a, b = curves[DISTANCES[0]]

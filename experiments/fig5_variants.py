@@ -60,7 +60,7 @@ EFFECTS = {
 
 
 def write_effects(names: list[str], rows: list[Row], folder: Path) -> None:
-    """Effect of one choice on the distance with the others fixed: for each pair of variants, and the mean over all
+    """Writes the effect of each choice on the distance, with the others fixed: for each pair, and the mean over all
     seeds."""
     lines = []
     for effect, (has, instead) in EFFECTS.items():

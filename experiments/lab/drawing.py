@@ -77,7 +77,7 @@ def panels(
 
 
 def style_of(number: int) -> dict:
-    """Colour and marker of the number-th series, from 0."""
+    """Returns colour and marker of the number-th series, from 0."""
     return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
 
 
@@ -143,7 +143,7 @@ def _write_png(figure: Figure, path: Path, quality: Quality) -> int:
 
 
 def shared_legend(figure: Figure, axes: Axes, columns: int) -> None:
-    """One legend for all panels, above them."""
+    """Draws one legend for all panels, above them."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns)
 

@@ -59,7 +59,7 @@ def _unzipped(packed: bytes, size: int) -> bytes:
 
 
 def noise_floor(picture: Path, error: Path) -> float:
-    """Relative MSE (docs/metrics.md) due to the picture's noise alone; `error` contains its standard error."""
+    """Returns the relative MSE (docs/metrics.md) due to noise alone; `error` is the picture's standard error."""
     wanted, deviation = read_exr(picture), read_exr(error)
     mean = luminance(wanted).mean()
     return float(np.mean(deviation**2 / (wanted**2 + (0.01 * mean) ** 2)))

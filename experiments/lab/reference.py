@@ -41,13 +41,13 @@ class Reference:
         return float(picture[self.counts].mean() / self.mean)
 
     def error_of_mean(self) -> float:
-        """Relative standard error of the reference's mean, from the difference of its two pictures."""
+        """Returns the relative standard error of the reference's mean, from the difference of its two pictures."""
         differences = (self.pictures[0] - self.pictures[1])[self.counts]
         return float(np.sqrt((differences**2).sum()) / 2 / self.mean / differences.size)
 
 
 def box_mean(values: np.ndarray, radius: int) -> np.ndarray:
-    """Means over squares of 2 radius + 1 pixels."""
+    """Computes means over squares of 2 radius + 1 pixels."""
     size = 2 * radius + 1
     sums = np.pad(np.pad(values, radius, mode="edge").cumsum(0).cumsum(1), ((1, 0), (1, 0)))
     return (sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]) / size**2

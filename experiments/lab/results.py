@@ -24,7 +24,7 @@ def write_csv(path: Path, rows: Iterable[dict], columns: Iterable[str] = COLUMNS
 
 
 def read_csv(path: Path, texts: Collection[str] = TEXT) -> list[Row]:
-    """All columns as numbers except `texts`; empty cells are nan."""
+    """Reads all columns as numbers except `texts`; empty cells are nan."""
 
     def value(column: str, text: str) -> str | float:
         return text if column in texts else float(text or math.nan)
@@ -46,7 +46,7 @@ def values(rows: Iterable[Row], column: str) -> np.ndarray:
 
 
 def curve(rows: Iterable[Row], x: str, y: str) -> statistics.Curve:
-    """Curve of one series: the columns x and y over its budgets."""
+    """Returns the curve of one series: the columns x and y over its budgets."""
     budgets = grouped(sorted(rows, key=lambda row: row["budget"]), "budget").values()
     return statistics.curve([(values(seeds, x), values(seeds, y)) for seeds in budgets])
 

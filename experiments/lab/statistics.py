@@ -9,7 +9,7 @@ CONFIDENCE = 0.95
 
 
 def student_t(degrees: int, confidence: float = CONFIDENCE) -> float:
-    """Quantile t of Student's distribution with P(|T| < t) = confidence; degrees of freedom > 0."""
+    """Computes the quantile t of Student's distribution with P(|T| < t) = confidence; degrees of freedom > 0."""
     low, high = 0.0, math.pi / 2
     for _ in range(60):  # bisections: to the last bit
         middle = (low + high) / 2
@@ -72,7 +72,7 @@ class PowerLaw:
 
 
 def fit_power_law(x: np.ndarray, y: np.ndarray) -> PowerLaw:
-    """Least squares in logarithms; at least 3 points."""
+    """Fits by least squares in logarithms; at least 3 points."""
     u, v = np.log(x), np.log(y)
     du = u - u.mean()
     slope = float(du @ v / (du @ du))
@@ -109,7 +109,7 @@ class Ratio:
 
 
 def ratio_at(numerator: Curve, denominator: Curve, x: float) -> Ratio:
-    """Ratio of two curves at the same x, interpolated in logarithms."""
+    """Returns the ratio of two curves at the same x, interpolated in logarithms."""
 
     def at(c: Curve, values: np.ndarray) -> float:
         return float(np.interp(math.log(x), np.log(c.x), values))
@@ -122,7 +122,7 @@ def ratio_at(numerator: Curve, denominator: Curve, x: float) -> Ratio:
 
 
 def mean_ratio(ratios: np.ndarray) -> Ratio:
-    """Geometric mean of independently measured ratios, with its confidence interval."""
+    """Returns the geometric mean of independently measured ratios, with its confidence interval."""
     logs = np.log(ratios)
     m = mean(logs)
     return Ratio(math.exp(m.value), math.exp(m.value - m.half_width), math.exp(m.value + m.half_width))
@@ -138,7 +138,7 @@ class Mean:
 
 
 def mean(values: np.ndarray) -> Mean:
-    """Mean with its confidence interval, by Student's distribution."""
+    """Returns the mean with its confidence interval, by Student's distribution."""
     count = len(values)
     if count < 2:
         return Mean(float(np.mean(values)), math.nan)

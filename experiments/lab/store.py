@@ -95,7 +95,7 @@ class Store:
         return {"picture": os.path.relpath(path, ROOT)}
 
     def _compare(self, measure: Measure, solution: Solution) -> dict:
-        """Relative MSE without the reference's noise. Below a tenth of that noise it is unknown."""
+        """Returns the relative MSE without the reference's noise. Below a tenth of that noise it is unknown."""
         reference, noise = measure.reference, 0.0
         if isinstance(reference, Reference):
             found = {"reference": reference.options}
@@ -115,7 +115,7 @@ class Store:
         return found
 
     def _path(self, value: Solve | Task, suffix: str) -> Path:
-        """Path of the results of `value`. Depends on the build and on the content of the scene file."""
+        """Returns the path of the results of `value`. Depends on the build and on the content of the scene file."""
         scene = Path(expanded((value if isinstance(value, Solve | Reference) else value.solve).scene))
         content = hashlib.sha256(scene.read_bytes()).hexdigest() if scene.is_file() else ""
         key = hashlib.sha256(f"{self._program.fingerprint}{content}{value}".encode()).hexdigest()[:20]

@@ -98,7 +98,7 @@ def ladder(config: dict, methods: list[dict], reference: Reference | Solve) -> l
 
 
 def reference_of(config: dict, table: str = "reference") -> Reference | Solve:
-    """The reference: same scene and view, with a seed that no measured run has. Path-traced if it has `paths`."""
+    """Returns the reference: same scene and view, with a separate seed. Path-traced if it has `paths`."""
     reference = config[table]
     if "paths" in reference:
         return Reference(config["scene"], config["view"], reference["paths"], reference["seed"])

@@ -35,7 +35,7 @@ std::vector<Point> points(PointSet set, std::uint64_t key, std::uint64_t first, 
     return result;
 }
 
-/// The number of points in each non-empty cell.
+/// Counts the points in each non-empty cell.
 std::map<Digits, int> cell_counts(const std::vector<Point>& points, const Digits& digits) {
     std::map<Digits, int> counts;
     for (const Point& p : points) {
@@ -170,7 +170,7 @@ TEST(ShuffledPoints, AlignedBlocksAreStratifiedInFourDimensions) {
     }
 }
 
-/// The number of points, out of 256 of two sequences, for which the first digits of one dimension agree.
+/// Counts the points, out of 256 of two sequences, for which the first digits of one dimension agree.
 int agreements(const std::vector<Point>& one, const std::vector<Point>& other, std::size_t dimension) {
     int count = 0;
     for (std::size_t i = 0; i < one.size(); ++i) count += (one[i][dimension] < 0.5f) == (other[i][dimension] < 0.5f);

@@ -1,4 +1,4 @@
-"""Conclusions of bench/compare, and that noise leads to none."""
+"""Conclusions of bench/compare; noise must stay inconclusive."""
 
 import importlib.machinery
 import importlib.util

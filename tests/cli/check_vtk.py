@@ -24,7 +24,7 @@ def read(path):
 
 
 def arrays(data):
-    """Arrays of the points or the cells, by name."""
+    """Returns the arrays of the points or the cells, by name."""
     return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
 

@@ -40,7 +40,7 @@ LARGE = ("--size", "96x54", "--samples", "4")
 
 
 def methods():
-    """All values of `--method`."""
+    """Returns all values of `--method`."""
     text = subprocess.run([COMMAND, "solve", "--help"], capture_output=True, text=True, check=True).stdout
     return re.search(r"--method (\S+)", text)[1].split("|")
 
@@ -74,5 +74,5 @@ class CommandTest(unittest.TestCase):
         return content
 
     def files(self):
-        """All files in the test's folder, including hidden ones."""
+        """Returns all files in the test's folder, including hidden ones."""
         return sorted(path.relative_to(self.folder).as_posix() for path in self.folder.rglob("*") if path.is_file())

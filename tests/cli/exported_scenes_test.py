@@ -19,7 +19,7 @@ FACES = AREA / 2 + 0.5  # each face once
 
 
 def area(points):
-    """Area of a planar polygon: half the length of the sum of the cross products."""
+    """Computes the area of a planar polygon: half the length of the sum of the cross products."""
     sums = [0, 0, 0]
     for p, q in zip(points, points[1:] + points[:1]):
         for k in range(3):
@@ -94,7 +94,7 @@ class Meshes(Exported):
             self.assertAlmostEqual(float(channel), 1000 / math.pi, places=3)
 
     def check_vtk(self, solution, *grids):
-        """Number of cells, bounds and area for each grid."""
+        """Runs check_vtk.py. @return the number of cells, bounds and area for each grid."""
         for name in grids:
             self.interflect("export", solution, "-o", name)
         command = ["/usr/bin/python3", "-B", Path(__file__).parent / "check_vtk.py", solution, *grids]
@@ -262,13 +262,13 @@ class Scenes(Exported):
 
 
 def hdr(*texels):
-    """A row of greys, 0 or 1, as a Radiance picture."""
+    """Creates a row of greys, 0 or 1, as a Radiance picture."""
     pixels = b"".join(bytes([128, 128, 128, 129]) if texel else bytes(4) for texel in texels)
     return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X %d\n" % len(texels) + pixels
 
 
 def png_rows(content):
-    """The rows of an unfiltered PNG of 8 bits."""
+    """Returns the rows of an unfiltered PNG of 8 bits."""
     at, data = 8, b""
     while at < len(content):
         (length,), kind = struct.unpack_from(">I", content, at), content[at + 4 : at + 8]

@@ -36,7 +36,7 @@ def view(scale, offset=0.0):
 
 class Limits(CommandTest):
     def power(self, method, scale, exitance, offset=0.0):
-        """Total power in the room, divided by the squared scale and the exitance."""
+        """Returns the total power in the room, divided by the squared scale and the exitance."""
         self.write("room.mgf", scaled_room(scale, exitance, offset))
         mesh = () if method in REFINING else ("--mesh-size", "none")
         options = ("--method", method, "--rays", "20k", "--stats", "stats.json", *view(scale, offset), *mesh)

@@ -54,7 +54,7 @@ OTHERS = {
 
 class Methods(CommandTest):
     def total(self, file, scene, method, *options):
-        """Power that leaves the surfaces [lm]."""
+        """Returns the power that leaves the surfaces [lm]."""
         rays = "3M" if method == "global-lines" else "300k"
         view = ("--eye", scene.eye, "--look-at", scene.look_at) if method in STEERED else ()
         run = ("--method", method, "--rays", rays, "--time", "30", *view, *options)

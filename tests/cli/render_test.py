@@ -12,7 +12,7 @@ SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
 
 def exr_attributes(content):
-    """The header of a single-part OpenEXR file: name -> (type, bytes)."""
+    """Returns the header of a single-part OpenEXR file: name -> (type, bytes)."""
     magic, version = struct.unpack_from("<ii", content)
     assert (magic, version) == (20000630, 2), "not a plain OpenEXR file"
 

@@ -18,7 +18,7 @@ OF_NO_GROUP = {"importance", "views"}  # options in files; the first depends on 
 
 
 def members(structure: str) -> list[str]:
-    """Names of the members of a structure of solve.h: 'double smoothing = 0.9, exponent = 0.75;' has two."""
+    """Returns the member names of a structure of solve.h: 'double smoothing = 0.9, exponent = 0.75;' has two."""
     text = (ROOT / "include" / "interflect" / "solve.h").read_text()
     body = re.search(rf"^struct {structure} {{\n(.*?)^}};", text, re.MULTILINE | re.DOTALL).group(1)
     statements = re.sub(r"//.*", "", body).split(";")

@@ -45,7 +45,7 @@ class DamagedRun : public testing::Test {
         bytes_ = {std::istreambuf_iterator<char>(file), {}};
     }
 
-    /// Message of Solver::open(); empty if it opens. Does not catch other exceptions than InputError.
+    /// Returns the message of Solver::open(); empty if it opens. Does not catch other exceptions than InputError.
     std::string error() const {
         try {
             Solver::open(path_);

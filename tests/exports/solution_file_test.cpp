@@ -324,7 +324,8 @@ TEST_F(SolutionFile, CannotBeWrittenIntoAMissingFolder) {
                  std::runtime_error);
 }
 
-/// The message of a refused write of `solved` to `path`, whose previous file (from bytes_of()) must stay unchanged.
+/// Returns the message of a refused write of `solved` to `path`, whose previous file (from bytes_of()) must stay
+/// unchanged.
 std::string refusal(const fs::path& path, const SolvedScene& solved) {
     const std::string before = contents(path);
     try {

@@ -28,7 +28,7 @@ double area(const PolygonMesh& mesh) {
     return sum;
 }
 
-/// Volume by the divergence theorem; positive if the faces look outwards. Requires a closed mesh.
+/// Computes the volume by the divergence theorem; positive if the faces look outwards. Requires a closed mesh.
 double volume(const PolygonMesh& mesh) {
     double sum = 0;
     for (const auto& face : mesh.faces) sum += area_vector(mesh, face).dot(mesh.points[face[0]]) / 3;

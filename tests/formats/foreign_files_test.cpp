@@ -46,7 +46,7 @@ class TiltFiles : public testing::Test {
         fs::create_symlink(folder.path() / "outside.tlt", folder.path() / "lamps/link.tlt");
     }
 
-    /// The error for a file beside `lamps/secret` with this TILT file; "no error" if it can be read.
+    /// Returns the error for a file beside `lamps/secret` with this TILT file; "no error" if it can be read.
     std::string fault(const std::string& tilt, const ReadOptions& options = {}) {
         const fs::path path = folder.write("lamps/lamp.ies", IesText{.tilt = "TILT=" + tilt + "\n"}.str());
         Warnings warnings;

@@ -32,7 +32,7 @@ std::string png_chunk(const std::string& content) {  // type and data
            big_endian(libdeflate_crc32(0, content.data(), content.size()));
 }
 
-/// A PNG of 8 bit RGB that claims a size, with data of `bytes` zeros, deflated.
+/// Creates a PNG of 8 bit RGB that claims a size, with data of `bytes` zeros, deflated.
 std::string png_of_zeros(std::uint32_t width, std::uint32_t height, std::size_t bytes) {
     const std::string zeros(bytes, '\0');
     libdeflate_compressor* compressor = libdeflate_alloc_compressor(6);
@@ -64,7 +64,7 @@ TEST_P(GltfFaults, AreNamed) {
     EXPECT_THAT(error, HasSubstr(GetParam().expected));
 }
 
-/// For example "/accessors/0/count".
+/// Sets the value at a JSON pointer, for example "/accessors/0/count".
 std::function<void(GltfBuilder&)> put(const char* pointer, const json& value) {
     return [=](GltfBuilder& file) { file.file[json::json_pointer(pointer)] = value; };
 }
@@ -221,7 +221,7 @@ class GltfPaths : public testing::Test {
     }
     static std::string binary() { return triangle().binary; }
 
-    /// Refusal of a file whose buffer has that URI; empty if the file is read.
+    /// Returns the message for a file whose buffer has that URI; empty if the file is read.
     std::string fault(const std::string& uri, const ReadOptions& options = {}) {
         GltfBuilder file = triangle();
         file.file["buffers"] = {{{"uri", uri}, {"byteLength", binary().size()}}};

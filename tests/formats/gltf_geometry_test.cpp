@@ -138,7 +138,7 @@ TEST(GltfModes, PointsAndLinesAreLeftOut) {
     EXPECT_THAT(warning_kinds(scene), testing::Contains("no-faces"));
 }
 
-/// The triangle's positions as integers of some type. @param one  The representation of 1.
+/// Returns the triangle's positions as integers of some type. @param one  The representation of 1.
 template <class T>
 std::string integer_positions(T one) {
     return bytes_of_values(std::vector<T>{0, 0, 0, 0, one, 0, 0, 0, 0, one, 0, 0});  // three, and one of padding
@@ -235,7 +235,7 @@ TEST(GltfMeshes, SkinsAreInTheirPose) {
 
 // ---- Compressed meshes
 
-/// Compressors may begin a triangle with another of its corners.
+/// Rotates the vertices: compressors may begin a triangle with another of its corners.
 std::vector<V3f> from_origin(std::vector<V3f> found) {
     std::rotate(found.begin(), std::find(found.begin(), found.end(), V3f(0)), found.end());
     return found;
@@ -305,7 +305,7 @@ TEST(GltfMeshopt, QuaternionFilterIsUndone) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((found[i] - expected[i]).length(), 1e-3f) << "16 bits";
 }
 
-/// Positions and two sets of texture coordinates.
+/// Compresses a triangle with positions and two sets of texture coordinates.
 std::string draco_triangle() {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(1);

@@ -150,7 +150,8 @@ class GltfAlpha : public testing::Test {
         file.add_triangle(diffuse({{"baseColorTexture", {{"index", index}}}}));
         material()["alphaMode"] = mode;
     }
-    /// Opacity of the triangle's texels, from the transmittance; the reflectance must be that share of grey.
+    /// Returns the opacity of the triangle's texels, from the transmittance; the reflectance must be that share of
+    /// grey.
     std::vector<float> coverage() {
         const Scene scene = file.read();
         const Material& m = scene.materials[scene.patches.at(0).material];

@@ -41,7 +41,7 @@ class MgfLuminaires : public testing::Test {
     static const MeasuredLight& light(const Scene& scene, std::size_t i = 0) {
         return std::get<MeasuredLight>(scene.luminaires.at(i).kind);
     }
-    /// Irradiance at a distance of 1 m.
+    /// Returns the irradiance at a distance of 1 m.
     static float intensity(const Scene& scene, const V3f& towards, std::size_t i = 0) {
         return illumination(scene.luminaires.at(i), light(scene, i).position + towards.normalized()).irradiance.y;
     }

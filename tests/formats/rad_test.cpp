@@ -27,7 +27,7 @@ Scene read(const std::string& text, const ReadOptions& options = {}) {
     return read_rad_text(text, "room.rad", options);
 }
 
-/// Material of the first patch.
+/// Returns the material of the first patch.
 Material material_of(const std::string& definition, const std::string& name) {
     const Scene scene = read(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
     return scene.materials[scene.patches[0].material];
@@ -43,7 +43,7 @@ double area(const Scene& scene) {
     return sum;
 }
 
-/// A third of the integral of x . n over the fronts: the volume between them and the origin.
+/// Computes a third of the integral of x . n over the fronts: the volume between them and the origin.
 double volume(const Scene& scene) {
     double sum = 0;
     for (std::size_t i = 0; i < scene.patches.size(); i += 2) {

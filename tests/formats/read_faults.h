@@ -8,7 +8,7 @@
 
 namespace interflect::testing_support {
 
-/// "no error" without an exception.
+/// Returns the message of the InputError, or "no error".
 template <class Read>
 std::string message_of(const Read& read) {
     try {

@@ -186,7 +186,7 @@ Scene there_and_back(const Scene& scene, const fs::path& path) {
     return load_scene(path);
 }
 
-/// Except for textures' names; every textured patch has its own vertices in `expected`.
+/// Expects equal scenes, except for textures' names; every textured patch has its own vertices in `expected`.
 void expect_same(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     ASSERT_FALSE(expected.textures.empty());

@@ -41,7 +41,7 @@ void expect_colour(const Rgb& actual, const Rgb& expected, const std::string& wh
 
 const Material& material_of(const Scene& scene, const Patch& patch) { return scene.materials[patch.material]; }
 
-/// The same patches in the same order at identical positions.
+/// Expects the same patches in the same order at identical positions.
 void expect_same(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     for (std::size_t i = 0; i < expected.patches.size(); ++i) {

@@ -125,8 +125,8 @@ TEST_P(MadeScenes, SolidsLookOutwards) {
     }
 }
 
-/// A lower bound of the distance between two solids [m], negative if they overlap: the largest gap between their
-/// projections on a face normal of either, or on a cross product of two.
+/// Computes a lower bound of the distance between two solids [m], negative if they overlap: the largest gap between
+/// their projections on a face normal of either, or on a cross product of two.
 double separation(const Solid& a, const Solid& b) {
     const auto projected = [](const Solid& solid, const V3d& axis) {
         double low = HUGE_VAL, high = -HUGE_VAL;
@@ -169,10 +169,11 @@ TEST_P(MadeScenes, SolidsKeepTheirDistance) {
     }
 }
 
-/// "room-12" of "room-12.bookcase-3".
+/// Returns "room-12" of "room-12.bookcase-3".
 std::string room_of(const std::string& object) { return object.substr(0, object.find('.')); }
 
-/// The interior of each room: from its floor (z = 0) to its ceiling, both of the room's size. Excludes thresholds.
+/// Returns the interior of each room: from its floor (z = 0) to its ceiling, both of the room's size. Excludes
+/// thresholds.
 std::map<std::string, Box3d> rooms_of(const Scene& scene) {
     std::map<std::string, Box3d> rooms;
     for (const Patch& patch : scene.patches) {
@@ -199,7 +200,7 @@ TEST_P(MadeScenes, SolidsAreInTheirRooms) {
     }
 }
 
-/// A direction uniform over the sphere.
+/// Returns a direction uniform over the sphere.
 V3f uniform_direction(std::uint64_t key, std::uint64_t index) {
     const auto words = random_words(key, index);
     const float z = 2 * unit_float(words[0]) - 1, angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);

@@ -69,8 +69,8 @@ TEST(Maze, FirstRoomsHaveViews) {
 
 // ---- Doorways
 
-/// Euler characteristic of the closed surface of an unfurnished maze: V - E + F = 2 (pieces - holes), where holes are
-/// the independent loops through its rooms. It is 2 if exactly one path connects any two rooms.
+/// Computes the Euler characteristic of the closed surface of an unfurnished maze: V - E + F = 2 (pieces - holes),
+/// where holes are the independent loops through its rooms. It is 2 if exactly one path connects any two rooms.
 std::int64_t euler_characteristic(const Scene& scene) {
     std::set<std::uint32_t> vertices;
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -87,7 +87,7 @@ std::int64_t euler_characteristic(const Scene& scene) {
     return std::ssize(vertices) - std::ssize(edges) + faces;
 }
 
-/// Connected pieces of the walls' surface. Rooms share vertices through doorways only.
+/// Counts the connected pieces of the walls' surface. Rooms share vertices through doorways only.
 std::int64_t pieces(const Scene& scene) {
     std::vector<std::uint32_t> parent(scene.vertices.size());
     std::iota(parent.begin(), parent.end(), 0u);

@@ -34,7 +34,7 @@ const std::vector<std::uint32_t> halves_of_square{0, 1, 2, 0, 2, 3};
 const std::vector<V2f> linear{{0.1f, 0}, {0.5f, 0.2f}, {0.4f, 0.8f}, {0, 0.6f}};
 const std::vector<V2f> distorted{{0, 0}, {1, 0}, {1, 0.5f}, {0, 1}};
 
-/// The vertices of a face in order, starting with the lowest.
+/// Returns the vertices of a face in order, starting with the lowest.
 FaceVertices from_lowest(FaceVertices face) {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     return face;

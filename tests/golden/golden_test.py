@@ -20,7 +20,7 @@ class Golden(CommandTest):
         return abs(difference["ratio_of_means"] - 1), blocks
 
     def changed_office(self, old, new):
-        """A copy of the scene with one line of its materials replaced."""
+        """Returns a copy of the scene with one line of its materials replaced."""
         folder = self.folder / "scenes"
         shutil.copytree(OFFICE.parent, folder)
         materials = folder / "furniture" / "materials.mgf"

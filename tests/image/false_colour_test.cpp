@@ -14,7 +14,7 @@ constexpr int steps = 100;
 
 Rgb colour_at(int step) { return false_colour(static_cast<float>(step) / steps); }
 
-/// CIE 1976 L*: perceived lightness of a linear colour, 0 to 100.
+/// Computes CIE 1976 L*: perceived lightness of a linear colour, 0 to 100.
 float lightness(const Rgb& colour) { return 116 * std::cbrt(luminance(colour)) - 16; }
 
 TEST(FalseColour, StaysWithinTheDisplaysGamut) {

@@ -17,7 +17,7 @@ namespace {
 const Rgb background(0.25f);
 constexpr ColourScale bright_lines{0, 1000, Spacing::linear}, dark_lines{0, 1, Spacing::linear};
 
-/// A picture of `value`(x, y) at the pixels' centres.
+/// Creates a picture of `value`(x, y) at the pixels' centres.
 template <class Value>
 Image values_of(int width, int height, const Value& value) {
     Image values(width, height);

@@ -9,7 +9,7 @@
 namespace interflect {
 namespace {
 
-/// Display value of a uniform grey of this luminance [cd/m^2], with 1 for white.
+/// Returns the display value of a uniform grey of this luminance [cd/m^2], with 1 for white.
 double shown(float luminance, Tonemap curve, float white = 100) {
     return tone_map(Image(4, 4, Rgb(luminance)), 0, curve, white).at(1, 1).y;
 }

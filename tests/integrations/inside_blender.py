@@ -69,26 +69,26 @@ def corners(lit) -> list:
 
 
 def colours(lit) -> list:
-    """Radiance of a lit object's loops, for results in vertex colours."""
+    """Returns the radiance of a lit object's loops, for results in vertex colours."""
     surface = next(node for node in lit.data.materials[0].node_tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
     strength = surface.links[0].from_node.inputs[1].links[0].from_node.inputs["Strength"].default_value
     return [[strength * channel for channel in texel.color[:3]] for texel in lit.data.color_attributes[0].data]
 
 
 def brightness(name: str) -> float:
-    """Mean radiance of an object's lit copy."""
+    """Returns the mean radiance of an object's lit copy."""
     (lit,) = [o for o in lit_meshes() if o.name.split(".")[0] == name]
     light = colours(lit)
     return sum(map(sum, light)) / len(light) / 3
 
 
 def in_file() -> dict:
-    """Names of all data in the file."""
+    """Returns the names of all data in the file."""
     return {kind: sorted(data.name for data in getattr(bpy.data, kind)) for kind in KINDS_OF_DATA}
 
 
 def shown() -> dict:
-    """Visibility settings of the user: in pictures, by the monitor, by the eye."""
+    """Returns the visibility settings of the user: in pictures, by the monitor, by the eye."""
     return {o.name: [o.hide_render, o.hide_viewport, o.hide_get()] for o in bpy.context.scene.objects}
 
 
@@ -278,7 +278,7 @@ def panels() -> dict:
 
 
 def powers_seen() -> list:
-    """Mean light in each quarter of a picture from below, with a lamp in its middle."""
+    """Measures the mean light in each quarter of a picture from below, with a lamp in its middle."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 1, False
@@ -327,7 +327,7 @@ def failures() -> dict:
 
 
 def long_bake(folder: Path) -> pipeline.Bake:
-    """A running bake of many hours."""
+    """Starts a bake of many hours."""
     scene = folder / "scene.glb"
     exchange.export_scene(bpy.context.scene, scene)
     wanted = pipeline.Settings(command=command, rays=10**11)

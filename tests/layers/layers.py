@@ -49,7 +49,7 @@ def faults(root: Path) -> list[str]:
 
 
 def layer_faults(folder: Path) -> list[str]:
-    """A layer includes only itself and the layers under USES in its CMakeLists.txt, which must precede it in LAYERS."""
+    """Finds includes from other layers than those under USES in CMakeLists.txt, which must come earlier in LAYERS."""
     found = []
     earlier = LAYERS[: LAYERS.index(folder.name)]
     build_file = folder / "CMakeLists.txt"

@@ -26,8 +26,8 @@ Image mottled(int width, int height, double mean, double amplitude) {
     return image;
 }
 
-/// A picture whose perceptual response, luminance to the power 0.33, is 1 + contrast cos(...), with the given cycles
-/// across and down.
+/// Creates a picture whose perceptual response, luminance to the power 0.33, is 1 + contrast cos(...), with the given
+/// cycles across and down.
 Image grating(int width, int height, int across, int down, double contrast) {
     Image image(width, height);
     for (int y = 0; y < height; ++y)

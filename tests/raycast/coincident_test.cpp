@@ -61,7 +61,7 @@ struct Target {
     V3f corner, u, v;
 
     V3f normal() const { return u.cross(v).normalized(); }
-    /// The point at (a, b) of [0, 1]^2, at least 0.1% of the edge from the border.
+    /// Returns the point at (a, b) of [0, 1]^2, at least 0.1% of the edge from the border.
     V3f inner_point(float a, float b) const { return corner + (0.001f + 0.998f * a) * u + (0.001f + 0.998f * b) * v; }
 };
 

@@ -24,7 +24,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Rays from points on a sphere around the scene to points within its box. They cover every part of it.
+/// Creates rays from points on a sphere around the scene to points within its box. They cover every part of it.
 std::vector<Ray> random_rays(const Scene& scene, std::size_t count) {
     Imath::Box3f box;
     for (const V3f& v : scene.vertices) box.extendBy(v);

@@ -103,7 +103,7 @@ TEST_P(ClosedBox, LetsNoRayOutInAnyDirection) {
     EXPECT_EQ(count_escaped(traced(RayCaster(scene), rays)), 0);
 }
 
-/// Rays from random points in the middle of a box to points that `target` picks from an edge (a, b).
+/// Creates rays from random points in the middle of a box to points that `target` picks from an edge (a, b).
 template <class Target>
 std::vector<Ray> rays_to_edges(const Scene& scene, const Target& target) {
     const V3f centre = centre_of(scene);
@@ -281,7 +281,7 @@ TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
     }
 }
 
-/// Number of escaping rays from the walls of a closed box.
+/// Counts the escaping rays from the walls of a closed box.
 std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
     const RayCaster ray_caster(scene);
     Random random(11);

@@ -80,7 +80,7 @@ std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of)
     return values;
 }
 
-/// Corners in the order of ElementVertices [m].
+/// Returns corners in the order of ElementVertices [m].
 std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
     const PatchGeometry& patch = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
@@ -90,7 +90,7 @@ std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
             patch.point(cell.at(0, 1))};
 }
 
-/// Value at a point of a flat scene.
+/// Returns the value at a point of a flat scene.
 std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& field, const V3f& x) {
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
         const Parameters parameters = forest.geometry(p).parameters_of(x);
@@ -99,7 +99,7 @@ std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& fiel
     return std::nullopt;
 }
 
-/// The largest difference across the edges of leaves, between points at `distance` [m] from the edge.
+/// Computes the largest difference across the edges of leaves, between points at `distance` [m] from the edge.
 float largest_jump(const ElementForest& forest, const SmoothField& field, float distance) {
     float largest = 0;
     for (const std::uint32_t leaf : forest.leaves()) {

@@ -58,8 +58,8 @@ TEST(Gather, HasTheMeanOfPathTracing) {
               1.07);  // near light is traced, so the ratio is below 1.1
 }
 
-/// A lamp close to a corner of undivided walls. One value per wall is wrong near the corner, so that light is traced.
-/// Seen to fail when every element may be gathered, at any distance.
+/// A lamp close to a corner of undivided walls. A single value per wall is wrong near the corner, so its light is
+/// traced. Seen to fail when every element may be gathered, at any distance.
 TEST(Gather, TracesPathsInCornersOfACoarseSolution) {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.7f), Rgb(0)}});
     scene.luminaires.push_back({"lamp", 0, PointLight{{0.5f, 0.5f, 0.5f}, Rgb(100)}});

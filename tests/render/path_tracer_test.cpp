@@ -65,7 +65,7 @@ struct Pictures {
         return result;
     }
 
-    /// The p-value for all pixels and channels, and their mean, having the expected values.
+    /// Computes the p-value for all pixels and channels, and their mean, having the expected values.
     double p_value(const std::vector<RgbD>& expected, double factor = 1) const {
         std::vector<double> p;
         double mean = 0;
@@ -168,7 +168,7 @@ struct LampAndFloor {
                       add_material(scene, floor_reflectance, Rgb(0, 0, 0)));
         light = add_material(scene, Rgb(0, 0, 0), Rgb(exitance, exitance, exitance));
     }
-    /// Expected pixels for lamps with these form factors from a rectangle.
+    /// Computes the expected pixels for lamps with these form factors from a rectangle.
     std::vector<RgbD> expected(const std::function<double(const Rectangle&)>& form_factor) const {
         const double exitance = scene.materials[light].exitance.x;
         std::vector<RgbD> result;

@@ -45,7 +45,7 @@ std::vector<Rgb> values_at_centres(const ElementForest& forest, const Function& 
     return values;
 }
 
-/// Value at a point of the floor, of the piece on the side of `towards`.
+/// Returns the value at a point of the floor, of the piece on the side of `towards`.
 float value_at(const Scene& scene, const ElementForest& forest, const SmoothField& field, const V3f& x,
                const V3f& towards) {
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {

@@ -103,7 +103,7 @@ TEST_P(EverySky, IsSeenAsItIs) {
     EXPECT_NEAR(drawn.pixels[0].x, expected, 1e-3 * expected);
 }
 
-/// The frame of a sky, and a grid in it whose cells do not straddle the horizon or the edges of texels.
+/// Returns the frame of a sky, and a grid in it whose cells do not straddle the horizon or the edges of texels.
 std::pair<SkyFrame, SkyGrid> frame_and_grid(const Luminaire& sky) {
     constexpr SkyGrid coarse{24, 12};
     const auto* map = std::get_if<EnvironmentMap>(&sky.kind);

@@ -92,7 +92,7 @@ class SmoothPatches {
     SmoothField field_;
 };
 
-/// Irradiance of hinge()'s dark first square at the edge to the bright second one.
+/// Returns the irradiance of hinge()'s dark first square at the edge to the bright second one.
 Rgb at_hinge(const Scene& scene, const SmoothingOptions& options = {}) {
     return SmoothPatches(scene, std::vector{dark, bright}, options).at(0, {1, 0.5f});
 }

@@ -118,7 +118,7 @@ TEST(PathTracedLamp, HasOneAnswerHoweverItIsSampled) {
     }
 }
 
-/// Root mean square difference in blocks of 8 x 8 pixels, relative to the mean.
+/// Computes the root mean square difference in blocks of 8 x 8 pixels, relative to the mean.
 double block_difference(const Image& a, const Image& b) {
     const Image blocks_a = box_downsample(a, 8), blocks_b = box_downsample(b, 8);
     double squares = 0, sum = 0;

@@ -128,7 +128,7 @@ def largest_output(seeds, key):
 
 
 def outcome_of_limit(limit, size):
-    """Outcomes under a file size limit. Temporary files may be larger than the output."""
+    """Returns outcomes under a file size limit. Temporary files may be larger than the output."""
     return frozenset({FAILED}) if limit < size else frozenset({DONE, FAILED})
 
 

@@ -31,7 +31,7 @@ double integral(const SkyModel& model, double sun_zenith) {
     return 2 * sum * (pi / 2 / steps) * (pi / steps);
 }
 
-/// Moon and Spencer 1942: the zenith is three times as bright as the horizon, and the illuminance is 7/9 pi times it.
+/// Moon and Spencer 1942: the zenith has 3 times the horizon's luminance; the illuminance is 7/9 pi times the zenith's.
 TEST(CieSky, OfTheTraditionalOvercastTypeHasItsRatios) {
     const SkyModel sky = cie_standard_sky(16);
     const double zenith = sky.relative_luminance(1, 0);

@@ -21,7 +21,7 @@ struct Target {
 
 double uniform(Random& random) { return std::uniform_real_distribution<double>()(random); }
 
-/// A point of the unit sphere on top of the unit normal: its direction is cosine-distributed.
+/// Returns a point of the unit sphere on top of the unit normal: its direction is cosine-distributed.
 V3d cosine_direction(const V3d& normal, Random& random) {
     for (;;) {
         const V3d p(2 * uniform(random) - 1, 2 * uniform(random) - 1, 2 * uniform(random) - 1);
@@ -31,7 +31,7 @@ V3d cosine_direction(const V3d& normal, Random& random) {
     }
 }
 
-/// Index of the nearest rectangle whose lit side the ray hits, or targets.size().
+/// Returns the index of the nearest rectangle whose lit side the ray hits, or targets.size().
 std::size_t nearest(const std::vector<Target>& targets, const V3d& origin, const V3d& direction) {
     constexpr double start = 1e-9;   // [m], prevents hits on the starting rectangle
     constexpr double slack = 1e-12;  // closes gaps between rectangles

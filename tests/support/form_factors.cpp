@@ -28,7 +28,7 @@ int normal_axis(const Rectangle& r) {
     throw std::logic_error("the rectangle is not perpendicular to an axis");
 }
 
-/// Distance range of `interval` in front of the plane coordinate = `plane` that faces towards `sign`.
+/// Returns the distance range of `interval` in front of the plane coordinate = `plane` that faces towards `sign`.
 Interval in_front(const Interval& interval, double plane, double sign) {
     const double a = sign * (interval.low - plane), b = sign * (interval.high - plane);
     const Interval distance{std::min(a, b), std::max(a, b)};
@@ -36,7 +36,7 @@ Interval in_front(const Interval& interval, double plane, double sign) {
     return distance;
 }
 
-/// The sum over all choices of an end of each interval, with alternating signs.
+/// Computes the sum over all choices of an end of each interval, with alternating signs.
 template <class Function>
 double corner_sum(const Interval& x, const Interval& y, const Interval& eta, const Interval& xi, const Function& g) {
     double sum = 0;

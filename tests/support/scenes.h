@@ -11,7 +11,8 @@
 
 namespace interflect::testing_support {
 
-/// The folder of real test scenes: the environment variable INTERFLECT_SCENES, or shared/scenes beside the repository.
+/// Returns the folder of real test scenes: the environment variable INTERFLECT_SCENES, or shared/scenes beside the
+/// repository.
 std::filesystem::path real_scenes();
 
 /// A folder that is removed with its contents at the end of the scope.
@@ -36,14 +37,15 @@ std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_
 /// Adds a closed box of six one-sided faces that face outwards, with their own vertices.
 void add_box(Scene& scene, V3f low, V3f high, std::uint32_t material);
 
-/// The area of each face [m^2], by material and object; quadrilaterals count as the two triangles used for
+/// Computes the area of each face [m^2], by material and object; quadrilaterals count as the two triangles used for
 /// intersection.
 std::map<std::pair<std::uint32_t, std::uint32_t>, double> face_areas(const Scene& scene);
 
 std::uint32_t add_material(Scene& scene, Rgb reflectance, Rgb exitance);
 
-/// A closed box from (0,0,0) to `size`, lit inside, each wall divided into n x n patches of one-sided faces. Walls in
-/// order: x = 0, x = size.x, y = 0, y = size.y, z = 0, z = size.z; materials[w] for wall w (one for all if size 1).
+/// Makes a closed box from (0,0,0) to `size`, lit inside, each wall divided into n x n patches of one-sided faces.
+/// Walls in order: x = 0, x = size.x, y = 0, y = size.y, z = 0, z = size.z; materials[w] for wall w (one for all if
+/// size 1).
 Scene closed_box(V3f size, int n, const std::vector<Material>& materials);
 
 }  // namespace interflect::testing_support

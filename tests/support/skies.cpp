@@ -45,7 +45,8 @@ std::function<double(const V3d&)> overcast(const V3d& zenith) {
     return [zenith](const V3d& d) { return (1 + 2 * d.dot(zenith)) / 3; };
 }
 
-/// The texel in a direction, by the definition of EnvironmentMap, with north turned by an angle from y towards x.
+/// Returns the texel in a direction, by the definition of EnvironmentMap, with north turned by an angle from y towards
+/// x.
 std::function<double(const V3d&)> texel_seen(const std::shared_ptr<const Texture>& image, double turn, double factor) {
     return [=](const V3d& d) {
         const double azimuth = std::atan2(d.x, d.y) - turn, turns = azimuth / (2 * pi) + 0.5 + 2;
@@ -56,7 +57,7 @@ std::function<double(const V3d&)> texel_seen(const std::shared_ptr<const Texture
     };
 }
 
-/// Irradiance of an unobstructed plane under such a map, by the midpoint rule within each texel.
+/// Computes the irradiance of an unobstructed plane under such a map, by the midpoint rule within each texel.
 std::function<double(const V3d&)> under_map(const std::shared_ptr<const Texture>& image, double turn, double factor) {
     return [=](const V3d& normal) {
         const std::uint32_t parts = 1 + 400 / image->width;  // per texel and direction

@@ -18,15 +18,15 @@ struct KnownSky {
     std::function<double(const V3d&)> irradiance;  ///< On an unobstructed plane with this normal.
 };
 
-/// CIE skies of several types, with and without a ground, including a sky with its zenith along y; maps of few and many
-/// texels, some of them turned.
+/// Returns CIE skies of several types, with and without a ground, including a sky with its zenith along y; maps of few
+/// and many texels, some of them turned.
 std::vector<KnownSky> known_skies();
 
 /// A texture of these texels.
 std::shared_ptr<const Texture> image_of(std::uint32_t width, std::uint32_t height, std::vector<Rgb> texels);
 
-/// The integral of radiance times cosine over the hemisphere of a normal, by the midpoint rule. The error is about 1e-4
-/// for smooth skies and a few percent for maps.
+/// Computes the integral of radiance times cosine over the hemisphere of a normal, by the midpoint rule. The error is
+/// about 1e-4 for smooth skies and a few percent for maps.
 double irradiance_of(const std::function<double(const V3d&)>& radiance, const V3d& normal);
 
 }  // namespace interflect::testing_support

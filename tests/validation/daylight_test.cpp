@@ -52,7 +52,7 @@ struct Room {
     Room() { black = add_material(scene, Rgb(0), Rgb(0)); }
 
     void add(const V3f& corner, const V3f& u, const V3f& v) { add_rectangle(scene, corner, u, v, black, 1, 1, true); }
-    /// The rectangle with a hole from a to b, shares of u and v.
+    /// Adds the rectangle with a hole from a to b, shares of u and v.
     void add_with_hole(const V3f& corner, const V3f& u, const V3f& v, const V2f& a, const V2f& b) {
         add(corner, u, v * a.y);
         add(corner + v * b.y, u, v * (1 - b.y));
@@ -64,7 +64,7 @@ struct Room {
         scene.materials[glass].transmittance = Rgb(transmittance);
         add_rectangle(scene, V3f(opening.corner), V3f(opening.u), V3f(opening.v), glass, 1, 1, true);
     }
-    /// Floor, and all walls except x = 0.
+    /// Adds the floor, and all walls except x = 0.
     void add_rest() {
         add({0, 0, 0}, {5, 0, 0}, {0, 4, 0});
         add({0, 0, 0}, {0, 0, 3}, {5, 0, 0});

@@ -177,7 +177,7 @@ struct LampOverFloor {
                       n, n);
         return s;
     }
-    /// Illuminance on the side of the floor and the wall.
+    /// Computes the illuminance on the side of the floor and the wall.
     static double illuminance(const V3d& p, const V3d& normal) {
         return exitance * std::abs(configuration_factor(p, normal, corners(lamp())));
     }

@@ -70,7 +70,7 @@ struct LitFloor {
         s.luminaires = {{"sun", 0, DirectionalLight{{0, 0, -1}, Rgb(1000)}}};
         return s;
     }
-    /// E at a place from which the floor is visible between x = a and b.
+    /// Computes the illuminance at a place from which the floor is visible between x = a and b.
     static double illuminance(const V3d& p, const V3d& normal, double a, double b) {
         return radiosity * std::abs(configuration_factor(p, normal, corners({{a, 0, 0}, {b - a, 0, 0}, {0, 2, 0}})));
     }

@@ -33,7 +33,7 @@ TEST(Glare, PositionIndicesAreThoseOfTheTable) {
                          position_index({1, 0, static_cast<float>(height)}, {1, 0, 0}), 0.035 * p);
 }
 
-/// Levin's p of a place ahead, above and to the side [m], reimplemented.
+/// Recomputes Levin's p of a place ahead, above and to the side [m].
 double levin(double ahead, double above, double aside) {
     const double across = std::hypot(above, aside), sigma = std::atan2(across, ahead) * 180 / pi,
                  tau = std::atan2(std::abs(aside), std::abs(above)) * 180 / pi;

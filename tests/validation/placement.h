@@ -27,14 +27,15 @@ struct Placement {
 /// Unchanged, rotated, at map coordinates of a thousand kilometres, and scaled to a thousandth.
 extern const std::vector<Placement> placements;
 
-/// Illuminance at points, gathered from a solution of `rays` rays (hsrr) with `samples` samples a point [lx].
+/// Computes the illuminance at points, gathered from a solution of `rays` rays (hsrr) with `samples` samples a point
+/// [lx].
 std::vector<Estimate> measured(const Scene& scene, const std::vector<MeasuringPoint>& points,
                                std::int64_t rays = 10'000, int samples = 1024);
 
-/// The same by path tracing alone.
+/// Computes the same by path tracing alone.
 std::vector<Estimate> traced(const Scene& scene, const std::vector<MeasuringPoint>& points, int samples);
 
-/// Mean illuminance of patches, area-weighted, from the solution (hsrr) [lx].
+/// Computes the mean illuminance of patches, area-weighted, from the solution (hsrr) [lx].
 Estimate solved(const Scene& scene, std::uint32_t first_patch, std::uint32_t patches, std::int64_t rays = 100'000);
 
 }  // namespace interflect::testing_support

@@ -30,7 +30,7 @@ std::map<std::string, std::vector<Row>>& tables() {
     return all;
 }
 
-/// Number of standard errors that is exceeded with probability false_alarm_of_row.
+/// Returns the number of standard errors that is exceeded with probability false_alarm_of_row.
 double quantile() {
     return boost::math::quantile(boost::math::complement(boost::math::students_t(runs - 1), false_alarm_of_row / 2));
 }

@@ -15,7 +15,7 @@ struct Estimate {
     double mean = 0, standard_error = 0;
 };
 Estimate mean_of_runs(const std::function<double(std::uint64_t seed)>& run);
-/// The same for several results per run, [run][result].
+/// Computes the same for several results per run, [run][result].
 std::vector<Estimate> means_of_runs(std::size_t results,
                                     const std::function<std::vector<double>(std::uint64_t seed)>& run);
 
@@ -29,7 +29,7 @@ std::vector<Estimate> means_of_runs(std::size_t results,
 void check(const std::string& table, const std::string& case_name, const std::string& quantity, double expected,
            const Estimate& result, double bias_bound);
 
-/// The same for a deterministic result and an absolute tolerance [unit of the quantity].
+/// Checks the same for a deterministic result and an absolute tolerance [unit of the quantity].
 void check_difference(const std::string& table, const std::string& case_name, const std::string& quantity,
                       double expected, double result, double tolerance);
 

@@ -21,7 +21,7 @@ LARGEST_DIFFERENCE = {"vertices": 0.06, "irradiance": 0.06, "radiance": 0.15}  #
 
 
 def srgb(linear):
-    """The display value, 0 to 255."""
+    """Returns the display value, 0 to 255."""
     return 255 * (12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
@@ -91,7 +91,7 @@ class ValidatorTest(GltfTest):
 
 
 class ThreeTest(GltfTest):
-    # A plate under an unobstructed sky: its illuminance equals that of the sky, 10,000 lx.
+    # A plate under an unobstructed sky: its illuminance is the sky's, 10,000 lx.
     SKY_ILLUMINANCE, REFLECTANCE, EXPOSURE = 10_000, 0.5, -12
 
     def plate(self, view, *options):
@@ -148,7 +148,7 @@ class EdgesTest(GltfTest):
         return paint + "".join(self.box(*slab) for slab in walls + floor_and_ceiling) + lamp
 
     def dips(self, pixels):
-        """Pixels darker than 0.8 of both of two opposite neighbours at distance one or two: lines, not creases."""
+        """Counts pixels darker than 0.8 of both opposite neighbours at distance one or two: lines, not creases."""
         light = [sum(map(linear, pixel)) for pixel in pixels]
         at = lambda x, y: light[y * self.WIDTH + x]  # noqa: E731
         steps = [(k * dx, k * dy) for k in (1, 2) for dx, dy in ((1, 0), (0, 1), (1, 1), (1, -1))]

@@ -66,7 +66,7 @@ def _left_out(lamp, area):
 
 
 def _outline(light):
-    """Corners of the lamp's face, and their area."""
+    """Returns the corners of the lamp's face, and their area."""
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     if light.shape in ("RECTANGLE", "SQUARE"):
@@ -78,7 +78,7 @@ def _outline(light):
 
 
 def _emission(light):
-    """Colour of a lamp's nodes, [r, g, b], a factor of its own colour. None if it varies."""
+    """Returns the colour of a lamp's nodes, [r, g, b], a factor of its own colour. None if it varies."""
     output = light.node_tree.get_output_node("CYCLES")
     if output is None or not output.inputs["Surface"].is_linked:
         return [0, 0, 0]

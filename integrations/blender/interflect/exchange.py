@@ -56,7 +56,7 @@ def _left_out(rendered):
 
 
 def camera_names(path: Path) -> list[str]:
-    """Names of the cameras in an exported scene."""
+    """Returns the names of the cameras in an exported scene."""
     content = path.read_bytes()
     (length,) = struct.unpack_from("<I", content, 12)  # length of the JSON, after the headers of the file and the chunk
     nodes = json.loads(content[20 : 20 + length]).get("nodes", [])

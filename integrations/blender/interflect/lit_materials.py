@@ -55,7 +55,7 @@ class glTF2ImportUserExtension:
         _output(nodes, links, both)
 
     def _image(self, index, notes, importer):
-        """The unclamped image of a texture, packed into the blend file."""
+        """Returns the unclamped image of a texture, packed into the blend file."""
         name = importer.data.images[importer.data.textures[index].source].name
         if name not in self.images:
             file = next(file for file in notes["lightmap"]["unclamped"] if Path(file).stem == name)

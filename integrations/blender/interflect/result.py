@@ -34,7 +34,7 @@ def collections(scene) -> list:
 
 
 def warnings(scene) -> list[str]:
-    """Warnings of the bake that made the result."""
+    """Returns the warnings of the bake that made the result."""
     return [warning for collection in collections(scene) for warning in collection.get(WARNINGS, "").splitlines()]
 
 

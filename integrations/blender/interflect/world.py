@@ -9,7 +9,7 @@ RENDER_WORLD = Path(__file__).with_name("render_world.py")
 
 
 def plain_radiance(world):
-    """Radiance of a world of one colour, [r, g, b]. None if it varies."""
+    """Returns the radiance of a world of one colour, [r, g, b]. None if it varies."""
     if world is None:
         return [0.0, 0.0, 0.0]
     if not world.use_nodes:
