@@ -52,7 +52,6 @@ class Bench:
                 csv.DictWriter(file, COLUMNS, lineterminator="\n").writerow(self.rows[-1])
 
     def values(self, row: str, quantity: str) -> dict[str, list[float]]:
-        """Returns the values of each case, in the order of the seeds."""
         found = defaultdict(list)
         for r in self.rows:
             if (r["row"], r["quantity"]) == (row, quantity):
@@ -69,7 +68,6 @@ class Bench:
         return last | {"emitted_power": header["emitted_power"]}
 
     def picture(self, view: str, options: str) -> Path:
-        """Draws the last solution."""
         path = self._folder / "picture.exr"
         self.run(f"render {self._folder}/solved.h5 {view} {options} -o {path}")
         return path

@@ -32,7 +32,7 @@ class Mgf:
         self._lines += [f"\t{line}" for line in (f"sides {sides}", *properties)]
 
     def lamp(self, name: str, exitance: float, reflectance: float = 0.1) -> None:
-        """Adds a white lamp; resets the colour."""
+        """The lamp is white and resets the colour."""
         self.material(name, f"rd {reflectance}", f"ed {exitance}")
 
     def vertex(self, point: Point, *properties: str) -> str:
@@ -150,7 +150,6 @@ def cornell(size: float = 1.0, offset: Point = (0, 0, 0)) -> Scene:
 
 
 def soup() -> Scene:
-    """100,000 small triangles in a closed room."""
     m, random_ = Mgf(), random.Random(1)
     m.room((6.2, 5.1, 3.3))
     m.lamp("lamp", 9000)
@@ -176,7 +175,6 @@ def white_box() -> Scene:
 
 
 def huge_lamp() -> Scene:
-    """A hall with a luminous ceiling."""
     m = Mgf()
     m.room((31, 17, 6), "+z")
     m.lamp("lamp", 700, 0.45)
@@ -195,7 +193,6 @@ def furnish(m: Mgf) -> None:
 
 
 def tiny_lamp() -> Scene:
-    """A lamp of 1 mm x 1 mm."""
     m = Mgf()
     m.room((5.2, 4.1, 2.8))
     furnish(m)
@@ -271,7 +268,6 @@ def house(m: Mgf, hole: Point) -> None:
 
 
 def sun_window() -> Scene:
-    """Parallel sunlight through a window of 0.41 x 0.42 m."""
     m = Mgf()
     house(m, (0.4, 0.5, 0.5, 0.65))
     m.add(f"light directional {m.vertex((0, 0, 0), 'n 0.8 0.22 -0.5')} 60000")
@@ -361,7 +357,6 @@ def landscape(m: Mgf, clear: float) -> None:
 
 
 def outdoor() -> Scene:
-    """Houses in a landscape of 1 km under the sun and a clear sky."""
     m, random_ = Mgf(), random.Random(6)
     landscape(m, 130)
     for name, share in (("white", 0.68), ("brick", 0.24)):

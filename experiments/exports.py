@@ -61,7 +61,6 @@ def measure() -> None:
 def pictures(
     command: program.Program, folder: Path, scene: str, views: str | None, options: list[str]
 ) -> list[np.ndarray]:
-    """Returns our picture of the first view and that of Cycles."""
     if views:
         (folder / "scene.mgf").write_text(scene)
         (folder / "scene.views.json").write_text(views)
@@ -85,7 +84,6 @@ def pictures(
 
 
 def blocks(picture: np.ndarray) -> np.ndarray:
-    """Returns means over squares of pixels."""
     rows, columns = (side // BLOCK for side in picture.shape)
     return picture[: rows * BLOCK, : columns * BLOCK].reshape(rows, BLOCK, columns, BLOCK).mean(axis=(1, 3))
 

@@ -39,7 +39,6 @@ COSTS = ["rays", "seconds", "elements", "peak_mib"]
 
 
 def needs_of(config: dict, runs: list[Row]) -> list[Need]:
-    """Computes the needs of one method in each world with runs."""
     needs = []
     for world in config["worlds"]:
         here = [row for row in runs if row["scene"] == world["scene"]]
@@ -83,7 +82,6 @@ def draw_needs(axes, worlds: list[Need], cost: str, label: str, number: int) -> 
 
 
 def draw_errors(config: dict, rows: list[Row], folder: Path) -> None:
-    """Draws error against rays in each world, from which the needs are read."""
     figure, axes = drawing.panels(len(config["worlds"]), size=(2.2, 2.7), share_y=True)
     for ax, world in zip(axes, config["worlds"]):
         here = results.grouped((row for row in rows if row["scene"] == world["scene"]), "series")

@@ -77,7 +77,6 @@ def panels(
 
 
 def style_of(number: int) -> dict:
-    """Returns colour and marker of the number-th series, from 0."""
     return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
 
 
@@ -135,7 +134,6 @@ def _write_svg(figure: Figure, path: Path, quality: Quality) -> int:
 
 
 def _write_png(figure: Figure, path: Path, quality: Quality) -> int:
-    """Returns the file's size."""
     figure.savefig(path, dpi=quality.resolution, metadata={"Software": None}, bbox_inches="tight", facecolor="white")
     if quality.palette:
         Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
@@ -143,7 +141,6 @@ def _write_png(figure: Figure, path: Path, quality: Quality) -> int:
 
 
 def shared_legend(figure: Figure, axes: Axes, columns: int) -> None:
-    """Draws one legend for all panels, above them."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns)
 

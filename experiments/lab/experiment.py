@@ -18,8 +18,6 @@ BEYOND = ["world-size", "convergence", "points", "averaging"]
 
 @dataclass(frozen=True)
 class Places:
-    """Output folders."""
-
     results: Path  # NAME.csv
     figures: Path  # NAME.svg, NAME.png, tables
 

@@ -47,7 +47,6 @@ class Reference:
 
 
 def box_mean(values: np.ndarray, radius: int) -> np.ndarray:
-    """Computes means over squares of 2 radius + 1 pixels."""
     size = 2 * radius + 1
     sums = np.pad(np.pad(values, radius, mode="edge").cumsum(0).cumsum(1), ((1, 0), (1, 0)))
     return (sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]) / size**2

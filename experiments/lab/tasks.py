@@ -22,8 +22,6 @@ class Solve:
 
 @dataclass(frozen=True)
 class Picture:
-    """`interflect render` of a solution."""
-
     solve: Solve
     view: str
     options: str

@@ -46,7 +46,6 @@ class Clock:
         self._foretold = self._taken = 0.0
 
     def foretell(self, groups: dict[Solve, list[Task]]) -> float:
-        """Predicts the seconds that the groups take."""
         planned = sum(self._planned(solve, tasks) for solve, tasks in groups.items())
         return planned * (self._taken / self._foretold if self._foretold > 0 else 1)
 

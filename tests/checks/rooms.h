@@ -15,7 +15,6 @@ void open_ceiling(Scene& scene, V2f low, V2f high);
 /// 100 cd in all directions below it.
 std::shared_ptr<PhotometricWeb> downlight();
 
-/// Adds a luminaire that faces `direction`.
 void add_light(Scene& scene, std::shared_ptr<const PhotometricWeb> web, V3f position, V3f direction = {0, 0, -1});
 
 }  // namespace interflect::testing_support

@@ -24,7 +24,6 @@ def read(path):
 
 
 def arrays(data):
-    """Returns the arrays of the points or the cells, by name."""
     return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
 

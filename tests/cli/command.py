@@ -40,7 +40,6 @@ LARGE = ("--size", "96x54", "--samples", "4")
 
 
 def methods():
-    """Returns all values of `--method`."""
     text = subprocess.run([COMMAND, "solve", "--help"], capture_output=True, text=True, check=True).stdout
     return re.search(r"--method (\S+)", text)[1].split("|")
 

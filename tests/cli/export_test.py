@@ -9,7 +9,6 @@ import zlib
 from command import BAD_INPUT, WRONG_USAGE, CommandTest, room
 
 def png_texels(png):
-    """Returns the texels of an 8-bit RGB image."""
     position, data = 8, b""
     while position < len(png):
         length, kind = struct.unpack(">I4s", png[position : position + 8])

@@ -268,7 +268,6 @@ def hdr(*texels):
 
 
 def png_rows(content):
-    """Returns the rows of an unfiltered PNG of 8 bits."""
     at, data = 8, b""
     while at < len(content):
         (length,), kind = struct.unpack_from(">I", content, at), content[at + 4 : at + 8]

@@ -17,7 +17,6 @@ WEAKEST, STRONGEST = 1.1e-9, 9.9e9  # [lm/m2]
 
 
 def scaled_room(scale, exitance, offset=0.0):
-    """The room of command.py, scaled and translated, with another lamp."""
     lines = []
     for line in room(LAMP.replace("1000", repr(exitance))).splitlines():
         words = line.split()

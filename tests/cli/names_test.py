@@ -18,7 +18,6 @@ def is_control(byte):
 
 class Names(CommandTest):
     def run_bytes(self, *arguments, exit_code=DONE):
-        """Like interflect(), for arbitrary bytes."""
         words = [word if isinstance(word, bytes) else str(word).encode() for word in arguments]
         result = subprocess.run([COMMAND.encode(), *words], cwd=self.folder, capture_output=True, timeout=60)
         self.assertEqual(result.returncode, exit_code, result.stderr)

@@ -15,7 +15,6 @@ def moved_view():
 
 
 def room_with_hole(width):
-    """The room of command.py with an open slit in its ceiling."""
     ceiling = vertices((0, 0, 2.5), (0, 3, 2.5), (2 - width, 3, 2.5), (2 - width, 0, 2.5)) + "f v0 v1 v2 v3\n"
     return room().replace("f v4 v6 v7 v5\n", "") + "m paint\n" + ceiling
 

@@ -30,7 +30,6 @@ def furnace(exitance=100, reflectance=0.5):
 
 class ProbeTest(CommandTest):
     def probe(self, *arguments):
-        """Rows of the table as numbers, and summary."""
         summary = self.json("probe", *arguments, "-o", "out.csv")["areas"]
         with open(self.folder / "out.csv", newline="") as file:
             header, *rows = csv.reader(file)

@@ -413,8 +413,6 @@ class Pictures(RenderTest):
 
 
 class FinalGathering(RenderTest):
-    """The default shading."""
-
     def setUp(self):
         super().setUp()
         self.solve()

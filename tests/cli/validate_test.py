@@ -9,7 +9,6 @@ ONE_SIDED = PAINT.replace("rd .6", "sides 1\n\trd .6")
 
 
 def panel(z=1, size=1, corner=(0.5, 1), material=PAINT, reverse=False):
-    """A horizontal square that faces up."""
     x, y = corner
     outline = "v3 v2 v1 v0" if reverse else "v0 v1 v2 v3"
     return vertices((x, y, z), (x + size, y, z), (x + size, y + size, z), (x, y + size, z)) + material + f"f {outline}\n"

@@ -82,7 +82,6 @@ TEST(Forest, LeafAtFindsTheLeafWhoseCellHoldsThePoint) {
     }
 }
 
-/// Returns a complete description of a forest, element by element.
 std::vector<std::array<std::uint32_t, 4>> described(const ElementForest& forest) {
     std::vector<std::array<std::uint32_t, 4>> d;
     for (std::uint32_t e = 0; e < forest.size(); ++e)

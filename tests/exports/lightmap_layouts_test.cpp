@@ -162,7 +162,6 @@ TEST(LightmapLayout, IsThatOfTheFrontWhereBothSidesAreLit) {
         }
 }
 
-// Neighbours that share an edge in the map do not overlap.
 TEST(LightmapLayout, MayTouchItself) {
     Scene scene = corner_with_layout();
     lay_out(scene, 1, {0.1f, 0.3f}, {0, 0.3f}, {0.4f, 0});

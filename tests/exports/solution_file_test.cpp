@@ -130,7 +130,6 @@ std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     return parents;
 }
 
-/// The contents `before` must occur once; sizes are equal.
 template <class T>
 std::string replaced(std::string bytes, const std::vector<T>& before, const std::vector<T>& after) {
     const auto raw = [](const std::vector<T>& values) {

@@ -53,7 +53,6 @@ class GltfBuilder {
         return add_accessor(add_view(bytes_of_values(values)), ushort_type, values.size(), "SCALAR");
     }
     int add_mesh(json primitive) { return add("meshes", {{"primitives", {std::move(primitive)}}}); }
-    /// Adds a root node.
     int add_node(json node) {
         const int index = add("nodes", std::move(node));
         file["scenes"][0]["nodes"].push_back(index);
@@ -86,7 +85,6 @@ class GltfBuilder {
                word(padded.size()) + std::string("BIN\0", 4) + padded;
     }
     Scene read(const ReadOptions& options = {}) const { return read_gltf_bytes(glb(), "test.glb", options); }
-    /// Returns the message of the refused file.
     std::string fault(const ReadOptions& options = {}) const {
         try {
             read(options);

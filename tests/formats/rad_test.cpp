@@ -27,7 +27,6 @@ Scene read(const std::string& text, const ReadOptions& options = {}) {
     return read_rad_text(text, "room.rad", options);
 }
 
-/// Returns the material of the first patch.
 Material material_of(const std::string& definition, const std::string& name) {
     const Scene scene = read(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
     return scene.materials[scene.patches[0].material];

@@ -200,7 +200,6 @@ TEST_P(MadeScenes, SolidsAreInTheirRooms) {
     }
 }
 
-/// Returns a direction uniform over the sphere.
 V3f uniform_direction(std::uint64_t key, std::uint64_t index) {
     const auto words = random_words(key, index);
     const float z = 2 * unit_float(words[0]) - 1, angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);

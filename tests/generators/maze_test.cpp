@@ -87,7 +87,7 @@ std::int64_t euler_characteristic(const Scene& scene) {
     return std::ssize(vertices) - std::ssize(edges) + faces;
 }
 
-/// Counts the connected pieces of the walls' surface. Rooms share vertices through doorways only.
+/// Rooms share vertices through doorways only.
 std::int64_t pieces(const Scene& scene) {
     std::vector<std::uint32_t> parent(scene.vertices.size());
     std::iota(parent.begin(), parent.end(), 0u);

@@ -10,7 +10,6 @@
 namespace interflect {
 namespace {
 
-/// A scene of one patch with these corners.
 struct Single {
     Scene scene;
     explicit Single(std::vector<V3f> corners) {

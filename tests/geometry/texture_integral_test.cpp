@@ -30,7 +30,6 @@ Corners random_triangle(std::uint64_t seed, float size) {
     return {start, start + offset(2), start + offset(4)};
 }
 
-/// Computes the mean of the texels at the centres of n^2 equal triangles.
 Rgb mean_of_points(const Texture& texture, const Corners& x, int n) {
     RgbD sum(0, 0, 0);
     const auto add = [&](float i, float j) {

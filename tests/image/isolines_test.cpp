@@ -17,7 +17,6 @@ namespace {
 const Rgb background(0.25f);
 constexpr ColourScale bright_lines{0, 1000, Spacing::linear}, dark_lines{0, 1, Spacing::linear};
 
-/// Creates a picture of `value`(x, y) at the pixels' centres.
 template <class Value>
 Image values_of(int width, int height, const Value& value) {
     Image values(width, height);
@@ -27,7 +26,6 @@ Image values_of(int width, int height, const Value& value) {
     return values;
 }
 
-/// White lines on grey.
 Image lines(const Image& values, const std::vector<float>& levels, const ColourScale& scale = bright_lines) {
     return with_isolines(Image(values.width, values.height, background), values, levels, scale);
 }

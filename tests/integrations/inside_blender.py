@@ -76,14 +76,12 @@ def colours(lit) -> list:
 
 
 def brightness(name: str) -> float:
-    """Returns the mean radiance of an object's lit copy."""
     (lit,) = [o for o in lit_meshes() if o.name.split(".")[0] == name]
     light = colours(lit)
     return sum(map(sum, light)) / len(light) / 3
 
 
 def in_file() -> dict:
-    """Returns the names of all data in the file."""
     return {kind: sorted(data.name for data in getattr(bpy.data, kind)) for kind in KINDS_OF_DATA}
 
 
@@ -327,7 +325,6 @@ def failures() -> dict:
 
 
 def long_bake(folder: Path) -> pipeline.Bake:
-    """Starts a bake of many hours."""
     scene = folder / "scene.glb"
     exchange.export_scene(bpy.context.scene, scene)
     wanted = pipeline.Settings(command=command, rays=10**11)

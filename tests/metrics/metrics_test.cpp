@@ -16,7 +16,6 @@ namespace {
 
 Rgb grey(float v) { return Rgb(v, v, v); }
 
-/// Creates an irregular pattern that varies from pixel to pixel.
 Image speckle(int width, int height, float mean, float amplitude) {
     Image image(width, height);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)

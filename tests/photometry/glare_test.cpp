@@ -48,7 +48,6 @@ TEST(UnifiedGlareRating, IsThatOfTheFormula) {
     EXPECT_EQ(unified_glare_rating(40, {}), -std::numeric_limits<double>::infinity());
 }
 
-/// A room of 6 x 4 x 3 m, reflectance rho.
 Scene room(float rho = 0.5f) {
     Scene scene = closed_box({6, 4, 3}, 1, {Material{"paint", Rgb(rho), Rgb(0)}});
     scene.objects = {"", "lamp"};

@@ -38,7 +38,6 @@ TEST(Summary, IsThatOfTheSums) {
     EXPECT_EQ(summarise({}).uniformity(), 0);
 }
 
-/// Colours are weighted by luminance.
 TEST(Summary, WeighsColours) {
     const std::vector<MeasuredIrradiance> green{{Rgb(0, 10, 0), Rgb(0), Rgb(0, 1, 0), 0}};
     EXPECT_NEAR(summarise(green).mean, 7.152, 1e-4);

@@ -90,7 +90,6 @@ std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
             patch.point(cell.at(0, 1))};
 }
 
-/// Returns the value at a point of a flat scene.
 std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& field, const V3f& x) {
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
         const Parameters parameters = forest.geometry(p).parameters_of(x);

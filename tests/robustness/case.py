@@ -70,7 +70,6 @@ class Case:
         return f"{self.shell + '; ' if self.shell else ''}{command} {self.redirections}".rstrip()
 
     def says_why(self):
-        """Returns whether stderr can be read."""
         return "2>" not in self.redirections
 
 

@@ -18,7 +18,6 @@ def solve(*options):
 
 
 def damaged(rng, seeds):
-    """A damaged run is never resumed."""
     content, how = mutated(rng, seeds.files["run.h5"], BINARY, 1)
     return Case(
         description=f"resume of run.h5: {how}",

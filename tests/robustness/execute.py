@@ -75,7 +75,6 @@ class Watch:
         self.arm_followers()
 
     def arm_followers(self):
-        """Schedules a signal that follows a message."""
         elapsed = time.monotonic() - self.started
         for k, s in enumerate(self.signals):
             if s.follows and s.follows in self.read[self.process.stderr]:

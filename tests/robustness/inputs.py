@@ -53,7 +53,6 @@ def case_of(use, description, files, **more):
 
 
 def scene(rng, seeds, _):
-    """Mutates a scene, or a file that it includes."""
     names = rng.choice((SCENE, ENTITIES))
     files = seeds.some(*names)
     target = rng.choice((names[0], names[0], names[0], "part.mgf")) if names is ENTITIES else names[0]
@@ -64,7 +63,6 @@ def scene(rng, seeds, _):
 
 
 def named_views(rng, seeds, _):
-    """Mutates the list of views beside a scene."""
     files = seeds.some(*SCENE)
     files["room.views.json"], how = mutated(rng, files["room.views.json"], JSON, 3)
     use = rng.choice((info, info_json, solve, render, path_trace))
@@ -73,7 +71,6 @@ def named_views(rng, seeds, _):
 
 
 def view_file(rng, seeds, _):
-    """Mutates a Radiance view file."""
     files = seeds.some(*SCENE, "corner.vf")
     files["corner.vf"], how = mutated(rng, files["corner.vf"], TEXT, 3)
     use = rng.choice((solve, render, path_trace))
@@ -81,7 +78,6 @@ def view_file(rng, seeds, _):
 
 
 def picture(rng, seeds, _):
-    """Mutates an input of `compare`."""
     files = seeds.some(*PICTURES)
     target = rng.choice(PICTURES)
     mutators = (*BINARY, substitute_number) if target == "a.hdr" else BINARY

@@ -2,7 +2,6 @@
 
 import re
 
-# Replacements for a number, one word each.
 NUMBERS = b"""0 -1 1 -0 .5 2 -3.7 0.999999 90 180 1000 1e5 1e9 1e14 1e-6 0.0000001 1e38 -1e38 1e39 1e400 -1e400 1e-45 1e-400
     nan inf -inf 2147483648 4294967296 18446744073709551616 0x10 1e .""".split()
 NUMBERS += [b"9" * 400]

@@ -71,7 +71,6 @@ def number(rng):
 
 
 def typical(rng, option):
-    """Returns a value that is likely to be accepted."""
     if option.type == "X,Y,Z":
         return ",".join(rng.choice(COORDINATES) for _ in range(3))
     if "|" in option.type and option.type not in TYPICAL:
@@ -80,7 +79,6 @@ def typical(rng, option):
 
 
 def odd(rng, option):
-    """Returns a value that is likely to be refused."""
     if option.type == "X,Y,Z":
         return ",".join(number(rng) for _ in range(rng.choice((3, 3, 2, 4))))
     return "x".join(number(rng) for _ in range(2)) if option.type == "WxH" else number(rng)
@@ -218,7 +216,6 @@ def ended_when_too_long(case):
 
 
 def options(rng, seeds, _):
-    """Random options for every subcommand."""
     make = rng.choice((solve, solve, solve, render_scene, render_solution, probe, report, compare, info, bench, make_scene))
     case = make(rng, seeds)
     case.description = " ".join(case.arguments)

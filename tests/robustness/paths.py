@@ -19,8 +19,6 @@ def as_bytes(text):
 
 
 def folder_of(name):
-    """Creates the folders of a file."""
-
     def prepare(folder):
         for parent in (os.path.dirname(name), os.path.dirname(os.path.normpath(name))):
             os.makedirs(folder / parent, exist_ok=True)
@@ -145,7 +143,6 @@ def through_link(rng, seeds):
 
 
 def into_pipe(rng, seeds):
-    """A pipe receives all bytes."""
     key = rng.choice([key for key in WRITERS if len(WRITERS[key].outputs) == 1])
     command = WRITERS[key]
     name = command.output()

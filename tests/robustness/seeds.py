@@ -39,7 +39,6 @@ def render_to(name, *options):
 PATH_TRACING = ("--shading", "path", "--view", "room-0", "--size", "4x3", "--samples", "4")
 PATH = ("render", "room.mgf", "-o", "out.exr", "--error-image", "error.exr", *PATH_TRACING)
 
-# Commands that write files.
 WRITERS = {
     "solve": Command(("solve", "room.mgf", "-o", "out.h5", "--view", "room-0", *ROOM_RAYS), SCENE, ("out.h5",)),
     "render .png": render_to("out.png"),

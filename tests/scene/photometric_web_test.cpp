@@ -16,7 +16,6 @@ namespace {
 using testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 
-/// Tabulates a function of polar angle and azimuth [degrees].
 PhotometricWeb web_of(const std::vector<float>& polar, const std::vector<float>& azimuth,
                       const std::function<float(float, float)>& intensity) {
     PhotometricWeb web;

@@ -12,7 +12,6 @@ namespace {
 
 using Random = std::mt19937_64;
 
-/// A rectangle preprocessed for many rays.
 struct Target {
     V3d corner, normal, to_u, to_v;  // to_u . (x - corner) is the coordinate along u, in [0, 1] inside
     explicit Target(const Rectangle& r)

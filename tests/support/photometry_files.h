@@ -22,7 +22,6 @@ struct IesText {
     std::string str() const;
 };
 
-/// The same for EULUMDAT.
 struct LdtText {
     int symmetry = 0;
     std::vector<double> c{0}, gamma{0, 90};  ///< [degrees]

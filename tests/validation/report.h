@@ -10,7 +10,6 @@ namespace interflect::testing_support {
 /// Runs of a random result, with seeds 1, 2, ...
 inline constexpr int runs = 16;
 
-/// Mean and standard error of the mean of independent runs.
 struct Estimate {
     double mean = 0, standard_error = 0;
 };

@@ -110,7 +110,6 @@ class Bake(bpy.types.Operator):
 
     @classmethod
     def stop(cls, context):
-        """Ends a running bake at once."""
         cls.running.cancel()
         cls.running.wait()
         _end_progress(context)

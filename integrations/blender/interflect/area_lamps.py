@@ -66,7 +66,6 @@ def _left_out(lamp, area):
 
 
 def _outline(light):
-    """Returns the corners of the lamp's face, and their area."""
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     if light.shape in ("RECTANGLE", "SQUARE"):

@@ -19,8 +19,6 @@ LEFT_OUT_TYPES = ("META", "CURVES", "VOLUME", "POINTCLOUD", "GPENCIL")
 
 
 class Exported:
-    """A written scene: names of its objects, and warnings."""
-
     def __init__(self, objects: list[str], warnings: list[str]):
         self.objects, self.warnings = objects, warnings
 
@@ -56,7 +54,6 @@ def _left_out(rendered):
 
 
 def camera_names(path: Path) -> list[str]:
-    """Returns the names of the cameras in an exported scene."""
     content = path.read_bytes()
     (length,) = struct.unpack_from("<I", content, 12)  # length of the JSON, after the headers of the file and the chunk
     nodes = json.loads(content[20 : 20 + length]).get("nodes", [])

@@ -34,7 +34,6 @@ def collections(scene) -> list:
 
 
 def warnings(scene) -> list[str]:
-    """Returns the warnings of the bake that made the result."""
     return [warning for collection in collections(scene) for warning in collection.get(WARNINGS, "").splitlines()]
 
 
