@@ -1,5 +1,5 @@
-// The kernels that the solver spends its time in, each alone: `build/release/bin/kernels`. Where a figure is for one of
-// many, items a second are counted: points, rays, arrivals, elements. To compare two commits use bench/compare.
+// Benchmarks of the solver's main kernels: `build/release/bin/kernels`. Items per second are points, rays, arrivals or
+// elements. To compare two commits use bench/compare.
 
 #include <benchmark/benchmark.h>
 
@@ -29,13 +29,13 @@ void count_items(benchmark::State& state, std::size_t items_each) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items_each));
 }
 
-/// A furnished maze of nine rooms that has been solved with few rays: mesh, light and importance are there.
+/// A furnished maze of nine rooms, solved with few rays, with mesh, light and importance.
 struct SolvedMaze {
     Scene scene = make_maze({.rooms = 9, .furniture = true});
     Materials materials{scene};
     RayCaster ray_caster{scene};
     Solution solution = solve(scene, ray_caster, options());
-    ElementForest& forest = const_cast<ElementForest&>(*solution.forest);  // it does not grow any further, see step()
+    ElementForest& forest = const_cast<ElementForest&>(*solution.forest);  // does not grow further, see step()
 
     SolveOptions options() const {
         SolveOptions o{.method = find_method("srr")};

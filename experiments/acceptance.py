@@ -1,8 +1,8 @@
-"""Measures what the solver promises against its targets: `experiments/run acceptance --rows abd`.
+"""Measures the solver against its targets: `experiments/run acceptance --rows abd`.
 
-Every measured value is a row of results/acceptance.csv; what is there already is not measured again, so delete the file after
-a change of the solver. The table is printed and written to docs/figures/acceptance.md. References are path-traced, and their
-noise, which the path tracer tells, is subtracted from mean square errors.
+Each measured value is a row of results/acceptance.csv. Existing rows are not measured again, so delete the file after a
+change of the solver. The table is printed and written to docs/figures/acceptance.md. References are path-traced. Their
+noise, which the path tracer estimates, is subtracted from mean square errors.
 """
 
 import csv
@@ -28,7 +28,7 @@ CYCLES = f"{SCENES}/reference/office-graz.cycles4096.240x135.hdr"
 
 
 class Bench:
-    """Runs the program and keeps values in TABLE."""
+    """Runs the program and stores values in TABLE."""
 
     def __init__(self):
         WORK.mkdir(parents=True, exist_ok=True)
@@ -40,7 +40,7 @@ class Bench:
             TABLE.write_text(",".join(COLUMNS) + "\n")
 
     def measure(self, row: str, case: str, seed: int, command: str, found) -> None:
-        """Enters the values that found() returns by their names, unless they are there."""
+        """Stores the named values returned by found(), unless the table contains them."""
         if any((r["row"], r["case"], r["seed"]) == (row, case, str(seed)) for r in self.rows):
             return
         print(f"{row}: {case}, seed {seed}", file=sys.stderr, flush=True)
@@ -52,7 +52,6 @@ class Bench:
                 csv.DictWriter(file, COLUMNS, lineterminator="\n").writerow(self.rows[-1])
 
     def values(self, row: str, quantity: str) -> dict[str, list[float]]:
-        """By case, in the order of the seeds."""
         found = defaultdict(list)
         for r in self.rows:
             if (r["row"], r["quantity"]) == (row, quantity):
@@ -69,25 +68,24 @@ class Bench:
         return last | {"emitted_power": header["emitted_power"]}
 
     def picture(self, view: str, options: str) -> Path:
-        """Of the last solution."""
         path = self._folder / "picture.exr"
         self.run(f"render {self._folder}/solved.h5 {view} {options} -o {path}")
         return path
 
     def reference(self, scene: str, view: str, size: str, paths: int) -> tuple[Path, np.ndarray]:
-        """A path-traced picture and the standard error of its luminance, kept in WORK."""
+        """Returns a path-traced picture and the standard error of its luminance, cached in WORK."""
         name = re.sub(r"\W+", "-", f"{Path(scene).name} {view} {size} {paths}")
         path, error = WORK / f"{name}.exr", WORK / f"{name}-error.exr"
         if not error.is_file():
             options = f"--shading path --no-mirrors --size {size} --samples {paths} --seed 99"
             self.run(f"render {scene} {view} {options} -o {path} --error-image {error}")
-        return path, luminance(read_exr(error))  # channels err together, as most light is nearly white
+        return path, luminance(read_exr(error))  # the channels are correlated: most light is nearly white
 
     def compare(self, picture: Path, reference: Path) -> dict:
         return json.loads(self.run(f"compare {picture} {reference} --json"))
 
     def relative_mse(self, picture: Path, reference: Path, noise: np.ndarray) -> float:
-        """As `compare` has it, less what the reference's noise causes."""
+        """Returns the value from `compare`, less the contribution of the reference's noise."""
         wanted = luminance(read_exr(reference))
         floor = np.mean(noise**2 / (wanted**2 + (0.01 * wanted.mean()) ** 2))
         return self.compare(picture, reference)["relative_mse"] - float(floor)
@@ -116,7 +114,7 @@ def table_a(bench: Bench):
 
 
 def difference(values: list[float], reference: float = 1.0) -> str:
-    """Mean and, of several, the standard deviation."""
+    """Formats the mean and, for several values, the standard deviation."""
     ratio = np.array(values) / reference - 1
     return f"{ratio.mean():+.2%}" + (f" (± {ratio.std(ddof=1):.2%})" if len(ratio) > 1 else "")
 
@@ -151,13 +149,13 @@ def table_b(bench: Bench):
 
 
 def is_near_lamp(reference: np.ndarray) -> np.ndarray:
-    """Pixels that see a lamp, even a twentieth of one, and those beside them."""
+    """Returns the mask of pixels in which a lamp covers at least a twentieth, and their neighbours."""
     bright = reference > max(0.05 * reference.max(), 8 * np.median(reference))
     return widest(bright)
 
 
 def widest(values: np.ndarray) -> np.ndarray:
-    """The largest of the 3 x 3 pixels around each."""
+    """Computes the maximum over the 3 x 3 pixels around each pixel."""
     padded = np.pad(values, 1, mode="edge")
     height, width = values.shape
     return np.max([padded[y : y + height, x : x + width] for y in range(3) for x in range(3)], axis=0)
@@ -173,7 +171,7 @@ HONEST = [
 
 
 def made(bench: Bench, options: str) -> str:
-    """A scene that `make-scene` makes, once; two-rooms by default."""
+    """Returns a scene generated by `make-scene`, cached; two-rooms by default."""
     path = WORK / f"{re.sub(r'[^a-z0-9]+', '-', options)}.mgf"
     if not path.is_file():
         bench.run(f"make-scene {options} -o {path}")
@@ -185,7 +183,7 @@ def measure_c(bench: Bench) -> None:
         for name, scene, view in HONEST:
             if scene == "two-rooms":
                 scene = made(bench, scene)
-            reference, noise = bench.reference(scene, view, "1280x720", 16)  # the pixels that the solver assumes
+            reference, noise = bench.reference(scene, view, "1280x720", 16)  # size assumed by the solver's estimate
             wanted = luminance(read_exr(reference))
             kept = ~is_near_lamp(wanted)
             for seed in (1, 2):
@@ -218,7 +216,7 @@ def table_c(bench: Bench):
         yield f"estimated over true error: {case}", "0.8 to 1.25", figure, len(estimated)
 
 
-TURNED = [  # room, eye, point looked at with the lamp out of frame, with it in frame
+TURNED = [  # room, camera, target with the lamp out of frame, target with it in frame
     ("two-rooms", "0.3,0.3,1.6", "2.3,2.3,1.45", "2.3,2.3,1.65", "--fov 45"),
     ("two-rooms --furniture", "0.3,0.3,1.6", "2.3,2.3,1.45", "2.3,2.3,1.65", "--fov 45"),
 ]
@@ -291,7 +289,7 @@ def table_g(bench: Bench):
 
 
 def with_tiny_lamps(source: Path, target: Path) -> None:
-    """Lamps of a hundredth of the area and a hundred times the exitance; every tenth face twice."""
+    """Shrinks lamps to a hundredth of the area, with a hundred times the exitance, and duplicates every tenth face."""
     lines, points, lamp_vertices, material, faces = [], {}, set(), "", 0
     for line in source.read_text().splitlines():
         words = line.split()
@@ -310,7 +308,7 @@ def with_tiny_lamps(source: Path, target: Path) -> None:
             if faces % 10 == 0:
                 lines.append(line)
         lines.append(line)
-    # A lamp's vertices are also its housing's, so that the housing shrinks to a pyramid that the lamp closes.
+    # A lamp shares its vertices with its housing, so the housing shrinks to a pyramid closed by the lamp.
     for names in lamp_vertices:
         centre = sum(points[name][1] for name in names) / len(names)
         for name in names:
@@ -346,11 +344,11 @@ def table_h(bench: Bench):
 
 
 LARGEST_WORLD, CENTRE = 256, 55  # rooms, 16 in a row; the room of the view
-WITHIN = {1: 9, 2: 25, 4: 72, 16: 256}  # rooms away from it in either direction: rooms of that world
+WITHIN = {1: 9, 2: 25, 4: 72, 16: 256}  # distance from it in rooms, in either direction: number of rooms
 
 
 def cut_world(source: Path, target: Path, within: int) -> None:
-    """The rooms near CENTRE alone; so worlds of any size have the same room in the middle, and the same doors."""
+    """Keeps only the rooms near CENTRE, so that worlds of any size have the same room and doors in the middle."""
     rooms_in_row = math.isqrt(LARGEST_WORLD)
     kept, lines = True, []
     for line in source.read_text().splitlines(keepends=True):
@@ -364,7 +362,7 @@ def cut_world(source: Path, target: Path, within: int) -> None:
 
 
 COMPARED = {1: "room-0", 16: "room-5", 64: "room-27"}  # worlds in which both methods are measured
-LADDERS = {  # million rays, by rooms
+LADDERS = {  # million rays, by number of rooms
     "ihsrr": {rooms: (0.5, 1, 2, 4) for rooms in COMPARED},
     "hsrr": {1: (0.5, 1, 2, 4), 16: (4, 16, 48), 64: (32, 96, 192)},
 }
@@ -384,7 +382,7 @@ def measure_f(bench: Bench) -> None:
         for method, worlds in LADDERS.items():
             for rooms, ladder in worlds.items():
                 if furniture and rooms == 64:
-                    continue  # hours
+                    continue  # would take hours
                 scene = f"maze:{rooms}{':furniture' if furniture else ''}"
                 seeds = {rays * (4 if furniture else 1): (1, 2, 3) if rays <= 4 else (1,) for rays in ladder}
                 measure_errors(bench, scene, scene, COMPARED[rooms], method, seeds)
@@ -409,7 +407,8 @@ def measure_errors(bench: Bench, case: str, scene: str, view: str, method: str, 
 
 
 def needed(bench: Bench, case: str, method: str):
-    """Million rays and elements for SAME_ERROR, and whether that was extrapolated; None where too little was measured."""
+    """Returns the million rays and elements for SAME_ERROR, and whether they are extrapolated; None with fewer than two
+    measurements."""
     errors, elements = bench.values("f", "relative MSE"), bench.values("f", "elements")
     prefix = f"{case} {method} "
     cases = sorted((float(c.removeprefix(prefix)), c) for c in errors if c.startswith(prefix) and np.mean(errors[c]) > 0)

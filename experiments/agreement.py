@@ -1,7 +1,7 @@
-"""Gathered pictures against path-traced ones, scene by scene: `experiments/run agreement`.
+"""Compares gathered pictures with path-traced ones, scene by scene: `experiments/run agreement`.
 
-Rays and samples grow together: the error has to fall with both, and the mean has to stay. What is there in results/agreement.csv
-already is not measured again. Pictures side by side, the gathered one as people get it, go to docs/pictures.
+Rays and samples grow together. The error must fall with both, and the mean must stay. Existing rows of
+results/agreement.csv are not measured again. Pairs of pictures, gathered with default options, go to docs/pictures.
 """
 
 import sys
@@ -29,9 +29,9 @@ SCENES = {
     "cube": f"{program.SCENES}/cube.mgf --eye 4.9,0.3,6 --look-at 4.9,9,3.5 --fov 75",
 }
 SIDE_BY_SIDE = ["office", "maze", "office-graz", "office2", "corridor"]
-REFERENCE_PATHS = 128  # and as many once more
+REFERENCE_PATHS = 128  # per picture; the reference has two
 WORKS = [(250_000, 4), (1_000_000, 8), (4_000_000, 16), (16_000_000, 32)]  # rays to solve with, samples
-MORE_WORKS = {"corridor": [(64_000_000, 32)]}  # where the mean needs a finer mesh
+MORE_WORKS = {"corridor": [(64_000_000, 32)]}  # needs a finer mesh for its mean
 TARGET_MEAN = 0.005
 
 
@@ -78,7 +78,7 @@ def gathered(command: program.Program, scene_and_view: str, options: str) -> np.
 
 
 def put_side_by_side(left: np.ndarray, right: np.ndarray, path: Path) -> None:
-    """At one exposure, which shows the 98th percentile of luminance as white."""
+    """Shows both at one exposure, which maps the 98th percentile of luminance to white."""
     both = np.concatenate([left, np.ones((left.shape[0], 8, 3)) * np.inf, right], axis=1)
     linear = np.clip(both / np.percentile(luminance(right), 98), 0, 1)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)  # sRGB

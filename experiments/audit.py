@@ -1,8 +1,9 @@
-"""Awkward scenes against path-traced pictures: `experiments/run audit`, with `--only cornell soup` those scenes only.
+"""Compares difficult scenes with path-traced pictures: `experiments/run audit`; `--only cornell soup` selects scenes.
 
-Each scene is solved with ihsrr and hsrr for a view, by rays and by error, and some also without a view. Targets: mean within 1% of
-path tracing, blocks of 9 x 9 pixels within 3%, estimated over true error 0.8 to 1.25. References are path-traced once per scene and view,
-for all builds; rows of results/audit.csv that this build has measured are not measured again.
+Each scene is solved with ihsrr and hsrr for a view, with a limit on rays and one on the error; some also without a
+view. Targets: mean within 1% of path tracing, blocks of 9 x 9 pixels within 3%, estimated over true error 0.8 to 1.25.
+References are path-traced once per scene and view, for all builds. Rows of results/audit.csv from the same build are
+not measured again.
 """
 
 import hashlib
@@ -20,30 +21,31 @@ from lab.picture import luminance, read_exr
 WORK = program.ROOT / "out/experiments/cache/audit"
 TABLE = program.ROOT / "experiments/results/audit.csv"
 BLOCK = 9
-BLOCK_PICTURE_ROWS = 90  # of the picture of 160 x 90 pixels in which blocks are counted
+BLOCK_PICTURE_ROWS = 90  # height of the picture of 160 x 90 pixels in which blocks are counted
 TARGETS = {"mean": (0.99, 1.01), "blocks": (0.0, 0.03), "estimate": (0.8, 1.25), "total": (0.995, 1.005)}
 RUNS = [(method, limit) for method in ("ihsrr", "hsrr") for limit in ("rays", "5%")]
 
-# Known reasons why scenes miss a target; printed beside misses.
+# Known reasons for missed targets; printed beside misses.
 REASONS: dict[str, str] = {}
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Rays, pixels and samples of a measurement: the defaults, or few to try it."""
+    """Rays, pixels and samples of a measurement; QUICK is for trials."""
 
     rays: int = 8_000_000
-    size: tuple[int, int] = (1280, 720)  # the pixels that the solver's estimate assumes
+    size: tuple[int, int] = (1280, 720)  # the size that the solver's estimate assumes
     samples: int | None = None  # paths per pixel of each reference picture; None: Scene.samples
-    most_rays: int = 64_000_000  # where an error is asked for
-    total_rays: int = 60_000_000  # of random walks, for the total power
+    most_rays: int = 64_000_000  # for runs with an error limit
+    total_rays: int = 60_000_000  # random walks for the total power
 
 
 QUICK = Scale(50_000, (160, 90), 4, 100_000, 200_000)
 
 
 class Reference:
-    """Two independent path-traced pictures of reflected light. Their noise drops out of products of differences from both."""
+    """Two independent path-traced pictures of reflected light. Their noise cancels in products of differences from
+    both."""
 
     SEEDS = (98, 99)
 
@@ -59,10 +61,10 @@ class Reference:
         with np.load(kept) as arrays:
             self.pictures = [arrays[f"reflected{seed}"].astype(float) for seed in self.SEEDS]
             self.shines, self.surface = arrays["shines"], arrays["surface"]
-        # Only reflected light is compared: without lamps, skies and the pixels beside them.
+        # Only reflected light is compared, so lamps, skies and the pixels beside them are excluded.
         self.counts = ~widened(self.shines)
         self.mean = np.mean(sum(self.pictures)[self.counts]) / 2
-        self.side = BLOCK * scale.size[1] // BLOCK_PICTURE_ROWS  # of a block, in pixels
+        self.side = BLOCK * scale.size[1] // BLOCK_PICTURE_ROWS  # block size in pixels
 
     def _trace(self, command, scene: Scene, options: str, kept: Path, name: str, text: str) -> None:
         print(f"{name}: reference", file=sys.stderr, flush=True)
@@ -85,29 +87,29 @@ class Reference:
         return float(picture[self.counts].mean() / self.mean)
 
     def error_of_mean(self) -> float:
-        """Relative standard error of the reference's mean."""
+        """Returns the relative standard error of the reference's mean."""
         differences = (self.pictures[0] - self.pictures[1])[self.counts]
         return float(np.sqrt((differences**2).sum()) / 2 / self.mean / differences.size)
 
     def block_error(self, picture: np.ndarray) -> float:
-        """Root mean square error of blocks over the mean of the picture."""
+        """Returns the root mean square error of blocks over the mean of the picture."""
         first, second = (self._blocks(picture - p) for p in self.pictures)
         return math.sqrt(max(0.0, float(np.mean(first * second)))) / self.mean
 
     def block_noise(self) -> float:
-        """Noise of the mean of both pictures, in the unit of block_error()."""
+        """Returns the noise of the mean of both pictures, in the unit of block_error()."""
         return float(np.sqrt(np.mean(self._blocks(self.pictures[0] - self.pictures[1]) ** 2))) / 2 / self.mean
 
     def _blocks(self, values: np.ndarray) -> np.ndarray:
-        """Means of blocks, without those of which less than half is compared."""
+        """Returns the means of the blocks in which at least half of the pixels are compared."""
         rows, columns = (side // self.side for side in values.shape)
         cut = lambda v: v[: rows * self.side, : columns * self.side].reshape(rows, self.side, columns, self.side)
         weights = cut(self.counts.astype(float)).mean(axis=(1, 3))
         return (cut(np.where(self.counts, values, 0.0)).mean(axis=(1, 3)) / np.maximum(weights, 1e-9))[weights >= 0.5]
 
     def pixel_error(self, picture: np.ndarray) -> tuple[float, float, float]:
-        """The error that the solver estimates (docs/method.md, Errors): root mean square error of a pixel's reflected light over
-        the picture's mean. Then its standard error, and the error among the pixels that show a surface."""
+        """Returns the error that the solver estimates (docs/method.md, Errors): root mean square error of a pixel's
+        reflected light over the picture's mean; then its standard error, and the error among pixels with a surface."""
         product = (picture - self.pictures[0]) * (picture - self.pictures[1])
         visible = self.counts | ~self.surface  # pixels without a surface have neither light nor error
         product, light = np.where(self.counts, product, 0.0), np.where(self.counts, sum(self.pictures) / 2, 0.0)
@@ -120,7 +122,7 @@ class Reference:
 
 
 def widened(mask: np.ndarray) -> np.ndarray:
-    """Any of the 3 x 3 pixels around each."""
+    """Returns whether any of the 3 x 3 pixels around each is set."""
     padded = np.pad(mask, 1)
     height, width = mask.shape
     return np.any([padded[y : y + height, x : x + width] for y in range(3) for x in range(3)], axis=0)
@@ -130,7 +132,7 @@ def widened(mask: np.ndarray) -> np.ndarray:
 class Bench:
     command: program.Program
     scale: Scale
-    folder: Path  # of references and of scenes
+    folder: Path  # for references and scenes
     table: Path
 
     def measure(self, name: str, seeds: int) -> None:
@@ -195,7 +197,7 @@ class Bench:
             return read_exr(Path(file.name))
 
     def total(self, path: Path, scene: Scene) -> float:
-        """Total over emitted power by random walks, which have no mesh."""
+        """Estimates the total over emitted power by random walks, which need no mesh."""
         options = f"{scene.options} --method random-walk --rays {self.scale.total_rays} --seed 97"
         key = hashlib.sha256(scene.text.encode() + options.encode()).hexdigest()[:16]
         kept = self.folder / f"{path.stem}-{key}.total"
@@ -219,7 +221,7 @@ def read_rows(table: Path) -> list[dict]:
 
 
 def misses(row: dict) -> list[str]:
-    """Names of the targets that a row misses; nan, in columns without a figure, misses none."""
+    """Returns the names of the targets that a row misses; columns without a figure are nan and miss none."""
     found = {"mean": row["mean"], "blocks": row["blocks"], "estimate": row["estimate_over_error"], "total": row["total_over_reference"]}
     return [name for name, (low, high) in TARGETS.items() if not math.isnan(found[name]) and not low <= found[name] <= high]
 

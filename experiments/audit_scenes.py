@@ -1,4 +1,4 @@
-"""Awkward scenes for experiments/audit.py, as MGF text with a view. They are the same on every machine and in every run."""
+"""Difficult scenes for experiments/audit.py, as MGF text with a view; identical on every machine and in every run."""
 
 import math
 import random
@@ -13,7 +13,7 @@ Point = Sequence[float]
 
 
 class Mgf:
-    """Writes materials and faces. Faces show their front to viewers who see their corners counter-clockwise."""
+    """Writes materials and faces. The front of a face is the side from which its corners run counter-clockwise."""
 
     def __init__(self, scale: float = 1.0, offset: Point = (0, 0, 0)):
         self._lines: list[str] = []
@@ -32,7 +32,7 @@ class Mgf:
         self._lines += [f"\t{line}" for line in (f"sides {sides}", *properties)]
 
     def lamp(self, name: str, exitance: float, reflectance: float = 0.1) -> None:
-        """Its light is white, whatever the colour before."""
+        """The lamp is white and resets the colour."""
         self.material(name, f"rd {reflectance}", f"ed {exitance}")
 
     def vertex(self, point: Point, *properties: str) -> str:
@@ -46,12 +46,12 @@ class Mgf:
         self._lines += [f"m {material}", f"f {' '.join(corners)}"]
 
     def quad(self, material: str, corner: Point, u: Point, v: Point) -> None:
-        """A parallelogram, seen from where u x v points."""
+        """Adds a parallelogram, visible from the side of u x v."""
         a, u, v = np.array(corner, float), np.array(u, float), np.array(v, float)
         self.face(material, a, a + u, a + u + v, a + v)
 
     def box(self, material: str, low: Point, size: Point, turn: float = 0.0, inwards: bool = False, without: str = "") -> None:
-        """Turned about the z-axis through its middle by so many degrees; without the sides named, such as "-z"."""
+        """Adds a box, rotated about the vertical axis through its middle by `turn` degrees, without some sides ("-z")."""
         self.sides(dict.fromkeys(("-x", "+x", "-y", "+y", "-z", "+z"), material), low, size, turn, inwards, without)
 
     def sides(self, materials: dict[str, str], low: Point, size: Point, turn=0.0, inwards=False, without="") -> None:
@@ -75,13 +75,13 @@ class Mgf:
                 self.face(materials[name], *(points[::-1] if inwards else points))
 
     def fixture(self, lamp: str, low: Point, size: Point, ceiling: float | None = None, shines: str = "-z") -> None:
-        """A closed box with one luminous side; with `ceiling`, it reaches up to the ceiling."""
+        """Adds a closed box with one luminous side; with `ceiling`, it reaches up to the ceiling."""
         size = [*size[:2], ceiling - low[2]] if ceiling else size
         housing = dict.fromkeys(("-x", "+x", "-y", "+y", "-z", "+z"), "grey")
         self.sides(housing | {shines: lamp}, low, size, without="+z" if ceiling else "")
 
     def room(self, size: Point, without: str = "") -> None:
-        """Four paints, whose names others may use: white, grey, red and blue."""
+        """Defines four paints for use elsewhere: white, grey, red and blue."""
         self.material("white", "rd 0.71")
         self.material("grey", "rd 0.34")
         self.material("red", "rd 0.27", colour=(0.45, 0.34))
@@ -90,7 +90,7 @@ class Mgf:
         self.sides(paints, (0, 0, 0), size, inwards=True, without=without)
 
     def wall_with_hole(self, material: str, corner: Point, u: Point, v: Point, hole: Point) -> None:
-        """A parallelogram without the part from u0, v0 to u1, v1 (`hole`, as shares of its sides)."""
+        """Adds a parallelogram without the part from u0, v0 to u1, v1 (`hole`, as shares of its sides)."""
         a, u, v = np.array(corner, float), np.array(u, float), np.array(v, float)
         u0, v0, u1, v1 = hole
         for left, bottom, right, top in ((0, 0, u0, 1), (u1, 0, 1, 1), (u0, 0, u1, v0), (u0, v1, u1, 1)):
@@ -104,11 +104,11 @@ class Scene:
     look_at: Point
     fov: float = 60.0
     up: Point = (0, 0, 1)
-    options: str = ""  # of the commands that read it
-    reference_text: str = ""  # the same scene in a form that the path tracer draws without error
+    options: str = ""  # for commands that read it
+    reference_text: str = ""  # the same scene in a form that the path tracer draws exactly
     total: bool = False  # also solve it without a view, and compare the total power
-    images: dict[str, np.ndarray] = field(default_factory=dict)  # files beside it
-    samples: int = 8  # paths a pixel of each of the two reference pictures
+    images: dict[str, np.ndarray] = field(default_factory=dict)  # image files beside it
+    samples: int = 8  # paths per pixel of each of the two reference pictures
 
     def view(self) -> str:
         places = [",".join(f"{x:g}" for x in place) for place in (self.eye, self.look_at, self.up)]
@@ -124,7 +124,7 @@ class Scene:
 
 
 def cornell(size: float = 1.0, offset: Point = (0, 0, 0)) -> Scene:
-    """The Cornell box as measured, in units of 10 mm times `size`; its front is open."""
+    """The measured Cornell box, in units of 10 mm times `size`; its front is open."""
     unit = 0.01 * size
     m = Mgf(unit, offset)
     m.material("white", "rd 0.74")
@@ -150,7 +150,6 @@ def cornell(size: float = 1.0, offset: Point = (0, 0, 0)) -> Scene:
 
 
 def soup() -> Scene:
-    """100,000 small triangles in a closed room."""
     m, random_ = Mgf(), random.Random(1)
     m.room((6.2, 5.1, 3.3))
     m.lamp("lamp", 9000)
@@ -176,7 +175,6 @@ def white_box() -> Scene:
 
 
 def huge_lamp() -> Scene:
-    """A hall whose whole ceiling shines."""
     m = Mgf()
     m.room((31, 17, 6), "+z")
     m.lamp("lamp", 700, 0.45)
@@ -187,7 +185,7 @@ def huge_lamp() -> Scene:
 
 
 def furnish(m: Mgf) -> None:
-    """Four boxes in a room of 5.2 x 4.1 x 2.8 m."""
+    """Adds four boxes in a room of 5.2 x 4.1 x 2.8 m."""
     m.box("blue", (1.4, 2.1, 0), (0.9, 0.7, 0.75), 20, without="-z")
     m.box("white", (3.3, 1.0, 0), (0.6, 0.6, 1.6), -35, without="-z")
     m.box("red", (2.5, 3.2, 0), (1.1, 0.4, 1.1), 4, without="-z")
@@ -195,7 +193,6 @@ def furnish(m: Mgf) -> None:
 
 
 def tiny_lamp() -> Scene:
-    """A lamp of 1 mm x 1 mm."""
     m = Mgf()
     m.room((5.2, 4.1, 2.8))
     furnish(m)
@@ -229,7 +226,7 @@ def pane() -> Scene:
 
 
 def textured_emitter() -> Scene:
-    """An emitter with an image of very different texels, beside a wall."""
+    """An emitter whose texels differ strongly, beside a wall."""
     m, random_ = Mgf(), random.Random(3)
     m.room((5.2, 4.1, 2.8))
     furnish(m)
@@ -243,8 +240,8 @@ def textured_emitter() -> Scene:
 
 
 def coincident_faces() -> Scene:
-    """Faces twice at one place, pairs that face each other's backs, a rug in the plane of the floor, boxes with common faces.
-    Whichever of coincident faces is hit, its paint is the same."""
+    """Duplicate faces, coincident faces back to back, a rug in the plane of the floor, and boxes with common faces.
+    Coincident faces have the same paint."""
     m = Mgf()
     m.room((5.2, 4.1, 2.8))
     furnish(m)
@@ -262,7 +259,7 @@ def coincident_faces() -> Scene:
 
 
 def house(m: Mgf, hole: Point) -> None:
-    """A house of 5.2 x 4.1 x 2.8 m with walls of no thickness, and a window in its wall x = 0."""
+    """Adds a house of 5.2 x 4.1 x 2.8 m with walls of zero thickness, and a window in its wall x = 0."""
     for name, share in (("white", 0.71), ("grey", 0.34), ("red", 0.27), ("blue", 0.42)):
         m.material(name, f"rd {share}", sides=2)
     m.sides({s: "grey" if s == "-z" else "white" for s in ("+x", "-y", "+y", "-z", "+z")} | {"-x": "white"}, (0, 0, 0), (5.2, 4.1, 2.8), without="-x")
@@ -271,7 +268,6 @@ def house(m: Mgf, hole: Point) -> None:
 
 
 def sun_window() -> Scene:
-    """Parallel sunlight through a window of 0.41 x 0.42 m."""
     m = Mgf()
     house(m, (0.4, 0.5, 0.5, 0.65))
     m.add(f"light directional {m.vertex((0, 0, 0), 'n 0.8 0.22 -0.5')} 60000")
@@ -279,7 +275,7 @@ def sun_window() -> Scene:
 
 
 def black_wall() -> Scene:
-    """The view shows little but a wall that reflects 0.4%, beside a corner; the light falls in steeply."""
+    """The view shows mostly a wall that reflects 0.4%, beside a corner; the light falls in steeply."""
     m = Mgf()
     m.room((5.2, 4.1, 2.8), "+y")
     m.material("black", "rd 0.004")
@@ -292,7 +288,7 @@ def black_wall() -> Scene:
 
 
 def slivers() -> Scene:
-    """A floor of triangles of 4 m x 1.3 mm, across which a shadow falls."""
+    """A floor of triangles of 4 m x 1.3 mm, crossed by a shadow."""
     m = Mgf()
     m.room((4.0, 1.3, 2.4), "-z")
     for k in range(1000):
@@ -332,7 +328,7 @@ def up_lights() -> Scene:
 
 
 def slit() -> Scene:
-    """Two rooms joined by a slit of 1 cm; the view is in the one without a lamp."""
+    """Two rooms joined by a slit of 1 cm; the view shows the room without a lamp."""
     m = Mgf()
     m.room((7.5, 3.2, 2.7))
     m.box("white", (4.0, 0.01, 0), (0.1, 3.19, 2.7), without="+y -z +z")
@@ -344,7 +340,7 @@ def slit() -> Scene:
 
 
 def landscape(m: Mgf, clear: float) -> None:
-    """Hills of 1 km x 1 km around a flat square of side 2 `clear` at height 0."""
+    """Adds hills of 1 km x 1 km around a flat square of side 2 `clear` at height 0."""
     m.material("grass", "rd 0.19", sides=2, colour=(0.35, 0.42))
     random_, n, step = random.Random(5), 24, 1000 / 24
     heights = [[random_.uniform(0, 22) for _ in range(n + 1)] for _ in range(n + 1)]
@@ -361,7 +357,6 @@ def landscape(m: Mgf, clear: float) -> None:
 
 
 def outdoor() -> Scene:
-    """Houses in a landscape of 1 km under the sun and a clear sky."""
     m, random_ = Mgf(), random.Random(6)
     landscape(m, 130)
     for name, share in (("white", 0.68), ("brick", 0.24)):
@@ -385,7 +380,7 @@ def landscape_window() -> Scene:
 
 
 def one_sided_sheet() -> Scene:
-    """A sheet of one side between lamp and wall: light that comes from behind passes it, as documented."""
+    """A one-sided sheet between lamp and wall. Light from behind passes it, as documented."""
     m = Mgf()
     m.room((5.2, 4.1, 2.8))
     furnish(m)
@@ -397,7 +392,7 @@ def one_sided_sheet() -> Scene:
 
 
 def t_junctions() -> Scene:
-    """Walls and floor of tiles whose corners lie on the edges of others."""
+    """Walls and floor of tiles whose corners lie on the edges of other tiles."""
     m, random_ = Mgf(), random.Random(7)
     m.room((5.2, 4.1, 2.8), "-z +y")
     furnish(m)
@@ -417,14 +412,14 @@ def t_junctions() -> Scene:
 
 
 def quad_or_triangles(m: Mgf, material: str, corners: Sequence[Point], triangles: bool) -> None:
-    """The triangles that rays hit: quadrilaterals are divided between the second corner and the fourth."""
+    """Adds a quadrilateral, or its triangles for ray intersection: split between the second corner and the fourth."""
     a, b, c, d = corners
     for points in ((a, b, d), (c, d, b)) if triangles else (corners,):
         m.face(material, *points)
 
 
 def both_ways(make: Callable[[bool], Mgf], *view) -> Scene:
-    """A scene of quadrilaterals that are not planar, with triangles in their place for the reference."""
+    """A scene of non-planar quadrilaterals, which the reference replaces with triangles."""
     return Scene(make(False).text(), *view, reference_text=make(True).text())
 
 
@@ -457,8 +452,8 @@ def non_planar_tiles() -> Scene:
 
 
 def displaced_corner() -> Scene:
-    """Two rooms divided by one quadrilateral with a corner displaced by 1 mm. The view shows the room with a twentieth of the
-    light."""
+    """Two rooms divided by one quadrilateral with a corner displaced by 1 mm. The view shows the room with a twentieth
+    of the light."""
 
     def make(triangles: bool) -> Mgf:
         m = Mgf()

@@ -1,4 +1,4 @@
-"""How iterations are averaged: the program's schedule against the paper's, at equal rays."""
+"""Averaging of iterations: the program's schedule against the paper's, at equal rays."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Error against rays, of every method, with fitted slopes."""
+"""Error against rays for each method, with fitted slopes."""
 
 import dataclasses
 from pathlib import Path
@@ -52,7 +52,8 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
 
 
 def relative_rmse(runs: list[Row]) -> Curve:
-    """Against rays; of links, whose runs have a threshold each and one budget, in the order of their rays."""
+    """Returns error against rays. Link methods have a run per threshold, all in one budget, sorted by rays.
+    """
     if len({row["seed"] for row in runs}) == 1:
         x, y = np.array(sorted((row["rays"], row["relative_mse_flat"]) for row in runs)).T
         return Curve(x, np.sqrt(y), np.full(len(x), np.nan), 0)

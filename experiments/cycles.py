@@ -1,7 +1,7 @@
-"""Rooms that Blender exports, gathered here and path-traced by Cycles from the same file: `experiments/run cycles`.
+"""Compares pictures of rooms from Blender, gathered here, with Cycles' from the same file: `experiments/run cycles`.
 
-Needs Blender 3.4. What Cycles found is kept in out/experiments/cache/cycles; what is in results/cycles.csv already is not measured
-again. Pictures side by side, ours on the left, go to docs/pictures.
+Needs Blender 3.4. Pictures by Cycles are kept in out/experiments/cache/cycles. Existing rows of results/cycles.csv are
+not measured again. Pairs of pictures, ours on the left, go to docs/pictures.
 """
 
 import subprocess
@@ -25,7 +25,7 @@ TARGET_MEAN, TARGET_BLOCK = 0.03, 0.05
 
 
 def blender(out: Path, script: str, *arguments) -> None:
-    """Runs a script of this folder that makes `out`, which is told by what is there: Blender's exit code is 0 either way."""
+    """Runs a script of this folder. The file `out` proves success, because Blender always exits with code 0."""
     command = ["blender", "-b", "--factory-startup", "--python", SCRIPTS / script, "--", *map(str, arguments)]
     try:
         done = subprocess.run(command, capture_output=True, text=True)
@@ -67,7 +67,7 @@ def measure() -> None:
 
 
 def gathered(command: program.Program, scene_and_view: str) -> tuple[np.ndarray, np.ndarray]:
-    """The picture, and which pixels count: those where no lamp is seen, and something is."""
+    """Returns the picture and the mask of compared pixels, which show a surface but no lamp."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.exr"
         options = f"--size {WIDTH}x{HEIGHT} --rays 16M --samples 64 --layers"
@@ -78,8 +78,8 @@ def gathered(command: program.Program, scene_and_view: str) -> tuple[np.ndarray,
 
 
 def differences(ours: np.ndarray, references: list[np.ndarray], counts: np.ndarray) -> dict:
-    """Of the means, and of blocks relative to the reference's: root mean square without the reference's noise, and how many
-    are beyond the target."""
+    """Compares the means, and the blocks: root mean square relative to the reference, without its noise, and the
+    share of blocks beyond the target."""
     found, (first, second) = luminance(ours), map(luminance, references)
     mean = (first + second) / 2
     weight = box_mean(counts.astype(float), BLOCK_RADIUS)

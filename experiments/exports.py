@@ -1,8 +1,7 @@
-"""Scenes exported to Blender against the path tracer here: `experiments/run exports`.
+"""Compares scenes exported to Blender with the path tracer here: `experiments/run exports`.
 
-Cycles finds the light of the script that `interflect export` writes, by its own path tracing, so that units, cameras,
-materials, images and light sources are all in the comparison. Both pictures are means of many paths; blocks of 9 x 9
-pixels have little of their noise left.
+Cycles path-traces the script written by `interflect export`. The comparison therefore covers units, cameras, materials,
+images and light sources. Pictures are means of many paths; blocks of 9 x 9 pixels have little noise left.
 """
 
 import json
@@ -25,7 +24,7 @@ SHELL = "".join(
 BALL = "m clay =\n\trd 0.6\nv centre =\n\tp 0 0 0\n\tn 0 0 1\nring centre 0 5\nv ball =\n\tp 0 0 0.8\nsph ball 0.8\n"
 IN_ROOM = '{"views": [{"name": "door", "eye": [0.3, 0.2, 1.6], "look_at": [1.2, 3, 1], "up": [0, 0, 1], "fov": 60}]}'
 AT_BALL = '{"views": [{"name": "ball", "eye": [5, -4, 2.5], "look_at": [0, 0, 0.5], "up": [0, 0, 1], "fov": 45}]}'
-# What each adds to the comparison: a file and its views, or a scene that is there, and options of reading.
+# File and its views, or an existing scene; options for reading it.
 SCENES = {
     "office": ("scenes/office.mgf", None, ""),
     "maze": ("maze:4:furniture", None, ""),
@@ -62,7 +61,6 @@ def measure() -> None:
 def pictures(
     command: program.Program, folder: Path, scene: str, views: str | None, options: list[str]
 ) -> list[np.ndarray]:
-    """Of the first view: ours, and that of Cycles."""
     if views:
         (folder / "scene.mgf").write_text(scene)
         (folder / "scene.views.json").write_text(views)
@@ -86,7 +84,6 @@ def pictures(
 
 
 def blocks(picture: np.ndarray) -> np.ndarray:
-    """Means over squares of pixels."""
     rows, columns = (side // BLOCK for side in picture.shape)
     return picture[: rows * BLOCK, : columns * BLOCK].reshape(rows, BLOCK, columns, BLOCK).mean(axis=(1, 3))
 

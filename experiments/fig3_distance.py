@@ -9,7 +9,7 @@ from lab.statistics import ratio_at
 from lab.tasks import Entry, ladder, reference_of
 
 DISTANCES = ["perceptual_distance_smooth", "relative_mse_flat", "relative_mse_smooth"]
-TIMES = 6  # of the table
+TIMES = 6  # rows of the table
 
 
 def entries(config: dict) -> list[Entry]:
@@ -34,7 +34,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
 
 
 def write_ratios(config: dict, series: dict[str | float, list[Row]], folder: Path) -> None:
-    """The error with importance over that without, at times that both have reached."""
+    """Writes the ratio of the error with importance to that without, at times that both have reached."""
     importance, none = (series[method["name"]] for method in config["methods"])
     curves = {d: [results.curve(runs, "seconds", d) for runs in (importance, none)] for d in DISTANCES}
     a, b = curves[DISTANCES[0]]

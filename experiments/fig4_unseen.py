@@ -1,4 +1,4 @@
-"""Figure 4: importance, and what hierarchical and flat importance-driven solutions make of rooms that are not seen."""
+"""Figure 4: importance, and hierarchical and flat importance-driven solutions in rooms outside the view."""
 
 from pathlib import Path
 

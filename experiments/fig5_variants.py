@@ -51,7 +51,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
     write_effects(names, rows, folder)
 
 
-# What a variant's name tells: what it has, and what it has instead or without.
+# Parts of a variant's name: the part that marks the choice, and its replacement.
 EFFECTS = {
     "separate over combined": ("si", "ci"),
     "with hi over without": ("+hi", ""),
@@ -60,7 +60,8 @@ EFFECTS = {
 
 
 def write_effects(names: list[str], rows: list[Row], folder: Path) -> None:
-    """What one choice does to the distance while the others stay: of each two variants, and the mean over all seeds."""
+    """Writes the effect of each choice on the distance, with the others fixed: for each pair, and the mean over all
+    seeds."""
     lines = []
     for effect, (has, instead) in EFFECTS.items():
         pairs = [(name, name.replace(has, instead)) for name in names if has in name]

@@ -1,9 +1,9 @@
-"""How far gathered pictures are from path-traced ones, against the time that they take: `experiments/run gathering`.
+"""Error of gathered pictures against their time: `experiments/run gathering`.
 
-Pictures of office-graz at 960 x 540 pixels: by final gathering with and without the filter, as the elements are (smooth) and by path
-tracing. What is there in results/gathering.csv already is not measured again. Two path-traced pictures are the reference, so that
-their noise does not count. Time is that of all processors, with reading and solving the scene, over two of them: other work on the
-machine does not count.
+Pictures of office-graz at 960 x 540 pixels: final gathering with and without the filter, smooth elements, and path
+tracing. Existing rows of results/gathering.csv are not measured again. The reference consists of two path-traced
+pictures, whose noise cancels. Time is the processor time of reading, solving and drawing, divided by two processors, so
+other work on the machine does not count.
 """
 
 import resource
@@ -21,7 +21,7 @@ SCENE = f"{program.SCENES}/office-graz.mgf"
 VIEW = "--eye 3.7037,0.0788,2.2690 --look-at 1.0023,8.9229,-1.1130 --size 960x540"
 REFERENCE_PATHS = 96
 PROCESSORS = 2
-WORKS = {  # series: rays to solve with (path tracing needs none), and samples
+WORKS = {  # series: rays to solve with (0 for path tracing), samples
     "gathered": [(1_000_000, 4), (2_000_000, 8), (4_000_000, 16), (8_000_000, 32)],
     "gathered and filtered": [(1_000_000, 4), (2_000_000, 8), (4_000_000, 16), (8_000_000, 32)],
     "smooth": [(2_000_000, 16), (5_000_000, 16), (10_000_000, 16), (20_000_000, 16), (40_000_000, 16)],

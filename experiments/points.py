@@ -1,4 +1,4 @@
-"""Error against rays with scrambled Sobol' points and with pseudo-random numbers."""
+"""Error against rays: scrambled Sobol' points against pseudo-random numbers."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What one room's view costs, against the size of the world that the room is in."""
+"""Cost of the view of one room against the size of the world around it."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,21 +25,20 @@ def entries(config: dict) -> list[Entry]:
 
 @dataclass(frozen=True)
 class Need:
-    """What a method needs in a world to get its error down to the target."""
+    """Cost of a method in one world to reach the target error."""
 
     rooms: int
     rays: float
     seconds: float
     elements: float
     peak_mib: float
-    measured: bool  # False: extrapolated from the runs there are
+    measured: bool  # False: extrapolated
 
 
 COSTS = ["rays", "seconds", "elements", "peak_mib"]
 
 
 def needs_of(config: dict, runs: list[Row]) -> list[Need]:
-    """Of one method, in the worlds it was run in."""
     needs = []
     for world in config["worlds"]:
         here = [row for row in runs if row["scene"] == world["scene"]]
@@ -83,7 +82,6 @@ def draw_needs(axes, worlds: list[Need], cost: str, label: str, number: int) -> 
 
 
 def draw_errors(config: dict, rows: list[Row], folder: Path) -> None:
-    """What the needs are read from: error against rays in each world."""
     figure, axes = drawing.panels(len(config["worlds"]), size=(2.2, 2.7), share_y=True)
     for ax, world in zip(axes, config["worlds"]):
         here = results.grouped((row for row in rows if row["scene"] == world["scene"]), "series")

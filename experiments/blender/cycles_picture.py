@@ -1,6 +1,7 @@
-"""Renders a glTF file with Cycles: `blender -b --python cycles_picture.py -- FILE.glb CAMERA WIDTH HEIGHT SAMPLES SEED OUT.exr`.
+"""Renders a glTF file with Cycles: `blender -b --python cycles_picture.py -- FILE.glb CAMERA WIDTH HEIGHT SAMPLES SEED
+OUT.exr`.
 
-What Interflect does not have is taken out of the file as it is imported: surfaces that are not Lambertian, interpolated normals,
+Removes features that Interflect lacks from the imported file: surfaces that are not Lambertian, interpolated normals,
 soft lamps and Cycles' own shortcuts (clamping, few bounces). A lumen in the file is a watt in Blender.
 """
 
@@ -9,7 +10,7 @@ import sys
 import bpy
 import numpy
 
-numpy.bool = bool  # Debian 12 pairs an importer that uses the old name with a NumPy that has dropped it
+numpy.bool = bool  # Debian 12's importer uses the old name, which its NumPy has dropped
 
 
 def main(path, camera, width, height, samples, seed, out) -> None:
@@ -30,7 +31,7 @@ def main(path, camera, width, height, samples, seed, out) -> None:
 
 
 def make_lambertian(material) -> None:
-    """Blender's principled surface is none even without gloss: it is up to a fifth brighter where light grazes it."""
+    """Replaces Blender's principled surface, which even without gloss is up to a fifth brighter at grazing light."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     principled = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
     diffuse, emission, both = (nodes.new(f"ShaderNode{kind}") for kind in ("BsdfDiffuse", "Emission", "AddShader"))

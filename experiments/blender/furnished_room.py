@@ -1,7 +1,8 @@
 """A furnished room as Blender exports it: `blender -b --python furnished_room.py -- OUT.glb [textured]`.
 
-Walls are boxes on one large floor. An area lamp (a panel that emits), a point lamp, a spot lamp and the sun, through a window, light
-it. Materials are diffuse. Lights are exported without Blender's 683 lm/W, so that a watt in Blender is a lumen in the file.
+Walls are boxes on one large floor. Light sources: an area lamp (a panel that emits), a point lamp, a spot lamp, and the
+sun through a window. Materials are diffuse. Lights are exported without Blender's 683 lm/W, so a watt in Blender is a
+lumen in the file.
 """
 
 import sys
@@ -88,7 +89,7 @@ def build_walls(plaster, floor) -> None:
     box("west", (-WALL, -WALL, 0), (0, y + WALL, z), plaster)
     box("north", (0, y, 0), (x, y + WALL, z), plaster)
     box("south", (0, -WALL, 0), (x, 0, z), plaster)
-    # the east wall has a window
+    # The east wall has a window.
     y0, y1, z0, z1 = 1.2, 3.1, 0.85, 2.2
     box("east-below", (x, -WALL, 0), (x + WALL, y + WALL, z0), plaster)
     box("east-above", (x, -WALL, z1), (x + WALL, y + WALL, z), plaster)
@@ -136,7 +137,7 @@ def build_lamps() -> None:
         data = bpy.data.lights.new(name, kind)
         data.energy = energy
         if kind == "SPOT":
-            data.spot_size, data.spot_blend = 0.9, 0  # glTF's and Blender's soft edges differ
+            data.spot_size, data.spot_blend = 0.9, 0  # soft edges differ between glTF and Blender
         made = bpy.data.objects.new(name, data)
         made.location, made.rotation_euler = location, rotation
         bpy.context.collection.objects.link(made)

@@ -1,1 +1,1 @@
-"""What the experiments have in common: running the command and remembering what it found, statistics, drawing."""
+"""Shared by the experiments: running the command, caching its results, statistics, drawing."""

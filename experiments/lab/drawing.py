@@ -1,4 +1,4 @@
-"""The look of the figures, and how they are written."""
+"""Style and output of the figures."""
 
 import base64
 import io
@@ -30,10 +30,10 @@ JPEG_QUALITY = 90  # of 100
 
 class Quality(NamedTuple):
     resolution: int  # dots per inch
-    palette: bool = False  # PNG: 256 colours, which suits drawings and meshes more than pictures
+    palette: bool = False  # PNG: 256 colours, better for drawings and meshes than for photographs
 
 
-# Of these the first that makes a file small enough.
+# The first that makes a file small enough is used.
 QUALITIES = [Quality(140), Quality(120), Quality(100), Quality(120, palette=True), Quality(90, palette=True)]
 
 COUNTS = ("rays", "elements")
@@ -62,7 +62,7 @@ plt.rcParams.update(
         "legend.frameon": False,
         "lines.linewidth": 1.4,
         "lines.markersize": 4.5,
-        "svg.hashsalt": "interflect",  # the same figure, the same bytes
+        "svg.hashsalt": "interflect",  # for identical bytes of identical figures
     }
 )
 
@@ -70,26 +70,25 @@ plt.rcParams.update(
 def panels(
     columns: int, rows: int = 1, *, size: tuple[float, float] = (3.1, 2.9), share_y: bool = False
 ) -> tuple[Figure, list[Axes]]:
-    """A figure of panels, each `size` inches wide and high; they are listed row by row."""
+    """Creates a figure of panels, each `size` inches wide and high, listed row by row."""
     whole = (size[0] * columns, size[1] * rows)
     figure, axes = plt.subplots(rows, columns, figsize=whole, layout="constrained", squeeze=False, sharey=share_y)
     return figure, list(axes.flat)
 
 
 def style_of(number: int) -> dict:
-    """Colour and marker of the number-th series, from 0."""
     return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
 
 
 def draw_curve(axes: Axes, c: Curve, label: str, number: int, **style) -> None:
-    """A line through the means and its confidence band."""
+    """Draws a line through the means and its confidence band."""
     style = style_of(number) | style
     axes.plot(c.x, c.y, label=label, **style)
     axes.fill_between(c.x, c.y / c.band, c.y * c.band, color=style["color"], alpha=0.18, linewidth=0)
 
 
 def logarithmic(axes: Axes, x: str, y: str) -> None:
-    """Both axes in logarithms, named by LABELS where the quantities are columns."""
+    """Sets both axes logarithmic, with names from LABELS for columns."""
     axes.set(xscale="log", yscale="log", xlabel=LABELS.get(x, x), ylabel=LABELS.get(y, y))
     for axis, quantity in ((axes.xaxis, x), (axes.yaxis, y)):
         low, high = axis.get_view_interval()
@@ -99,7 +98,7 @@ def logarithmic(axes: Axes, x: str, y: str) -> None:
 
 
 def show_picture(axes: Axes, picture: str, title: str) -> None:
-    """A picture that `interflect render` made; its path as in the CSV."""
+    """Shows a picture from `interflect render`; its path is as in the CSV."""
     path = ROOT / picture
     if not path.is_file():
         raise ExperimentError(f"the picture {picture} is gone: run the experiment again without --only-draw")
@@ -122,7 +121,7 @@ def save(figure: Figure, folder: Path, name: str, caption: str) -> None:
 
 
 def _write_svg(figure: Figure, path: Path, quality: Quality) -> int:
-    """With its pictures as JPEG, a quarter of the size that matplotlib's have. Returns the file's size."""
+    """Embeds pictures as JPEG, a quarter of the size of matplotlib's. Returns the file's size."""
 
     def as_jpeg(match: re.Match) -> str:
         data = io.BytesIO()
@@ -135,7 +134,6 @@ def _write_svg(figure: Figure, path: Path, quality: Quality) -> int:
 
 
 def _write_png(figure: Figure, path: Path, quality: Quality) -> int:
-    """Returns the file's size."""
     figure.savefig(path, dpi=quality.resolution, metadata={"Software": None}, bbox_inches="tight", facecolor="white")
     if quality.palette:
         Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
@@ -143,12 +141,11 @@ def _write_png(figure: Figure, path: Path, quality: Quality) -> int:
 
 
 def shared_legend(figure: Figure, axes: Axes, columns: int) -> None:
-    """One legend for all panels, above them."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=columns)
 
 
 def guide(axes: Axes, x: Iterable[float], y: float, slope: float, label: str) -> None:
-    """A grey line of that slope from y at the first x."""
+    """Draws a grey line with this slope from y at the first x."""
     x = np.asarray(list(x), dtype=float)
     axes.plot(x, y * (x / x[0]) ** slope, color="#999999", linestyle=":", linewidth=1.2, label=label)

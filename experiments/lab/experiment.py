@@ -1,4 +1,4 @@
-"""An experiment: NAME.py beside NAME.toml, which say what to run and how to draw it."""
+"""An experiment: NAME.toml defines the runs, NAME.py beside it draws the results."""
 
 import importlib
 import tomllib
@@ -18,8 +18,6 @@ BEYOND = ["world-size", "convergence", "points", "averaging"]
 
 @dataclass(frozen=True)
 class Places:
-    """Where results go."""
-
     results: Path  # NAME.csv
     figures: Path  # NAME.svg, NAME.png, tables
 
@@ -32,7 +30,8 @@ COMMITTED = Places(FOLDER / "results", ROOT / "docs/figures")
 
 
 class Experiment:
-    """Its module has `entries(config)`, the tasks, and `draw(config, rows, folder)`, which makes the figures."""
+    """Its module has `entries(config)`, which returns the tasks, and `draw(config, rows, folder)`, which makes the
+    figures."""
 
     def __init__(self, name: str, config: Path | None = None, quick: bool = False):
         self.name = name
@@ -41,7 +40,7 @@ class Experiment:
         self.entries: list[Entry] = self.module.entries(self.config)
 
     def collect(self, store: Store, places: Places) -> None:
-        """Writes NAME.csv from tasks that are done, if there are any."""
+        """Writes NAME.csv from the finished tasks, if the experiment has any entries."""
         rows = [{"series": entry.series, **store.row(entry.task)} for entry in self.entries]
         if rows:
             results.write_csv(places.results / f"{self.name}.csv", rows)
@@ -57,7 +56,7 @@ class Experiment:
 
 
 def read_config(path: Path, quick: bool) -> dict:
-    """What is in the file; for a quick run, the table `quick` lies over the rest."""
+    """Reads the file. For a quick run, its table `quick` overrides the rest."""
     with path.open("rb") as file:
         config = tomllib.load(file)
     over = config.pop("quick", {})

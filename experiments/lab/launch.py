@@ -1,7 +1,7 @@
-"""Runs a command and writes what it cost to a file: launch.py FILE COMMAND...
+"""Runs a command and writes its cost to a file: launch.py FILE COMMAND...
 
-In a process of its own, since the kernel begins a child's largest memory at the size of its parent, which must be small
-then: this one has imported nothing large.
+This is a separate process that imports no large module, because the kernel initialises a child's peak memory with the
+size of its parent.
 """
 
 import json
@@ -11,7 +11,7 @@ import sys
 import time
 
 report, *command = sys.argv[1:]
-signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the command's, which ends in its own way
+signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is left to the command
 begin = time.monotonic()
 process = os.posix_spawn(command[0], command, os.environ, setsigdef=[signal.SIGINT])
 _, status, usage = os.wait4(process, 0)

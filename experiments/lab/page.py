@@ -1,4 +1,4 @@
-"""docs/results.md as a page of HTML that holds its figures, so that it can be sent as one file."""
+"""Writes docs/results.md as a single HTML file with embedded figures."""
 
 import base64
 import re
@@ -15,7 +15,7 @@ TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 def write_page(source: Path, target: Path) -> None:
-    """Figures are those that the text links to, beside it."""
+    """Embeds the figures that the text links to, relative to its folder."""
     body = markdown.markdown(source.read_text(), extensions=["tables", "fenced_code"])
 
     def embedded(match: re.Match) -> str:

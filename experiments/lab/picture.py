@@ -1,4 +1,4 @@
-"""Reads the pictures that `interflect render` writes as OpenEXR."""
+"""Reads the OpenEXR pictures of `interflect render`."""
 
 import struct
 import zlib
@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-LINES_PER_BLOCK = 16  # of ZIP compression
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709
+LINES_PER_BLOCK = 16  # with ZIP compression
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # linear Rec. 709
 
 
 def read_exr(path: Path, layer: str = "") -> np.ndarray:
-    """Height x width x RGB, of a layer such as "emitted" (default: the picture itself). Only what this program writes: 32 bit
-    floats, scan lines, ZIP."""
+    """Returns height x width x RGB of a layer such as "emitted" (default: the picture itself). Reads only the files of
+    this program: 32 bit floats, scan lines, ZIP."""
     data = path.read_bytes()
     attributes, position = {}, 8
     while data[position]:
@@ -59,7 +59,7 @@ def _unzipped(packed: bytes, size: int) -> bytes:
 
 
 def noise_floor(picture: Path, error: Path) -> float:
-    """The relative MSE (docs/metrics.md) that the picture's noise alone causes; `error` has its standard error."""
+    """Returns the relative MSE (docs/metrics.md) due to noise alone; `error` is the picture's standard error."""
     wanted, deviation = read_exr(picture), read_exr(error)
     mean = luminance(wanted).mean()
     return float(np.mean(deviation**2 / (wanted**2 + (0.01 * mean) ** 2)))

@@ -1,4 +1,4 @@
-"""Runs the `interflect` command and tells what it cost and on what machine."""
+"""Runs the `interflect` command and reports its cost and the machine."""
 
 import hashlib
 import json
@@ -14,31 +14,31 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 INTERRUPTED = 130  # exit code of the command after Ctrl-C
 BUILT = "build/release/bin/interflect"
-SCENES = "$INTERFLECT_SCENES"  # in a path: the folder of scenes that are no part of this repository
+SCENES = "$INTERFLECT_SCENES"  # in a path: folder of scenes outside this repository
 
 
 class ExperimentError(Exception):
-    """Something that the reader can mend; the message says how."""
+    """A problem that the user can solve; the message explains how."""
 
 
 @dataclass(frozen=True)
 class Program:
     path: Path
-    version: str  # and the last commit of its sources, where scripts/build made it
-    fingerprint: str  # of the executable: what another build found is never taken for this one's
+    version: str  # and the last commit of its sources, for builds by scripts/build
+    fingerprint: str  # of the executable; results of different builds are kept apart
     machine: str
 
 
 @dataclass(frozen=True)
 class Finished:
-    output: str  # what it printed to stdout
-    messages: str  # and to stderr
-    seconds: float  # from start to end, reading the scene included
-    peak_mib: float  # largest resident memory
+    output: str  # stdout
+    messages: str  # stderr
+    seconds: float  # wall time, including reading the scene
+    peak_mib: float  # peak resident memory
 
 
 def find_program() -> Program:
-    """The command that the environment variable INTERFLECT_COMMAND names, else the one that scripts/build makes."""
+    """Returns the command in the environment variable INTERFLECT_COMMAND, else the build of scripts/build."""
     named = os.environ.get("INTERFLECT_COMMAND")
     path = Path(named or ROOT / BUILT)
     if not path.is_file():
@@ -52,15 +52,14 @@ def find_program() -> Program:
 
 
 def expanded(text: str) -> str:
-    """With the folder that SCENES stands for: that of the environment variable, else ../shared/scenes."""
+    """Replaces SCENES with its environment variable, else ../shared/scenes."""
     return text.replace(SCENES, os.environ.get(SCENES[1:], str(ROOT.parent / "shared/scenes")))
 
 
 def run(program: Program, arguments: list[str]) -> Finished:
     """Runs `interflect ARGUMENTS`, with SCENES in them expanded, in the repository's root.
 
-    Raises ExperimentError with the command and the end of what it said, where it fails; KeyboardInterrupt where it was
-    interrupted.
+    Raises ExperimentError with the command and the end of its messages on failure, KeyboardInterrupt on interruption.
     """
     with tempfile.NamedTemporaryFile("r") as report:
         launch = [sys.executable, "-I", "-S", Path(__file__).with_name("launch.py"), report.name]
@@ -69,7 +68,7 @@ def run(program: Program, arguments: list[str]) -> Finished:
         try:
             output, messages = process.communicate()
         finally:
-            process.wait()  # on Ctrl-C the command ends by itself, and leaves nothing behind
+            process.wait()  # on Ctrl-C the command ends by itself, and removes its temporary files
         cost = json.loads(report.read())
     if cost["exit_code"] in (INTERRUPTED, -signal.SIGINT):
         raise KeyboardInterrupt
@@ -80,13 +79,13 @@ def run(program: Program, arguments: list[str]) -> Finished:
 
 
 def read_stats(path: Path) -> tuple[dict, dict]:
-    """What `solve --stats` wrote: its first line, and that of the last iteration."""
+    """Returns the header of a file from `solve --stats` and the line of its last iteration."""
     lines = path.read_text().splitlines()
     return json.loads(lines[0]), json.loads(lines[-1])
 
 
 def _commit() -> str:
-    """The last commit of the program's sources, in parentheses; marked where they have changed since."""
+    """Returns the last commit of the program's sources, in parentheses; marked if the sources have changed since."""
     sources = ["src", "apps", "cmake", "CMakeLists.txt", "CMakePresets.json"]
 
     def git(*arguments: str) -> str:

@@ -1,4 +1,4 @@
-"""Rows of results: as CSV files, by series and budget, and as Markdown tables."""
+"""Rows of results: CSV files, groups by series and budget, and Markdown tables."""
 
 import csv
 import math
@@ -24,7 +24,7 @@ def write_csv(path: Path, rows: Iterable[dict], columns: Iterable[str] = COLUMNS
 
 
 def read_csv(path: Path, texts: Collection[str] = TEXT) -> list[Row]:
-    """All columns as numbers except `texts`; empty cells are nan."""
+    """Reads all columns as numbers except `texts`; empty cells are nan."""
 
     def value(column: str, text: str) -> str | float:
         return text if column in texts else float(text or math.nan)
@@ -34,7 +34,7 @@ def read_csv(path: Path, texts: Collection[str] = TEXT) -> list[Row]:
 
 
 def grouped(rows: Iterable[Row], column: str) -> dict[str | float, list[Row]]:
-    """By the values of a column, in the order in which they are met."""
+    """Groups rows by the values of a column, in order of first appearance."""
     groups: dict[str | float, list[Row]] = {}
     for row in rows:
         groups.setdefault(row[column], []).append(row)
@@ -46,13 +46,13 @@ def values(rows: Iterable[Row], column: str) -> np.ndarray:
 
 
 def curve(rows: Iterable[Row], x: str, y: str) -> statistics.Curve:
-    """Of one series: the columns x and y over its budgets."""
+    """Returns the curve of one series: the columns x and y over its budgets."""
     budgets = grouped(sorted(rows, key=lambda row: row["budget"]), "budget").values()
     return statistics.curve([(values(seeds, x), values(seeds, y)) for seeds in budgets])
 
 
 def write_table(path: Path, header: list[str], lines: Iterable[Iterable[str]]) -> None:
-    """A Markdown table, to be put into a text."""
+    """Writes a Markdown table, to be included in a text."""
     path.parent.mkdir(parents=True, exist_ok=True)
     rule = ["---"] * len(header)
     path.write_text("".join(f"| {' | '.join(line)} |\n" for line in [header, rule, *lines]))
@@ -70,7 +70,8 @@ COST_AND_ERRORS: dict[str, tuple[str, Callable[[np.ndarray], str]]] = {
 
 
 def write_summary(path: Path, rows: Iterable[Row]) -> None:
-    """A line for each series and budget: its cost and errors, means over the seeds with their confidence intervals."""
+    """Writes a line for each series and budget: its cost and errors, means over the seeds with their confidence
+    intervals."""
     lines = []
     for series, runs in grouped(rows, "series").items():
         for budget, seeds in grouped(runs, "budget").items():

@@ -1,4 +1,4 @@
-"""What several seeds say together. Errors are positive and spread by factors, so all is done in their logarithms."""
+"""Statistics over several seeds. Errors are positive and vary by factors, so all are computed in logarithms."""
 
 import math
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ CONFIDENCE = 0.95
 
 
 def student_t(degrees: int, confidence: float = CONFIDENCE) -> float:
-    """The t that |T| stays below with this probability, for Student's distribution; degrees of freedom > 0."""
+    """Computes the quantile t of Student's distribution with P(|T| < t) = confidence; degrees of freedom > 0."""
     low, high = 0.0, math.pi / 2
-    for _ in range(60):  # halvings: to the last bit
+    for _ in range(60):  # bisections: to the last bit
         middle = (low + high) / 2
         low, high = (middle, high) if _within(middle, degrees) < confidence else (low, middle)
     return math.sqrt(degrees) * math.tan((low + high) / 2)
@@ -36,19 +36,19 @@ class Curve:
     x: np.ndarray  # geometric means over the seeds
     y: np.ndarray
     spread: np.ndarray  # standard error of log y
-    degrees: int  # of freedom of that; 0: every budget has one seed, and nothing is known
+    degrees: int  # degrees of freedom of spread; 0: every budget has one seed, so spread is unknown
 
     @property
     def band(self) -> np.ndarray:
-        """The factor that y is known to, at each x: it lies between y / band and y * band."""
+        """Confidence factor at each x: y lies between y / band and y * band."""
         return np.exp(student_t(self.degrees) * self.spread) if self.degrees else np.full(len(self.y), np.nan)
 
 
 def curve(budgets: list[tuple[np.ndarray, np.ndarray]]) -> Curve:
-    """From the x and the y of each budget's seeds.
+    """Makes a curve from the x and the y of each budget's seeds.
 
-    The relative spread between seeds is taken to be the same at all budgets and estimated from all together (pooled
-    variance), so that large budgets can do with few seeds.
+    The relative spread between seeds is assumed equal at all budgets and estimated from all together (pooled variance),
+    so that large budgets need few seeds.
     """
     xs = np.array([np.exp(np.mean(np.log(x))) for x, _ in budgets])
     logs = [np.log(y) for _, y in budgets]
@@ -61,7 +61,7 @@ def curve(budgets: list[tuple[np.ndarray, np.ndarray]]) -> Curve:
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """y = factor x^slope; the slope is known to +- half_width."""
+    """y = factor x^slope; half_width is the confidence interval of the slope."""
 
     factor: float
     slope: float
@@ -72,7 +72,7 @@ class PowerLaw:
 
 
 def fit_power_law(x: np.ndarray, y: np.ndarray) -> PowerLaw:
-    """Least squares in logarithms; at least 3 points."""
+    """Fits by least squares in logarithms; at least 3 points."""
     u, v = np.log(x), np.log(y)
     du = u - u.mean()
     slope = float(du @ v / (du @ du))
@@ -83,9 +83,9 @@ def fit_power_law(x: np.ndarray, y: np.ndarray) -> PowerLaw:
 
 
 def crossing(x: np.ndarray, y: np.ndarray, target: float) -> tuple[float, bool]:
-    """The x at which y falls to `target`, and whether that is extrapolated by a fit and not between two points.
+    """Returns the x at which y falls to `target`, and whether it is extrapolated by a fit rather than interpolated.
 
-    x ascends. Where y falls and rises again, the last fall counts.
+    x ascends. If y falls to the target more than once, the last time counts.
     """
     u, v = np.log(x), np.log(y) - math.log(target)
     falls = [k for k in range(len(u) - 1) if v[k] >= 0 > v[k + 1]]
@@ -98,7 +98,7 @@ def crossing(x: np.ndarray, y: np.ndarray, target: float) -> tuple[float, bool]:
 
 @dataclass(frozen=True)
 class Ratio:
-    """A ratio of two errors, known to lie between low and high; these are nan where nothing is known."""
+    """A ratio of two errors with its confidence interval from low to high; nan if unknown."""
 
     value: float
     low: float
@@ -109,7 +109,7 @@ class Ratio:
 
 
 def ratio_at(numerator: Curve, denominator: Curve, x: float) -> Ratio:
-    """Of two curves at the same x, interpolated in logarithms."""
+    """Returns the ratio of two curves at the same x, interpolated in logarithms."""
 
     def at(c: Curve, values: np.ndarray) -> float:
         return float(np.interp(math.log(x), np.log(c.x), values))
@@ -122,7 +122,7 @@ def ratio_at(numerator: Curve, denominator: Curve, x: float) -> Ratio:
 
 
 def mean_ratio(ratios: np.ndarray) -> Ratio:
-    """Geometric mean of ratios that were measured independently, with its confidence interval."""
+    """Returns the geometric mean of independently measured ratios, with its confidence interval."""
     logs = np.log(ratios)
     m = mean(logs)
     return Ratio(math.exp(m.value), math.exp(m.value - m.half_width), math.exp(m.value + m.half_width))
@@ -131,14 +131,14 @@ def mean_ratio(ratios: np.ndarray) -> Ratio:
 @dataclass(frozen=True)
 class Mean:
     value: float
-    half_width: float  # of the confidence interval; nan for one value
+    half_width: float  # half the width of the confidence interval; nan for one value
 
     def __str__(self) -> str:
         return f"{self.value:.3g}" if math.isnan(self.half_width) else f"{self.value:.3g} ± {self.half_width:.1g}"
 
 
 def mean(values: np.ndarray) -> Mean:
-    """With its confidence interval, by Student's distribution."""
+    """Returns the mean with its confidence interval, by Student's distribution."""
     count = len(values)
     if count < 2:
         return Mean(float(np.mean(values)), math.nan)

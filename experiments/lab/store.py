@@ -1,4 +1,4 @@
-"""Does tasks, and remembers what they found by their commands and the program's build."""
+"""Runs tasks and caches their results by command and build of the program."""
 
 import contextlib
 import hashlib
@@ -22,14 +22,14 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Solution:
-    """A solution file, and what is known of the run that made it: values of COLUMNS."""
+    """A solution file, and the values of COLUMNS that describe its run."""
 
     path: Path
     row: dict
 
 
 class Store:
-    """A folder with KEY.json for every task that is done, and beside it the picture where the task is one."""
+    """A folder with KEY.json for every finished task, and its picture if the task is a Picture."""
 
     def __init__(self, program: Program, folder: Path):
         self._program = program
@@ -40,12 +40,12 @@ class Store:
         return self._path(task, "json").exists()
 
     def row(self, task: Task) -> dict:
-        """The values of COLUMNS, but for `series`, of a task that is done."""
+        """Returns the values of COLUMNS for a finished task, except `series`."""
         return json.loads(self._path(task, "json").read_text())
 
     @contextlib.contextmanager
     def solution(self, solve: Solve) -> Iterator[Solution]:
-        """Solves. The solution file is there while the `with` statement lasts: some have tens of megabytes."""
+        """Solves. The solution file, often tens of megabytes, is deleted at the end of the `with` statement."""
         path, stats = self._path(solve, "h5"), self._path(solve, "stats")
         try:
             finished = self.run(solve.arguments(str(path), str(stats)))
@@ -56,14 +56,14 @@ class Store:
             stats.unlink(missing_ok=True)
 
     def trace(self, reference: Reference) -> None:
-        """Renders a path-traced reference, and notes the relative MSE that its noise causes."""
+        """Renders a path-traced reference, and stores the relative MSE due to its noise."""
         picture, error = self._path(reference, "exr"), self._path(reference, "error.exr")
         self.run(reference.arguments(str(picture), str(error)))
         self._path(reference, "json").write_text(json.dumps({"noise": noise_floor(picture, error)}))
         error.unlink()
 
     def do(self, task: Picture | Measure, solution: Solution) -> None:
-        """Does a task of the solution's. What it needs of other solutions, a Measure's reference, must be done."""
+        """Runs a task on the solution. The reference of a Measure must be finished."""
         found = self._draw(task, solution) if isinstance(task, Picture) else self._compare(task, solution)
         path = self._path(task, "json")
         unfinished = path.with_suffix(".part")
@@ -95,7 +95,7 @@ class Store:
         return {"picture": os.path.relpath(path, ROOT)}
 
     def _compare(self, measure: Measure, solution: Solution) -> dict:
-        """Relative MSE less what the reference's noise causes. Below a tenth of that nothing is known."""
+        """Returns the relative MSE without the reference's noise. Below a tenth of that noise it is unknown."""
         reference, noise = measure.reference, 0.0
         if isinstance(reference, Reference):
             found = {"reference": reference.options}
@@ -115,7 +115,7 @@ class Store:
         return found
 
     def _path(self, value: Solve | Task, suffix: str) -> Path:
-        """Where what belongs to `value` is kept; elsewhere for another build or another content of the scene file."""
+        """Returns the path of the results of `value`. Depends on the build and on the content of the scene file."""
         scene = Path(expanded((value if isinstance(value, Solve | Reference) else value.solve).scene))
         content = hashlib.sha256(scene.read_bytes()).hexdigest() if scene.is_file() else ""
         key = hashlib.sha256(f"{self._program.fingerprint}{content}{value}".encode()).hexdigest()[:20]

@@ -1,4 +1,4 @@
-"""What is to be computed, as plain values: a task is known by its commands, so that equal ones are done once."""
+"""Tasks as plain values, identified by their commands, so that equal tasks run once."""
 
 import shlex
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 class Solve:
     """One run of `interflect solve`. Options are written as on the command line."""
 
-    scene: str  # environment variables in it are expanded when it is run
-    view: str  # such as "--view room-4"
-    options: str  # the method and what belongs to it
+    scene: str  # environment variables in it are expanded at run time
+    view: str  # for example "--view room-4"
+    options: str  # the method and its options
     rays: int
     seed: int
 
@@ -22,8 +22,6 @@ class Solve:
 
 @dataclass(frozen=True)
 class Picture:
-    """`interflect render` of a solution."""
-
     solve: Solve
     view: str
     options: str
@@ -33,22 +31,22 @@ class Picture:
         return ["render", solution, "-o", output, *shlex.split(self.view), *shlex.split(self.options)]
 
 
-SHADINGS = ("flat", "smooth")  # the elements as they are; what people look at
+SHADINGS = ("flat", "smooth")  # constant elements; the default shading
 PROBE_SIZE = "320x180"
 
 
 def probe(solve: Solve, view: str, shading: str) -> Picture:
-    """The picture that errors are measured in."""
+    """Returns the picture in which errors are measured."""
     return Picture(solve, view, f"--size {PROBE_SIZE} --samples 64 --shading {shading}", "exr")
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A path-traced probe: it shares neither mesh nor estimator with what is measured against it."""
+    """A path-traced probe, with neither the mesh nor the estimator of the solutions under test."""
 
     scene: str
     view: str
-    paths: int  # a pixel
+    paths: int  # per pixel
     seed: int
 
     @property
@@ -62,7 +60,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Measure:
-    """How far the probes of a solution are from a reference: path-traced, or a long run on the same fixed mesh."""
+    """Error of a solution's probes against a reference: path-traced, or a long run on the same fixed mesh."""
 
     solve: Solve
     view: str
@@ -74,19 +72,19 @@ Task = Picture | Measure | Reference
 
 @dataclass(frozen=True)
 class Entry:
-    """A task as a figure knows it: what its rows are called, and which budget of rays they belong to."""
+    """A task of a figure with the name of its series and its budget of rays."""
 
     series: str
     task: Task
 
 
 def with_iterations(options: str, rays: int, iterations: int | None) -> str:
-    """Adds the size of iterations, so that `iterations` of them use up the rays; None: as the options say."""
+    """Sets the rays per iteration so that `iterations` of them use up the rays; None leaves `options` unchanged."""
     return options if iterations is None else f"{options} --rays-per-iteration {rays // iterations}"
 
 
 def ladder(config: dict, methods: list[dict], reference: Reference | Solve) -> list[Entry]:
-    """Measures each method at each of the `budgets` with as many seeds as `seeds` says for it, in runs of their own."""
+    """Measures each method at each of the `budgets` with the number of seeds in `seeds`, each in a separate run."""
     entries = []
     for method in methods:
         for rays, count in zip(config["budgets"], config["seeds"], strict=True):
@@ -98,7 +96,7 @@ def ladder(config: dict, methods: list[dict], reference: Reference | Solve) -> l
 
 
 def reference_of(config: dict, table: str = "reference") -> Reference | Solve:
-    """What to compare with: same scene and view, and a seed that no measured run has. Path-traced if it has `paths`."""
+    """Returns the reference: same scene and view, with a separate seed. Path-traced if it has `paths`."""
     reference = config[table]
     if "paths" in reference:
         return Reference(config["scene"], config["view"], reference["paths"], reference["seed"])

@@ -1,4 +1,4 @@
-"""The order in which tasks are done, how long they will take, and where they stand."""
+"""Order of the tasks, prediction of their time, and progress."""
 
 import dataclasses
 import sys
@@ -12,7 +12,7 @@ CALIBRATION_RAYS = 4_000_000
 
 
 def with_references(tasks: Iterable[Task]) -> list[Task]:
-    """All that has to be done for `tasks`, each once: the references' pictures first."""
+    """Returns all that `tasks` require, without duplicates; the references' pictures come first."""
     tasks = list(tasks)
     measures = [task for task in tasks if isinstance(task, Measure)]
     wanted = []
@@ -23,7 +23,7 @@ def with_references(tasks: Iterable[Task]) -> list[Task]:
 
 
 def by_solution(tasks: Iterable[Task]) -> dict[Solve, list[Task]]:
-    """Tasks that share a solution together, so that it is solved once; path-traced references have none."""
+    """Groups tasks that share a solution, so that it is solved once; path-traced references have none."""
     groups: dict[Solve, list[Task]] = {}
     for task in (task for task in tasks if not isinstance(task, Reference)):
         groups.setdefault(task.solve, []).append(task)
@@ -31,10 +31,10 @@ def by_solution(tasks: Iterable[Task]) -> dict[Solve, list[Task]]:
 
 
 class Clock:
-    """Foretells how long tasks take, from a short run on this machine; better, the longer it has seen them done."""
+    """Predicts the time of tasks, from a short run on this machine and from the tasks finished so far."""
 
     def __init__(self, store: Store, largest: Solve):
-        """Calibrated by the run that will take longest, cut short."""
+        """Calibrates with a shortened form of the longest run."""
         short = dataclasses.replace(largest, rays=min(-(-largest.rays // 10), CALIBRATION_RAYS))
         begin = time.monotonic()
         with store.solution(short) as solution:
@@ -46,7 +46,6 @@ class Clock:
         self._foretold = self._taken = 0.0
 
     def foretell(self, groups: dict[Solve, list[Task]]) -> float:
-        """Seconds that the groups take."""
         planned = sum(self._planned(solve, tasks) for solve, tasks in groups.items())
         return planned * (self._taken / self._foretold if self._foretold > 0 else 1)
 
@@ -60,7 +59,7 @@ class Clock:
 
 
 def do(tasks: Iterable[Task], store: Store) -> None:
-    """Does what is not done yet. What is finished is kept when it is interrupted."""
+    """Runs the unfinished tasks. After an interruption, finished results remain."""
     missing = [task for task in with_references(tasks) if not store.has(task)]
     for reference in (task for task in missing if isinstance(task, Reference)):
         print(f"Reference: {reference.scene} {reference.view} {reference.options}", file=sys.stderr)

@@ -30,7 +30,7 @@ TEST(Escapes, ReplaceControlCharactersAndWhatIsNotUtf8) {
 }
 
 TEST(Escapes, LoseNothing) {
-    const std::string alphabet = "\\x5cf0\x1b\n\xc3\xa4\xff\xe2\x82";  // what escapes are made of, and what needs them
+    const std::string alphabet = "\\x5cf0\x1b\n\xc3\xa4\xff\xe2\x82";  // parts of escapes, and characters to escape
     std::mt19937 random(1);
     for (int trial = 0; trial < 20'000; ++trial) {
         std::string text(random() % 12, '\0');

@@ -63,7 +63,7 @@ TEST(FixedPoint, IsAsPreciseAsDoublesForAMillionTerms) {
     for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(sum[channel] / exact[channel], 1, 1e-12);
 }
 
-// 10^12 equal terms is too many to add one by one: the integer of one term times their number is their sum.
+// 10^12 equal terms are too many to add: the integer of one term times their number equals their sum.
 class FixedPointTerms : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(FixedPointTerms, NeitherOverflowNorVanish) {

@@ -60,7 +60,7 @@ TEST(PendingFile, LeavesNothingWhenAbandoned) {
     const TemporaryFolder folder;
     {
         const PendingFile file(folder.path() / "out.h5");
-        EXPECT_EQ(entries(folder.path()), 0);  // so that nothing is left by a process that is killed in a long solve
+        EXPECT_EQ(entries(folder.path()), 0);  // a process killed in a long solve leaves no file
         write(file.temporary_path(), "half");
         EXPECT_EQ(entries(folder.path()), 1);
     }
@@ -132,7 +132,7 @@ TEST(PendingFile, WritesIntoPipes) {
     const TemporaryFolder folder;
     const fs::path pipe = folder.path() / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-    const std::string sent(200'000, 'x');  // more than a pipe holds
+    const std::string sent(200'000, 'x');  // exceeds the capacity of a pipe
     std::string received;
     std::thread reader([&] { received = contents(pipe); });
     PendingFile file(pipe);
@@ -221,7 +221,7 @@ TEST(PendingFile, RefusesAMissingFolder) {
 }
 
 TEST(PendingFile, RefusesAFolderInWhichItCannotWrite) {
-    EXPECT_THAT(error_for("/proc/out.h5"), HasSubstr("cannot write '/proc/out.h5'"));  // not even root can
+    EXPECT_THAT(error_for("/proc/out.h5"), HasSubstr("cannot write '/proc/out.h5'"));  // even for root
 }
 
 }  // namespace

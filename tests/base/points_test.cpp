@@ -1,4 +1,4 @@
-// Stratification and uniformity of the points that rays are made from. Seen to fail (scripts/mutation-test) when all
+// Stratification and uniformity of the points that define rays. Seen to fail (scripts/mutation-test) when all
 // dimensions share one scrambling.
 
 #include "interflect/base/points.h"
@@ -20,7 +20,7 @@ using testing_support::false_alarm;
 using testing_support::z_test;
 
 using Point = std::array<float, 4>;
-using Digits = std::array<int, 4>;  // binary digits by which each dimension is divided
+using Digits = std::array<int, 4>;  // number of binary digits by which each dimension is divided
 
 std::vector<Point> points(PointSet set, std::uint64_t key, std::uint64_t first, std::size_t count) {
     std::vector<Point> result;
@@ -35,7 +35,7 @@ std::vector<Point> points(PointSet set, std::uint64_t key, std::uint64_t first, 
     return result;
 }
 
-/// How many of the points lie in each cell that holds any.
+/// Counts the points in each non-empty cell.
 std::map<Digits, int> cell_counts(const std::vector<Point>& points, const Digits& digits) {
     std::map<Digits, int> counts;
     for (const Point& p : points) {
@@ -46,7 +46,7 @@ std::map<Digits, int> cell_counts(const std::vector<Point>& points, const Digits
     return counts;
 }
 
-/// Whether every cell holds the same number of points.
+/// Returns whether every cell holds the same number of points.
 bool is_stratified(const std::vector<Point>& points, const Digits& digits) {
     const std::map<Digits, int> counts = cell_counts(points, digits);
     const std::size_t cells = std::size_t{1} << (digits[0] + digits[1] + digits[2] + digits[3]);
@@ -78,7 +78,7 @@ TEST_P(PointSets, DifferFromKeyToKey) {
     EXPECT_NE(points(GetParam(), 1, 0, 1), points(GetParam(), std::uint64_t{1} << 40, 0, 1));
 }
 
-// Any one point, over many keys, is uniform in every pair of dimensions: what makes the solver unbiased.
+// Each point, over many keys, is uniform in every pair of dimensions. This makes the solver unbiased.
 TEST_P(PointSets, EachPointIsUniformOverTheKeys) {
     constexpr std::size_t side = 8, keys = 8192;
     std::vector<double> p_values;
@@ -112,8 +112,8 @@ TEST(RandomPoints, HaveTheMomentsOfUniformNumbers) {
     EXPECT_GT(bonferroni(p_values), false_alarm);
 }
 
-// Sobol' points with primitive polynomials of degree 0, 1, 2, 3 are a (t, 4)-sequence with t = 0 + 0 + 1 + 2: of every
-// aligned block of 2^k points, each elementary interval of volume 2^(3 - k) holds exactly 8, however it is shaped.
+// Sobol' points with primitive polynomials of degree 0, 1, 2, 3 are a (t, 4)-sequence with t = 0 + 0 + 1 + 2. In every
+// aligned block of 2^k points, each elementary interval of volume 2^(3 - k), of any shape, holds exactly 8.
 TEST(SobolPoints, AlignedBlocksAreStratifiedInFourDimensions) {
     constexpr int k = 9, t = 3, divided = k - t;
     for (const std::uint64_t block : {0, 1, 5, 1'000'000}) {
@@ -126,7 +126,7 @@ TEST(SobolPoints, AlignedBlocksAreStratifiedInFourDimensions) {
     }
 }
 
-// The first two dimensions, the origin of a ray, are even a (0, 2)-sequence: one point in each interval of 2^-k.
+// The first two dimensions, the origin of a ray, are a (0, 2)-sequence: one point in each interval of 2^-k.
 TEST(SobolPoints, OriginsAreStratifiedOnePointACell) {
     constexpr int k = 8;
     for (const std::uint64_t block : {0, 3, 77'777}) {
@@ -170,15 +170,15 @@ TEST(ShuffledPoints, AlignedBlocksAreStratifiedInFourDimensions) {
     }
 }
 
-/// In how many of 256 points of two sequences the first digits of one dimension agree.
+/// Counts the points, out of 256 of two sequences, for which the first digits of one dimension agree.
 int agreements(const std::vector<Point>& one, const std::vector<Point>& other, std::size_t dimension) {
     int count = 0;
     for (std::size_t i = 0; i < one.size(); ++i) count += (one[i][dimension] < 0.5f) == (other[i][dimension] < 0.5f);
     return count;
 }
 
-// Of points that are scrambled alone, the same half of a sequence has the first digit 0 whatever the key: two
-// dimensions of different sequences would cover half of their square only. Shuffled, 128 +- 8 agree.
+// With scrambling alone, the same half of a sequence has the first digit 0 for every key, so two dimensions of
+// different sequences would cover only half of their square. With shuffling, 128 +- 8 agree.
 TEST(ShuffledPoints, OfDifferentKeysAreIndependent) {
     for (std::uint64_t key = 0; key < 64; ++key)
         for (std::size_t d = 0; d < 4; ++d) {

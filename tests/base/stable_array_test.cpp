@@ -18,7 +18,7 @@ TEST(StableArray, IsZeroAndKeepsWhatIsWritten) {
     }
 }
 
-/// More than any machine has: only what is touched is there.
+/// Larger than the memory of any machine; only the pages in use exist.
 TEST(StableArray, ReservesAddressesNotMemory) {
     StableArray<std::uint64_t> array(std::size_t{1} << 36);
     array[std::size_t{1} << 35] = 1;

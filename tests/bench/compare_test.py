@@ -1,4 +1,4 @@
-"""What bench/compare concludes, and that it concludes nothing from noise."""
+"""Conclusions of bench/compare; noise must stay inconclusive."""
 
 import importlib.machinery
 import importlib.util

@@ -1,4 +1,4 @@
-// Points where measuring makes no sense.
+// Measuring points at invalid places.
 #include "interflect/checks/measuring_places.h"
 
 #include <gtest/gtest.h>

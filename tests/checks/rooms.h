@@ -9,13 +9,12 @@ namespace interflect::testing_support {
 /// A closed, dark room of two-sided faces from (0,0,0) to `size`, each wall divided into 8 x 8 patches.
 Scene two_sided_room(V3f size);
 
-/// Leaves out the faces of the ceiling within [low, high] on x and y: whole patches.
+/// Removes the faces of the ceiling within [low, high] in x and y: whole patches.
 void open_ceiling(Scene& scene, V2f low, V2f high);
 
 /// 100 cd in all directions below it.
 std::shared_ptr<PhotometricWeb> downlight();
 
-/// Adds a luminaire that faces `direction`.
 void add_light(Scene& scene, std::shared_ptr<const PhotometricWeb> web, V3f position, V3f direction = {0, 0, -1});
 
 }  // namespace interflect::testing_support

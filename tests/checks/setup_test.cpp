@@ -1,4 +1,4 @@
-// Mistakes of placing, units and axes on both sides of their limits. Sound scenes have no findings.
+// Errors of placement, units and axes on both sides of their limits. Sound scenes have no findings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(Setup, LuminaireInACeilingOrBelowIt) {
         EXPECT_THAT(with_light({1, 1, z}), IsEmpty()) << z;
 }
 
-/// 0.1 mm above the ceiling half of the light was lost, 0.2 mm above it all.
+/// At 0.1 mm above the ceiling half of the light was lost, at 0.2 mm all of it.
 TEST(Setup, LuminaireBehindACeiling) {
     for (const float z : {3.00001f, 3.0001f, 3.0002f, 3.009f})
         EXPECT_THAT(with_light({1, 1, z}), ElementsAre("close-luminaire")) << z;
@@ -82,7 +82,7 @@ TEST(Setup, LuminaireBelowASkylight) {
     EXPECT_THAT(kinds(scene), IsEmpty());
 }
 
-/// A closed solid that is seen from outside, with lights around it.
+/// A closed solid seen from outside, with lights around it.
 TEST(Setup, LuminaireBesideASolid) {
     Scene scene = two_sided_room({1.9f, 4, 4});
     scene.luminaires.push_back({"point", 0, PointLight{{-1, 1, 1}, Rgb(1)}});
@@ -195,7 +195,7 @@ TEST(Setup, MeshInMillimetresReadAsMetres) {
     EXPECT_THAT(with("part.stl", 140, 1), IsEmpty());  // 198 m across
 }
 
-/// A floor with tables on it, all of one-sided boxes; y up where `turned`.
+/// A floor with tables, all made of one-sided boxes; y is up if `turned`.
 Scene furnished_floor(const char* name, bool turned, bool has_objects = true) {
     Scene scene;
     scene.name = name;

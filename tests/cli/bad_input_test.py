@@ -1,4 +1,4 @@
-"""Bad input: exit code 3 at once, a message that names file and line, nothing written."""
+"""Bad input: exit code 3 at once, a message that names file and line, no output."""
 
 import json
 import pathlib
@@ -7,7 +7,7 @@ import unittest
 from command import BAD_INPUT, DONE, LAMP, PAINT, VIEWS, WRONG_USAGE, CommandTest, room, vertices
 
 TRIANGLE = vertices((0, 0, 0), (1, 0, 0), (1, 1, 0))  # six lines
-AT_ONCE = 20  # [s]: far less than the solve would take, far more than any machine needs to refuse it
+AT_ONCE = 20  # [s]: far shorter than the solve, far longer than a refusal takes on any machine
 
 
 class BadInput(CommandTest):
@@ -49,7 +49,7 @@ class BadScene(BadInput):
 
     def test_truncated_file(self):
         text = room()
-        self.assert_bad_scene(text[: text.index("p 1.5 1") + 5], "bad.mgf:")  # "p 1.5": two numbers are gone
+        self.assert_bad_scene(text[: text.index("p 1.5 1") + 5], "bad.mgf:")  # "p 1.5": two numbers are missing
         self.assert_bad_scene(TRIANGLE + "xf -t 1 0", "bad.mgf:7: ", "-t")
 
     def test_faces(self):
@@ -143,7 +143,7 @@ class Limits(CommandTest):
 
 class Clamped(CommandTest):
     def test_reflectance_above_one(self):
-        """Real files have it: it is reduced, with a warning, and the light stays finite."""
+        """Real files have such values: they are reduced with a warning, and the light stays finite."""
         self.write("white.mgf", room().replace("rd .6", "rd 1.5"))
         report = self.json("info", "white.mgf")
         self.assertTrue(any("0.99" in warning["message"] for warning in report["warnings"]), report["warnings"])
@@ -187,7 +187,7 @@ class BadOutput(BadInput):
 
 
 class BadView(BadInput):
-    """Found before the solve, too."""
+    """Faults in views are also found before the solve."""
 
     def setUp(self):
         super().setUp()
@@ -252,7 +252,7 @@ class BadPictureOrSolution(CommandTest):
 
 class GoodScene(CommandTest):
     def test_the_pieces_of_the_bad_ones_are_sound(self):
-        """So that each scene above is refused for its fault, not for what is around it."""
+        """Ensures that each scene above is refused for its fault alone."""
         self.write("good.mgf", TRIANGLE + PAINT + LAMP + "xf -a 10 -t 1 0 0\nf v0 v1 v2\nxf\n")
         self.interflect("info", "good.mgf", exit_code=DONE)
 

@@ -1,4 +1,4 @@
-"""What `bench` reports; how fast it is, is no test's business."""
+"""Output of `bench`; speed is not tested."""
 
 import unittest
 

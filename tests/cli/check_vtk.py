@@ -1,5 +1,5 @@
-"""check_vtk.py SOLUTION GRID...: whether VTK reads from each GRID the mesh and the light of SOLUTION, and the same from all;
-prints how many cells each has, its bounds and its area. Needs Debian's Python, which has VTK."""
+"""check_vtk.py SOLUTION GRID...: checks that VTK reads the mesh and the light of SOLUTION from each GRID, all alike.
+Prints the number of cells, bounds and area of each. Needs Debian's Python, which has VTK."""
 
 import json
 import sys
@@ -24,12 +24,10 @@ def read(path):
 
 
 def arrays(data):
-    """The points' or the cells', by name."""
     return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
 
 def everything(grid):
-    """All arrays of a grid, by name."""
     cells = grid.GetCells()
     named = {
         "connectivity": vtk_to_numpy(cells.GetConnectivityArray()),
@@ -67,7 +65,7 @@ def check_light(grid, file):
 
 
 def check_mesh(grid, file):
-    """Patches have to be rectangles."""
+    """Requires rectangular patches."""
     patches, vertices = file["scene/patches"][:], file["scene/vertices"][:]
     cells = arrays(grid.GetCellData())
     patch, level = cells["patch"], cells["level"]
@@ -80,7 +78,7 @@ def check_mesh(grid, file):
 
 
 def check_layout(path):
-    """What VTK 9.1 does not check, but other versions and the disk do."""
+    """Checks that VTK 9.1 omits: attributes for other versions, and compression to save disk space."""
     with h5py.File(path) as file:
         root = file["VTKHDF"]
         assert list(root.attrs["Version"]) == [1, 0]

@@ -1,4 +1,4 @@
-"""The checksums of a solution file as someone else verifies them: with the Python of docs/solution-file.md."""
+"""Runs the Python code of docs/solution-file.md."""
 
 import re
 import subprocess

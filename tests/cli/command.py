@@ -1,4 +1,4 @@
-"""What the tests of the command share: a folder of their own, small scenes, and runs with an expected exit code."""
+"""Shared by the tests of the command."""
 
 import json
 import os
@@ -40,7 +40,6 @@ LARGE = ("--size", "96x54", "--samples", "4")
 
 
 def methods():
-    """All that `--method` takes."""
     text = subprocess.run([COMMAND, "solve", "--help"], capture_output=True, text=True, check=True).stdout
     return re.search(r"--method (\S+)", text)[1].split("|")
 
@@ -58,7 +57,7 @@ class CommandTest(unittest.TestCase):
         return path
 
     def interflect(self, *arguments, exit_code=DONE, timeout=60):
-        """Runs the command in the test's folder; a hang is a failure, and so is another exit code."""
+        """Fails on another exit code and on a hang."""
         result = subprocess.run(
             [COMMAND, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=timeout
         )
@@ -74,5 +73,5 @@ class CommandTest(unittest.TestCase):
         return content
 
     def files(self):
-        """Everything in the test's folder, hidden files included."""
+        """Returns all files in the test's folder, including hidden ones."""
         return sorted(path.relative_to(self.folder).as_posix() for path in self.folder.rglob("*") if path.is_file())

@@ -7,7 +7,7 @@ from command import BAD_INPUT, LARGE, SMALL, VIEW, WRONG_USAGE, CommandTest, roo
 
 
 def png_size(content):
-    """Width and height stand as big-endian numbers in the header chunk that begins every PNG file."""
+    """Width and height are big-endian numbers in the header chunk at the start of every PNG file."""
     return struct.unpack(">II", content[16:24])
 
 
@@ -72,7 +72,7 @@ class Compare(CommandTest):
             self.assertIn(words, text)
 
     def test_field_of_view(self):
-        """As asked for, else as the .exr files say, the reference's first, else 45 degrees."""
+        """From the option, else from the .exr files (the reference first), else 45 degrees."""
         self.render("wide.exr", fov=60)
         self.render("narrow.exr", fov=30)
         self.render("narrow.hdr", fov=30)
@@ -106,7 +106,7 @@ class Compare(CommandTest):
             self.assertGreater(found[1][measure], found[0][measure])
 
     def test_difference_picture(self):
-        """As wide as the reference and higher by its legend; of equal pictures in one colour."""
+        """As wide as the reference and higher by its legend; for equal pictures, of one colour."""
         self.render("a.exr")
         self.render("b.exr", options=("--shading", "flat"))
         shown = self.json("compare", "b.exr", "a.exr", "--difference", "b.png")

@@ -1,4 +1,4 @@
-"""`interflect export`: what it writes, what it refuses, and that nothing is left half written."""
+"""`interflect export`: outputs, refusals, and no partial files after a failure."""
 
 import base64
 import json
@@ -9,7 +9,6 @@ import zlib
 from command import BAD_INPUT, WRONG_USAGE, CommandTest, room
 
 def png_texels(png):
-    """Of an image of 8 bits and three channels."""
     position, data = 8, b""
     while position < len(png):
         length, kind = struct.unpack(">I4s", png[position : position + 8])
@@ -71,7 +70,6 @@ class Export(CommandTest):
         self.interflect("solve", "scene.mgf", "--rays", "100k", "--group", "l=left", "--group", "r=right", "-o", "scene.h5")
 
     def colours(self, attribute, *arguments):
-        """An attribute of all vertices."""
         scene, values = self.export(*arguments), []
         data = base64.b64decode(scene["buffers"][0]["uri"].partition(",")[2])
         for mesh in scene["meshes"]:
@@ -82,11 +80,9 @@ class Export(CommandTest):
         return values
 
     def irradiance(self, *arguments):
-        """The sum over all vertices."""
         return sum(map(sum, self.colours("_IRRADIANCE", "--exposure", "0", *arguments)))
 
     def lightmap(self, *arguments):
-        """The linear texels of the lightmap in the file."""
         scene = self.export("--lightmap", *arguments)
         data = base64.b64decode(scene["buffers"][0]["uri"].partition(",")[2])
         view = scene["bufferViews"][scene["images"][0]["bufferView"]]
@@ -103,7 +99,7 @@ class Export(CommandTest):
                                           self.lightmap("--exposure", "4", *content), 0.05), 10)  # fmt: skip
 
     def check_hue(self, dim, bright, tolerance):
-        """Compares the chromaticity of all colours that were scaled and returns their number."""
+        """Compares the chromaticity of all scaled colours. Returns their number."""
         pairs = [(d, b) for d, b in zip(dim, bright) if 0 < d[2] and max(d) > 1e-3 and max(b) > 0.999]
         for d, b in pairs:
             for k in range(3):

@@ -1,4 +1,4 @@
-"""What `export` writes, read back by others: meshes with their light, probes, scenes for other renderers."""
+"""Reads the outputs of `export` with other programs: lit meshes, probes, scenes for other renderers."""
 
 import ast
 import base64
@@ -13,13 +13,13 @@ from pathlib import Path
 
 from command import BAD_INPUT, VIEWS, WRONG_USAGE, CommandTest, room
 
-AREA = 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1  # of room(): walls with two sides, and a lamp with one [m^2]
+AREA = 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1  # of room(): two-sided walls and a one-sided lamp [m^2]
 FAR_VIEW = ("--eye", "3000000.3,-1999999.8,1.6", "--look-at", "3000001.2,-1999997,1")
-FACES = AREA / 2 + 0.5  # of the faces alone
+FACES = AREA / 2 + 0.5  # each face once
 
 
 def area(points):
-    """Of a planar polygon: half the length of the sum of the cross products."""
+    """Computes the area of a planar polygon: half the length of the sum of the cross products."""
     sums = [0, 0, 0]
     for p, q in zip(points, points[1:] + points[:1]):
         for k in range(3):
@@ -28,7 +28,7 @@ def area(points):
 
 
 class Ply:
-    """A binary PLY file of one list a face."""
+    """Binary, with one list per face."""
 
     TYPES = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
 
@@ -94,7 +94,7 @@ class Meshes(Exported):
             self.assertAlmostEqual(float(channel), 1000 / math.pi, places=3)
 
     def check_vtk(self, solution, *grids):
-        """Of each grid that the two files of VTK's formats hold: how many cells it has, its bounds, its area."""
+        """Runs check_vtk.py. @return the number of cells, bounds and area for each grid."""
         for name in grids:
             self.interflect("export", solution, "-o", name)
         command = ["/usr/bin/python3", "-B", Path(__file__).parent / "check_vtk.py", solution, *grids]
@@ -110,7 +110,7 @@ class Meshes(Exported):
         self.assertEqual(self.bytes("again.vtkhdf"), self.bytes("room.vtkhdf"))
 
     def test_vtk_reads_world_coordinates_of_a_room_far_away(self):
-        bulb = "v bulb =\n\tp 1 1 1\nlight point bulb 3\n"  # in none of the groups that are named
+        bulb = "v bulb =\n\tp 1 1 1\nlight point bulb 3\n"  # in none of the named groups
         self.write("far.mgf", "xf -t 3e6 -2e6 0\n" + room() + bulb + "xf\n")
         self.interflect("solve", "far.mgf", "-o", "far.h5", "--rays", "5k", *FAR_VIEW, "--group", "lamp=lamp")
         for _, *bounds, area_of_cells in self.check_vtk("far.h5", "far.vtu", "far.vtkhdf"):
@@ -222,9 +222,9 @@ class Scenes(Exported):
         self.assertNotIn("left out: emission", stderr)
 
     def test_names_of_files_stay_within_their_quotes(self):
-        """Seen to run code that the name of the output has."""
+        """Seen to execute code in the name of the output."""
         stem = 'a");print("x&<b>\\'
-        # The script for Blender names files only for images.
+        # The Blender script only names image files.
         (self.folder / "grey.hdr").write_bytes(hdr(1, 0))
         corners = "".join(f"v b{i} =\n\tp {x} 1 {z}\n\tuv {x} {z}\n" for i, (x, z) in enumerate([(0, 0), (1, 0), (1, 1)]))
         self.write("room.mgf", room() + corners + "m board =\n\trd .5\n\ttexture rd grey.hdr\nf b0 b1 b2\n")
@@ -262,13 +262,12 @@ class Scenes(Exported):
 
 
 def hdr(*texels):
-    """A row of greys, 0 or 1, as a Radiance picture."""
+    """Creates a row of greys, 0 or 1, as a Radiance picture."""
     pixels = b"".join(bytes([128, 128, 128, 129]) if texel else bytes(4) for texel in texels)
     return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X %d\n" % len(texels) + pixels
 
 
 def png_rows(content):
-    """The rows of an unfiltered PNG of 8 bits."""
     at, data = 8, b""
     while at < len(content):
         (length,), kind = struct.unpack_from(">I", content, at), content[at + 4 : at + 8]
@@ -292,7 +291,7 @@ def png_rows(content):
 
 
 class CutOuts(Exported):
-    """A board across the room of which every other column is open: what is left reflects 0.5."""
+    """A board across the room with every other column open; the remainder reflects 0.5."""
 
     def setUp(self):
         super().setUp()
@@ -343,7 +342,7 @@ class CutOuts(Exported):
                 (self.folder / "seen.exr").rename(self.folder / "expected.exr")
                 continue
             found = self.json("compare", "seen.exr", "expected.exr")
-            # The lamp of room() has no back, that of the exports has a dark one.
+            # The lamp of room() has no back; in the exports it has a dark one.
             self.assertAlmostEqual(found["ratio_of_means"], 1, delta=0.03)
             self.assertLess(found["blocks"][1]["relative_rmse"], 0.03)
 

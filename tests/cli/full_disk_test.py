@@ -1,4 +1,4 @@
-"""A file that does not fit: named as it was asked for, with the system's reason, and nothing of it is left."""
+"""A file that exceeds the disk: the message has its name and the system's reason, and no partial file remains."""
 
 import resource
 import signal
@@ -9,7 +9,7 @@ from command import COMMAND, FAILED, SMALL, VIEW, CommandTest, room
 
 
 def let_no_file_exceed(size):
-    """For the process to come: a write beyond that many bytes fails as one on a full disk does."""
+    """Limits file sizes in the child process: a larger write fails like on a full disk."""
 
     def limit():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -27,7 +27,7 @@ class FullDisk(CommandTest):
             text=True,
             timeout=60,
             preexec_fn=let_no_file_exceed(1000),
-            restore_signals=False,  # SIGXFSZ among them
+            restore_signals=False,  # including SIGXFSZ
         )
         self.assertEqual(result.returncode, FAILED, result.stderr)
         self.assertRegex(result.stderr, f"error: cannot write '{name}': (HDF5: .*: )?File too large\n")

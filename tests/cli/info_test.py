@@ -1,4 +1,4 @@
-"""What `info` tells, for people and for programs."""
+"""Output of `info`."""
 
 import json
 import math
@@ -15,7 +15,7 @@ class Info(CommandTest):
         report = self.json("info", "room.mgf")
         for key in ("patches", "area", "emitted_power", "emitters", "views", "warnings"):
             self.assertIn(key, report)
-        self.assertEqual(report["patches"], 6 * 2 + 1)  # walls have two sides, the lamp one
+        self.assertEqual(report["patches"], 6 * 2 + 1)  # two-sided walls, one-sided lamp
         self.assertAlmostEqual(report["area"], 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1, places=4)  # one side of each face
         self.assertEqual(report["bounds"], {"min": [0, 0, 0], "max": [2, 3, 2.5]})
         for channel in report["emitted_power"]:
@@ -30,7 +30,7 @@ class Info(CommandTest):
         self.assertEqual(report["warnings"], [])
         memory = report["memory"]
         self.assertGreater(memory["ray_tracer"], 0)
-        self.assertLessEqual(memory["per_element"], 128)  # 96 is asked: docs/performance.md says what takes the rest
+        self.assertLessEqual(memory["per_element"], 128)  # the target is 96; docs/performance.md explains the rest
         self.assertGreater(memory["at_least"], memory["ray_tracer"] + 13 * memory["per_element"])
 
     def test_text_tells_the_same(self):
@@ -189,7 +189,7 @@ class Solution(CommandTest):
 
 class Views(CommandTest):
     def test_are_told_in_no_more_digits_than_they_have(self):
-        single, double = 1.600000023841858, 100000000.3  # the float nearest to 1.6, and no float
+        single, double = 1.600000023841858, 100000000.3  # the float nearest to 1.6, and a double between floats
         views = {"views": [{"name": "door", "eye": [single, double, 0], "look_at": [1, 2, 1], "fov": 38.7}]}
         self.write("room.mgf", room())
         self.write("room.views.json", json.dumps(views))

@@ -1,4 +1,4 @@
-"""Signals: the first ends the run and keeps what there is, the second ends at once and keeps nothing."""
+"""Signals: the first ends the run and keeps the result so far; the second ends at once without a result."""
 
 import json
 import os
@@ -17,7 +17,7 @@ ONE_LONG_ITERATION = ("--rays-per-iteration", "100G")
 GATHERED = ("--lightmap", "--shading", "gather", "--texels-per-metre", "4")
 METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk", "global-lines", "pr")
 SOON = 30  # [s]
-A_MOMENT = 10  # [s], on a machine that is busy and under a sanitizer
+A_MOMENT = 10  # [s], on a busy machine with a sanitizer
 
 
 class Interrupt(CommandTest):
@@ -36,7 +36,7 @@ class Interrupt(CommandTest):
             stdout=subprocess.DEVNULL,
             text=True,
             env={**os.environ, "TMPDIR": str(self.temporary_folder)},
-            preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # it may be ignored, as under nohup
+            preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # under nohup it would be ignored
         )
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
@@ -44,7 +44,7 @@ class Interrupt(CommandTest):
         return process
 
     def wait_until_it_has_worked(self, process, seconds):
-        """@param seconds  Of processor time: more than anything takes before the first iteration, however slow."""
+        """@param seconds  Processor time, longer than any phase before the first iteration, however slow."""
         status = Path(f"/proc/{process.pid}/stat")
         deadline = time.monotonic() + SOON
         while sum(map(int, status.read_text().split()[13:15])) < seconds * os.sysconf("SC_CLK_TCK"):
@@ -74,7 +74,7 @@ class Interrupt(CommandTest):
         self.assertGreater(iterations[-1]["rays"], 0)
         self.interflect("render", "out.h5", "-o", "out.exr", *VIEW, *SMALL)
 
-        # A picture of the light, not of a start in darkness: it is near that of a whole solve.
+        # The picture is near that of a complete solve, not of a start in darkness.
         self.interflect("render", "room.mgf", "-o", "whole.exr", *VIEW, *SMALL, "--mesh-size", "0.5", "--rays", "200k")
         self.assertAlmostEqual(self.json("compare", "out.exr", "whole.exr")["ratio_of_means"], 1, delta=0.1)
 
@@ -166,7 +166,7 @@ class Interrupt(CommandTest):
     def test_an_iteration_that_would_take_hours_is_cut_short(self):
         for method in METHODS:
             with self.subTest(method):
-                # The light is that of the start, which takes a moment.
+                # The light comes from the initialisation, which takes a moment.
                 process = self.start(
                     *("solve", "room.mgf", "-o", "out.h5", *ENDLESS, *ONE_LONG_ITERATION, *VIEW, "--method", *method.split())
                 )
@@ -214,7 +214,7 @@ class Interrupt(CommandTest):
         self.assertEqual(self.temporary_files(), [])
 
     def start_writing_into_a_pipe(self):
-        """A process that has solved and written a temporary file, and waits for a reader of the result."""
+        """Starts a process that has solved and waits for a reader of the result."""
         os.mkfifo(self.folder / "pipe.h5")
         process = self.start("solve", "room.mgf", "-o", "pipe.h5", "--rays", "20k")
         while not process.stderr.readline().startswith("info:"):

@@ -1,8 +1,8 @@
-"""At the limits of what can be computed everything is finite and the light is right; beyond, scenes are refused.
+"""At the numeric limits all results are finite and the light is right; beyond them, scenes are refused.
 
-Seen to fail without the limits: scenes of 10^12 m and exitances of 10^30 had null in their statistics and gave solution
-files that nothing could read, scenes of 10^-12 m leaked. Seen to fail with variances of means that sum squares of areas
-in single precision.
+Seen to fail without the limits: scenes of 10^12 m and exitances of 10^30 had null in their statistics and unreadable
+solution files; scenes of 10^-12 m leaked. Seen to fail with variances of means that sum squares of areas in single
+precision.
 """
 
 import json
@@ -17,7 +17,6 @@ WEAKEST, STRONGEST = 1.1e-9, 9.9e9  # [lm/m2]
 
 
 def scaled_room(scale, exitance, offset=0.0):
-    """The room of command.py in another unit of length, elsewhere, with another lamp."""
     lines = []
     for line in room(LAMP.replace("1000", repr(exitance))).splitlines():
         words = line.split()
@@ -36,7 +35,7 @@ def view(scale, offset=0.0):
 
 class Limits(CommandTest):
     def power(self, method, scale, exitance, offset=0.0):
-        """The power of all light in the room, over the square of the unit of length and the exitance."""
+        """Returns the total power in the room, divided by the squared scale and the exitance."""
         self.write("room.mgf", scaled_room(scale, exitance, offset))
         mesh = () if method in REFINING else ("--mesh-size", "none")
         options = ("--method", method, "--rays", "20k", "--stats", "stats.json", *view(scale, offset), *mesh)
@@ -48,7 +47,7 @@ class Limits(CommandTest):
         first, *_, last = map(json.loads, stats.splitlines())
         for number in (first["area"], *first["emitted_power"], *last["total_power"]):
             self.assertTrue(math.isfinite(number) and number > 0, stats)
-        if method != "hr":  # which estimates none after so few iterations
+        if method != "hr":  # hr estimates no error after so few iterations
             self.assertTrue(0 < last["error_estimate"] < 1, last)
         self.interflect("render", "room.h5", "-o", "room.exr", "--size", "16x9", "--samples", "2")
         return last["total_power"][1] / scale**2 / exitance
@@ -83,7 +82,7 @@ class Limits(CommandTest):
                 with self.subTest(scale=scale, exitance=exitance, command=arguments[0]):
                     result = self.interflect(arguments[0], "room.mgf", *arguments[1:], exit_code=BAD_INPUT)
                     self.assertIn(reason, result.stderr)
-                    if "only" not in reason:  # what concerns a face or a material is found in a line
+                    if "only" not in reason:  # faults of a face or a material have a line
                         self.assertRegex(result.stderr, r"room\.mgf:\d+: ")
         self.assertEqual(self.files(), ["room.mgf"])
 

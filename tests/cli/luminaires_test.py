@@ -1,4 +1,4 @@
-"""Measured light in files of IES LM-63 and EULUMDAT, from the command line."""
+"""Photometry from IES LM-63 and EULUMDAT files, on the command line."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""Scenes that are made: which files they replace, and which they do not."""
+"""Generated scenes: which existing files they may replace."""
 
 import unittest
 
@@ -35,7 +35,7 @@ class MakeScene(CommandTest):
         self.assertEqual(self.json("info", "b.mgf")["warnings"], [])
         self.interflect("solve", "b.mgf", "-o", "b.h5", "--rays", "200k")
         view = ("--view", "room-0", "--size", "60x40", "--samples", "16")
-        for name in images:  # the solution file has them
+        for name in images:  # the solution file contains them
             (self.folder / name).rename(self.folder / f"away-{name}")
         self.interflect("render", "b.h5", "-o", "solved.exr", *view)
         for name in images:

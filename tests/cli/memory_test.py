@@ -1,4 +1,4 @@
-"""The limit of memory: refinement ends before it is reached, and what `info` predicts is what a run takes."""
+"""The memory limit: refinement stops before it, and `info` predicts the memory of a run."""
 
 import base64
 import json
@@ -18,7 +18,7 @@ MIB = 1 << 20
 
 class MemoryCase(CommandTest):
     def peak(self, *arguments):
-        """Runs the command. @return its largest resident size [bytes] and what it said."""
+        """Runs the command. @return its peak resident size [bytes] and its messages."""
         said = self.folder / "said"
         with open(said, "w") as stderr:
             process = os.posix_spawn(
@@ -49,7 +49,7 @@ class MemoryLimit(MemoryCase):
         self.assertLess(peak, limit)
 
     def test_takes_what_info_predicts_for_each_element(self):
-        few, few_peak, _ = self.solve("1e-10")  # many: what the allocator keeps of small arrays counts for little
+        few, few_peak, _ = self.solve("1e-10")  # many: the allocator's cache of small arrays is negligible
         many, many_peak, _ = self.solve("1e-12")
         self.assertGreater(many, few + 2_000_000)
         self.assertLess((many_peak - few_peak) / (many - few), self.json("info", "maze:2")["memory"]["per_element"])
@@ -62,7 +62,7 @@ class MemoryLimit(MemoryCase):
 
 
 class LimitedAddressSpace(CommandTest):
-    """ulimit -v: addresses are reserved for no more elements than the limit leaves room for."""
+    """ulimit -v: addresses are reserved only for the number of elements that fit into the limit."""
 
     def under(self, limit, *arguments, exit_code=DONE):
         result = subprocess.run(
@@ -116,7 +116,7 @@ class Predictions(CommandTest):
             self.assertNotIn(word, result.stderr)
         return result.stderr
 
-    # Seen to end with std::bad_alloc, some after minutes.
+    # Seen to end with std::bad_alloc, in some cases after minutes.
     def test_of_pictures(self):
         for shading, needed in (("path", 100_000), ("gather", 100_000), ("smooth", 10_000)):
             said = self.refused("render", "room.mgf", "-o", "out.png", "--size", "16384x16384", "--shading", shading)
@@ -168,7 +168,7 @@ class Copies(MemoryCase):
         }
         self.write("copies.gltf", json.dumps(document))
 
-    # Seen to take 3 GB and 15 s, and hours to be cut at contacts.
+    # Seen to take 3 GB and 15 s, and hours of cutting at contacts.
     def test_at_one_place_are_read_once(self):
         self.write_copies(10_000_000)
         peak, said = self.peak("info", str(self.folder / "copies.gltf"))
@@ -183,11 +183,11 @@ class Copies(MemoryCase):
 
 class LongRuns(MemoryCase):
     ITERATIONS = 6000
-    REPORT = 200  # bytes that are kept for each, with room to spare
+    REPORT = 200  # bytes kept for each, rounded up
 
     def peak_after(self, iterations):
         few = ("--one-bounce", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
-        mesh = ("--view", "room-0", "--mesh-size", "none", "--epsilon", "1e-3")  # no elements are made on the way
+        mesh = ("--view", "room-0", "--mesh-size", "none", "--epsilon", "1e-3")  # no new elements
         return self.peak("solve", "maze:2", "-o", str(self.folder / "out.h5"), *mesh, *few)[0]
 
     def test_take_no_more_memory_than_short_ones(self):

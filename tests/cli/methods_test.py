@@ -1,14 +1,15 @@
-"""Every method on every scene: the power that leaves all surfaces is the same.
+"""Compares the total power leaving all surfaces, for every method on every scene.
 
 Each run has 300,000 rays (global-lines: 3 million) and at most 30 s. The totals are compared twice:
 
-* On equal elements, one for each face, all methods but hsrr and ihsrr solve the same equations. Results differ by noise.
-  The few lines of sight of hr add an error.
-* By default, methods choose their elements. Results differ by the error of constant light on large elements, too.
+- On equal elements, one for each face, all methods but hsrr and ihsrr solve the same equations. Results differ by
+  noise. The few lines of sight of hr add an error.
+- With default options, methods choose their elements. Results also differ by the error of constant light on large
+  elements.
 
-Each tolerance is twice the known difference plus eight standard deviations of the noise, measured with six seeds (with
-twelve for global-lines on the cube). If other random numbers are used, a correct result fails with a probability of
-1e-3 at most (Student's t with 5 degrees of freedom), and most with far less: the largest noise of a scene counts for all.
+Each tolerance is twice the known difference plus eight standard deviations of the noise, measured with six seeds
+(twelve for global-lines on the cube). With other random numbers, a correct result fails with a probability of at most
+1e-3 (Student's t with 5 degrees of freedom). Most have far less, because the largest noise of a scene is used for all.
 
 Seen to fail with: pr that leaves light unshot, 8% of the office.
 """
@@ -24,7 +25,7 @@ from command import BAD_INPUT, ROOT, CommandTest, methods
 SHARED = Path(os.environ.get("INTERFLECT_SCENES", ROOT.parent / "shared" / "scenes"))
 EQUAL_ELEMENTS = ("--mesh-size", "none", "--min-area", "1e9")
 STEERED = ("isrr", "ihsrr", "pr")  # by the view
-SUBDIVIDING = ("hsrr", "ihsrr")  # rays start at points where light arrived: light on an element is not constant
+SUBDIVIDING = ("hsrr", "ihsrr")  # rays start at the points of received light, so light on an element is not constant
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
@@ -32,9 +33,9 @@ class Scene(NamedTuple):
     eye: str
     look_at: str
     noise: float  # tolerance on equal elements
-    lines: float  # tolerance of global-lines, whose noise is large if lamps are small
+    lines: float  # tolerance of global-lines, which are noisy for small lamps
     links: float | None  # tolerance of hr; None: too many pairs of faces
-    elements: float  # tolerance where methods choose their elements
+    elements: float  # tolerance for elements chosen by the methods
 
 
 SHIPPED = {
@@ -53,7 +54,7 @@ OTHERS = {
 
 class Methods(CommandTest):
     def total(self, file, scene, method, *options):
-        """Power that leaves the surfaces [lm]."""
+        """Returns the power that leaves the surfaces [lm]."""
         rays = "3M" if method == "global-lines" else "300k"
         view = ("--eye", scene.eye, "--look-at", scene.look_at) if method in STEERED else ()
         run = ("--method", method, "--rays", rays, "--time", "30", *view, *options)

@@ -1,4 +1,4 @@
-"""Names of any bytes: kept in files, escaped in JSON, and powerless over the terminal."""
+"""Names of arbitrary bytes: kept in files, escaped in JSON, and without effect on the terminal."""
 
 import json
 import os
@@ -18,12 +18,11 @@ def is_control(byte):
 
 class Names(CommandTest):
     def run_bytes(self, *arguments, exit_code=DONE):
-        """Like interflect(), with names and output of any bytes."""
         words = [word if isinstance(word, bytes) else str(word).encode() for word in arguments]
         result = subprocess.run([COMMAND.encode(), *words], cwd=self.folder, capture_output=True, timeout=60)
         self.assertEqual(result.returncode, exit_code, result.stderr)
         for output in (result.stdout, result.stderr):
-            output.decode()  # raises where it is no UTF-8
+            output.decode()  # raises unless it is UTF-8
             self.assertFalse(any(map(is_control, output)), output)
         return result
 

@@ -1,4 +1,4 @@
-"""Scenes anywhere in the world, scenes that cannot be computed, and the warnings of light that gets lost."""
+"""Scenes at any position, scenes that cannot be computed, and warnings about lost light."""
 
 import json
 import unittest
@@ -15,13 +15,12 @@ def moved_view():
 
 
 def room_with_hole(width):
-    """The room of command.py with a ceiling that leaves a slit open."""
     ceiling = vertices((0, 0, 2.5), (0, 3, 2.5), (2 - width, 3, 2.5), (2 - width, 0, 2.5)) + "f v0 v1 v2 v3\n"
     return room().replace("f v4 v6 v7 v5\n", "") + "m paint\n" + ceiling
 
 
 def box():
-    """Five one-sided faces that look outwards, on the floor of the room."""
+    """Five one-sided faces that face outwards, on the floor of the room."""
     corners = [(x, y, z) for z in (0, 0.6) for y in (1, 2) for x in (0.5, 1.5)]
     faces = "f v4 v5 v7 v6\nf v0 v4 v6 v2\nf v1 v3 v7 v5\nf v0 v1 v5 v4\nf v2 v6 v7 v3\n"
     return vertices(*corners) + "m box =\n\tc\n\tsides 1\n\trd .5\n" + faces
@@ -90,7 +89,7 @@ class LostLight(CommandTest):
             self.assertNotIn("leaks", self.warnings(text))
 
     def test_light_through_the_backs_of_faces_is_reported(self):
-        """The sky outside a closed room whose faces look inwards, and a shade that only stops what comes from outside."""
+        """The sky outside a closed room whose faces look inwards, and a shade that only stops light from outside."""
         one_sided = room().replace("rd .6", "rd .6\n\tsides 1")
         shade = vertices((0.4, 0.9, 2.3), (0.4, 2.1, 2.3), (1.6, 2.1, 2.3), (1.6, 0.9, 2.3)) + "m paint\no shade\nf v0 v1 v2 v3\no\n"
         for lit in ("light sky 1000\n", shade):
@@ -100,7 +99,7 @@ class LostLight(CommandTest):
         self.assertNotIn("backs", self.warnings(one_sided))
 
     def test_a_one_sided_sheet_that_is_seen_from_behind_is_reported(self):
-        """Half the light of the room's lamp meets a sheet that the floor looks through."""
+        """Half of the light of the lamp hits a sheet that is transparent from the floor."""
         sheet = vertices((0.5, 1, 1.2), (1.5, 1, 1.2), (1.5, 2, 1.2), (0.5, 2, 1.2)) + "m sheet =\n\tc\n\tsides 1\n\trd .5\no sheet\nf {}\no\n"
         upwards, downwards = "v0 v1 v2 v3", "v3 v2 v1 v0"
         said = self.warnings(room() + sheet.format(upwards))

@@ -1,4 +1,4 @@
-"""Illuminance at points and on grids: against closed forms, where EN 12464-1 puts the points, as CSV and as a summary."""
+"""Illuminance at points and on grids: closed forms, point positions of EN 12464-1, CSV and summary."""
 
 import csv
 import json
@@ -22,7 +22,7 @@ def floor(x=6, y=5, light="v lamp =\n\tp 2 2 2.5\nlight point lamp 1000\n"):
 
 
 def furnace(exitance=100, reflectance=0.5):
-    """A closed box of 2 x 3 x 2.5 m that emits and reflects alike everywhere: H = M / (1 - rho)."""
+    """A closed box of 2 x 3 x 2.5 m with uniform emission and reflection: H = M / (1 - rho)."""
     return room(lamp="").split("m paint")[0] + f"m paint =\n\tc\n\trd {reflectance}\n\ted {exitance}\n" + (
         "o box\nf v0 v1 v3 v2\nf v4 v6 v7 v5\nf v0 v2 v6 v4\nf v1 v5 v7 v3\nf v0 v4 v5 v1\nf v2 v3 v7 v6\no\n"
     )
@@ -30,7 +30,6 @@ def furnace(exitance=100, reflectance=0.5):
 
 class ProbeTest(CommandTest):
     def probe(self, *arguments):
-        """The rows of the table, as numbers, and the summary."""
         summary = self.json("probe", *arguments, "-o", "out.csv")["areas"]
         with open(self.folder / "out.csv", newline="") as file:
             header, *rows = csv.reader(file)
@@ -93,7 +92,7 @@ class Illuminance(ProbeTest):
                     self.assertAlmostEqual(direct, 100, delta=5 * error + 2)
 
     def test_states_the_error_of_the_solution(self):
-        """A solution of few rays is far off, by more than sampling explains. Path tracing has no such error."""
+        """A solution of few rays has an error beyond its sampling noise. Path tracing has no such error."""
         self.write("room.mgf", room())
         places = ("--plane", "0.75", "--samples", "1024")
         rows, (area,) = self.probe("room.mgf", "--method", "srr", "--rays", "20k", "--mesh-size", "0.5", *places)

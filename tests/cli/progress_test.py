@@ -1,4 +1,4 @@
-"""Progress on stderr: a bar on a terminal, plain lines in a log, and nothing of either on stdout."""
+"""Progress on stderr: a bar on a terminal, plain lines in a log; stdout stays clean."""
 
 import os
 import pty
@@ -20,7 +20,6 @@ class Progress(CommandTest):
         self.write("room.mgf", room())
 
     def on_terminal(self):
-        """What the command writes to stderr when that is a terminal."""
         terminal, stderr = pty.openpty()
         process = subprocess.Popen([COMMAND, *self.SOLVE], cwd=self.folder, stderr=stderr, stdout=subprocess.DEVNULL)
         os.close(stderr)
@@ -28,7 +27,7 @@ class Progress(CommandTest):
         try:
             while part := os.read(terminal, 4096):
                 text += part
-        except OSError:  # how Linux says that the other end was closed
+        except OSError:  # Linux reports the closed end this way
             pass
         os.close(terminal)
         self.assertEqual(process.wait(timeout=60), 0, text)
@@ -51,7 +50,7 @@ class Progress(CommandTest):
         result = self.interflect(*draw, "32x18")
         self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
         size, seconds = 64, 0.25
-        while seconds < 3:  # of a picture that takes long enough on this machine
+        while seconds < 3:  # find a size that takes long enough on this machine
             size = int(size * min(4, (4.5 / seconds) ** 0.5))
             start = time.monotonic()
             said = self.interflect(*draw, f"{size}x{size}").stderr
@@ -71,7 +70,7 @@ class Progress(CommandTest):
         first = self.interflect("solve", "room.mgf", "-o", "out.h5", *until).stderr.splitlines()[0]
         self.assertRegex(first, r"^  0%  .* rays, .*/s, error -, - left$")
 
-    # Seen to fail when each report of the whole work has a line, and when the first batch is said to have no error.
+    # Seen to fail when each report of long work takes a line, and when the first batch reports no error.
     def test_path_tracing_to_an_error(self):
         path = ("--shading", "path", "--size", "64x36", "--until", "2%", "--max-samples", "4096")
         start = time.monotonic()
@@ -89,7 +88,7 @@ class Progress(CommandTest):
         self.assertGreater(len(shown), 2, text)
         self.assertRegex(shown[-1], r"^\[={24}\] " + STATUS)
         self.assertRegex(shown[0], r"^\[=* +\] ")
-        self.assertIn("\n", shown[-1])  # what follows is on a line of its own
+        self.assertIn("\n", shown[-1])  # later output starts on a new line
 
 
 if __name__ == "__main__":

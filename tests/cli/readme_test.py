@@ -1,7 +1,7 @@
-"""The README's examples run, and what it quotes of their output is what they say.
+"""The README's examples run, and the output quoted there matches.
 
-They run as they stand but for the amount of work, which is cut to seconds: an option that has gone, a renamed view or
-subcommand, an output that has changed are found alike.
+Only the amount of work is reduced, to seconds. Removed options, renamed views or subcommands, and changed output all
+fail.
 """
 
 import re
@@ -15,7 +15,7 @@ LESS_WORK = {r"--rays \d+M": "--rays 300k", r"--time \d+": "--time 1", r"--until
 
 
 def examples():
-    """(command, quoted lines of output) of each indented line that begins with `interflect`, perhaps after a prompt."""
+    """(command, quoted output lines) of each indented line with `interflect`, with or without a prompt."""
     found = []
     for line in (ROOT / "README.md").read_text().splitlines():
         command = re.match(r" {4}(?:\$ )?interflect (.*)", line)
@@ -24,7 +24,7 @@ def examples():
         elif line.startswith("    ") and found:
             found[-1][1].append(line[4:])
         elif not line.startswith("    ") and found and line:
-            found.append((None, []))  # what is indented after this text belongs to no example
+            found.append((None, []))  # indented lines after this text belong to no example
     return [example for example in found if example[0]]
 
 

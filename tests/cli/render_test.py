@@ -1,4 +1,4 @@
-"""Pictures: reproducible, of the view that was asked for, and labelled with how they came to be."""
+"""Pictures: reproducible, of the requested view, and labelled with their origin."""
 
 import json
 import math
@@ -12,7 +12,7 @@ SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
 
 def exr_attributes(content):
-    """The header of a single-part OpenEXR file: name -> (type, bytes)."""
+    """Returns the header of a single-part OpenEXR file: name -> (type, bytes)."""
     magic, version = struct.unpack_from("<ii", content)
     assert (magic, version) == (20000630, 2), "not a plain OpenEXR file"
 
@@ -56,8 +56,8 @@ class Reproducibility(RenderTest):
         self.assertNotEqual(self.render("one.hdr"), self.render("two.hdr", "--seed", "2"))
 
     def test_of_a_solution_and_of_its_scene_are_the_same(self):
-        smallest = ("--min-area", "0.001")  # else by the pixels of the picture, of which `solve` knows nothing
-        self.solve("--view", "door", *smallest)  # the first one, which `render` takes by itself
+        smallest = ("--min-area", "0.001")  # else by the pixels of the picture, which `solve` does not know
+        self.solve("--view", "door", *smallest)  # the first view is the default of `render`
         for kind in ("png", "exr"):
             from_scene = self.render(f"scene.{kind}", *smallest)
             self.assertEqual(self.render(f"solution.{kind}", source="room.h5"), from_scene, kind)
@@ -70,10 +70,10 @@ class Views(RenderTest):
     def test_all_ways_to_name_a_view_agree(self):
         self.write("door.vf", "rvu -vtv -vp .3 .2 1.6 -vd .9 2.8 -.6 -vu 0 0 1 -vh 73.7 -vv 45\n")
         by_name = self.picture("--view", "door")
-        self.assertEqual(self.picture(), by_name)  # the first one is the default
+        self.assertEqual(self.picture(), by_name)
         self.assertEqual(self.picture(*VIEW), by_name)
         self.assertEqual(self.picture(*VIEW, "--fov", "45", "--up", "0,0,2"), by_name)
-        # A view file gives a direction in place of a point: the same picture but for rounding.
+        # A view file has a direction instead of a point: the same picture except for rounding.
         self.render("eye.exr", "--view", "door")
         self.render("file.exr", "--view-file", "door.vf")
         self.assertLess(self.json("compare", "file.exr", "eye.exr")["blocks"][1]["relative_rmse"], 0.02)
@@ -144,8 +144,8 @@ class FalseColours(RenderTest):
             self.assertEqual(attributes["interflect.quantity"][1], quantity)
 
     def test_illuminance_is_the_irradiance_of_the_elements(self):
-        """Where all that is seen reflects the same and emits nothing, luminance is rho / pi times as much: a little more,
-        since the paint is warm, and so is the light in the room."""
+        """If all visible surfaces are equal and emit no light, luminance is rho / pi times illuminance. It is slightly
+        higher here, because the paint and the light in the room are warm."""
         self.solve()
         floor = ("--view", "floor", "--shading", "flat")
         self.render("lux.exr", "--false-colour", "lux", *floor, source="room.h5")
@@ -215,7 +215,7 @@ class PlansAndSections(RenderTest):
         self.assertAlmostEqual(self.ratio("near.exr", "half.exr"), 2, delta=0.2)
 
     def test_show_the_light_of_what_is_cut_away(self):
-        """The lamp above the plan lights the floor, in every shading; without the lamp there is no light."""
+        """The lamp above the plan lights the floor, in every shading; without the lamp it is dark."""
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "2M")
         plan = ("--plan", "1", "--extent", "3", "--size", "20x30", *self.LUX)
         self.said("smooth.exr", *plan, "--shading", "smooth")
@@ -262,7 +262,7 @@ class PlansAndSections(RenderTest):
 
 class Methods(RenderTest):
     def test_all_show_the_same_room(self):
-        """Flat ones on a mesh: what it smooths away is the difference, which noise adds to."""
+        """Flat methods use a fixed mesh; the difference is the mesh's discretisation error and noise."""
         render = ("render", "room.mgf", *SMALL, "--view", "door", "--mesh-size", "0.5", "-o")
         self.interflect(*render, "reference.exr", "--rays", "2M", "--seed", "9")
         for method in methods():
@@ -276,7 +276,7 @@ class Methods(RenderTest):
 
 
 class OptionsWithoutEffect(RenderTest):
-    """What would be ignored is refused, or said to be ignored where a script may well give it for all formats."""
+    """Options without effect are refused, or reported as ignored if a script may well pass them for all formats."""
 
     def refused(self, *options, exit_code=BAD_INPUT):
         before = self.files()
@@ -354,7 +354,7 @@ class Pictures(RenderTest):
     def test_exposure_is_in_stops(self):
         for stops in (-9, -8):
             self.render(f"{stops + 9}.png", "--tonemap", "srgb", "--exposure", stops)
-        # PNG is read back as linear values: one stop more is twice as bright, but for 8 bits.
+        # PNG is read back as linear values: one more stop doubles the brightness, up to 8-bit rounding.
         self.assertAlmostEqual(self.json("compare", "1.png", "0.png")["ratio_of_means"], 2, delta=0.05)
 
     def test_exposure_relative_to_the_automatic_one(self):
@@ -413,8 +413,6 @@ class Pictures(RenderTest):
 
 
 class FinalGathering(RenderTest):
-    """What is drawn unless something else is asked for."""
-
     def setUp(self):
         super().setUp()
         self.solve()
@@ -448,7 +446,7 @@ class FinalGathering(RenderTest):
 
 
 class PathTracing(CommandTest):
-    """The other estimate of the same picture, and what it refuses."""
+    """The second estimate of the same picture, and its refusals."""
 
     SIZE = ("--size", "32x18")
     PATH = ("--shading", "path", *SIZE)
@@ -461,7 +459,7 @@ class PathTracing(CommandTest):
         return self.interflect("render", source, "-o", name, *self.PATH, *VIEW, *options).stderr
 
     def test_agrees_with_the_solver(self):
-        """Two independent estimates of one scene; a factor of rho, of pi or of the area would show."""
+        """Two independent estimates; a wrong factor of rho, pi or the area would fail."""
         self.trace("path.exr", "--samples", "256")
         self.interflect("render", "room.mgf", "-o", "solved.exr", *self.SIZE, *VIEW, "--samples", "16", "--rays", "2M")
         difference = self.json("compare", "path.exr", "solved.exr")
@@ -535,7 +533,7 @@ ONE_SIDED = PAINT.replace("m paint =\n", "m paint =\n\tsides 1\n")
 
 
 class Camera(CommandTest):
-    """Views that show nothing, or what nobody in the scene would see, are drawn with a warning."""
+    """Views without surfaces, or from an impossible position, are drawn with a warning."""
 
     WARNING = "the camera seems to be outside the scene"
 
@@ -551,7 +549,7 @@ class Camera(CommandTest):
 
     @staticmethod
     def dollhouse():
-        """The room, of walls that are seen from inside alone."""
+        """The room, with walls that are only visible from inside."""
         return room().replace(PAINT, ONE_SIDED)
 
     def test_outside_looking_through_the_backs_of_walls(self):

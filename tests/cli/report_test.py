@@ -1,4 +1,4 @@
-"""The lighting designer's report: one page that needs nothing else, with the numbers of probe."""
+"""The lighting designer's report: a self-contained page with the numbers of probe."""
 
 import re
 import signal
@@ -15,7 +15,6 @@ FEW = ("--size", "32x18", "--samples")
 
 
 def rectangle(name, origin, u, v, number):
-    """A face of its own object."""
     corners = [
         tuple(o + a * s + b * t for o, a, b in zip(origin, u, v, strict=True)) for s, t in ((0, 0), (1, 0), (1, 1), (0, 1))
     ]
@@ -39,7 +38,7 @@ def two_rooms():
 
 
 class Page(HTMLParser):
-    """Checks that tags close in order, and collects the tables, by id, and all addresses that the page refers to."""
+    """Checks that tags are balanced. Collects tables by id and all referenced addresses."""
 
     def __init__(self, text):
         super().__init__()
@@ -117,7 +116,7 @@ class Report(CommandTest):
 
     def test_draws_the_views_of_the_scene(self):
         page = self.report()
-        self.assertEqual(page.text.count("and illuminance on what is seen"), 1)  # an overview
+        self.assertEqual(page.text.count("and illuminance on what is seen"), 1)
         self.interflect("report", "rooms.h5", "-o", "view.html", *FEW, 64, "--eye", "1,1,1", "--look-at", "3,1,1")
         self.assertEqual((self.folder / "view.html").read_text().count("data:image/png"), 2 + 2)
 

@@ -1,4 +1,4 @@
-"""Checkpoints: a run that is killed anywhere and resumed ends with the bytes of one that is left alone."""
+"""Checkpoints: a run that is killed at any time and resumed gives the same bytes as an undisturbed run."""
 
 import signal
 import subprocess
@@ -19,7 +19,6 @@ class Resume(CommandTest):
         self.write("room.mgf", room())
 
     def start_and_end(self, *arguments, signal_number, seconds):
-        """Sends a signal after so many seconds."""
         process = subprocess.Popen(
             [COMMAND, *arguments], cwd=self.folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
         )
@@ -29,7 +28,7 @@ class Resume(CommandTest):
         return process.returncode
 
     def kill_and_resume(self, whole, options, step, run=RUN):
-        """Kills the run again and again, each time a little later, until one ends by itself."""
+        """Kills the run repeatedly, each time a little later, until one run completes."""
         (self.folder / "run.h5").unlink(missing_ok=True)
         kills = 0
         arguments = (*run, *options, "-o", "killed.h5", *OFTEN)
@@ -72,7 +71,7 @@ class Resume(CommandTest):
     def test_ctrl_c_keeps_a_state_to_go_on_from(self):
         self.interflect(*RUN, "-o", "whole.h5")
         code = self.start_and_end(*RUN, "-o", "cut.h5", "--checkpoint", "run.h5", signal_number=signal.SIGINT, seconds=0.3)
-        if code == INTERRUPTED:  # else it was faster
+        if code == INTERRUPTED:  # else the run was faster
             self.interflect("resume", "run.h5", "-o", "resumed.h5")
             whole, resumed = self.bytes("whole.h5"), self.bytes("resumed.h5")
             self.assertEqual(resumed, whole)

@@ -1,4 +1,4 @@
-"""A setting of the solver has one name: in the library, on the command line, in files and in docs/design.md."""
+"""A setting of the solver has the same name in the library, on the command line, in files and in docs/design.md."""
 
 import json
 import re
@@ -6,19 +6,19 @@ import unittest
 
 from command import ROOT, CommandTest, room
 
-# Structures of solve.h, the members of SolveOptions that they are, and their headings in `solve --help`.
+# Structures of solve.h, their members in SolveOptions, and their headings in `solve --help`.
 GROUPS = {
     "Limits": ("limits", "Limits"),
     "RefinementOptions": ("refinement", "Refinement"),
     "ImportanceOptions": ("importance", "Importance"),
     "ExperimentalOptions": ("experimental", "Experimental"),
 }
-NOT_IN_FILES = {"max_elements"}  # follows the memory of the machine
-OF_NO_GROUP = {"importance", "views"}  # options in files; the first is the method's
+NOT_IN_FILES = {"max_elements"}  # depends on the memory of the machine
+OF_NO_GROUP = {"importance", "views"}  # options in files; the first depends on the method
 
 
 def members(structure: str) -> list[str]:
-    """Names of the members of a structure of solve.h: 'double smoothing = 0.9, exponent = 0.75;' has two."""
+    """Returns the member names of a structure of solve.h: 'double smoothing = 0.9, exponent = 0.75;' has two."""
     text = (ROOT / "include" / "interflect" / "solve.h").read_text()
     body = re.search(rf"^struct {structure} {{\n(.*?)^}};", text, re.MULTILINE | re.DOTALL).group(1)
     statements = re.sub(r"//.*", "", body).split(";")
@@ -26,8 +26,8 @@ def members(structure: str) -> list[str]:
 
 
 def settings(known: set[str]) -> list[tuple[str, str, str]]:
-    """(path in SolveOptions, name outside, heading of the help) of every setting; `known` names decide whether its
-    group's is part of a name."""
+    """Returns (path in SolveOptions, external name, heading of the help) of every setting. `known` decides whether a
+    name includes its group."""
     found = []
     for structure, (group, heading) in GROUPS.items():
         for member in members(structure):
@@ -40,7 +40,7 @@ class Settings(CommandTest):
     def setUp(self):
         super().setUp()
         help_text = self.interflect("solve", "--help").stdout
-        self.headings = {}  # of the help, by option
+        self.headings = {}  # by option
         heading = ""
         for line in help_text.splitlines():
             if match := re.match(r"(\w.*):$", line):

@@ -1,4 +1,4 @@
-"""Skies, the sun and environment maps, from the command line."""
+"""Skies, the sun and environment maps, on the command line."""
 
 import math
 import unittest
@@ -10,7 +10,7 @@ DAYLIGHT = ("--sky", "clear:9000", "--sun", "180,30,50000", "--ground", "0.2")
 
 
 def radiance_picture(width, height, mantissas=(128, 128, 128), exponent=129):
-    """Of one colour, 1 for the values of above."""
+    """A picture of one colour; the default values give 1."""
     header = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
     return header + bytes((*mantissas, exponent)) * (width * height)
 

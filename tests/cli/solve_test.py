@@ -1,4 +1,4 @@
-"""What a script relies on when it calls `solve`: reproducibility, limits, statistics."""
+"""Properties of `solve` that scripts rely on: reproducibility, limits, statistics."""
 
 import json
 import time
@@ -71,7 +71,7 @@ class Statistics(CommandTest):
                 + ["largest_quantum", "high_quantum"],
             )
             self.assertEqual(line["power_rays"] + line["importance_rays"], line["rays"])
-            self.assertEqual(line["escaped_power"], [0, 0, 0])  # the room is closed
+            self.assertEqual(line["escaped_power"], [0, 0, 0])  # closed room
         rays = [line["rays"] for line in iterations]
         self.assertEqual(rays, sorted(set(rays)))
         self.assertEqual([line["iteration"] for line in iterations], list(range(len(iterations))))
@@ -101,7 +101,7 @@ class Statistics(CommandTest):
         self.assertGreater(iterations[-1]["error_estimate"], 0.0001)
 
     def test_time(self):
-        """Bounds that hold on a machine whose speed changes meanwhile: a step that it makes too long is undone."""
+        """The bounds hold even if the machine's speed changes, because a step that takes too long is undone."""
         asked = 1.0  # [s]
         start = time.monotonic()
         _, iterations = self.solve("--time", asked, "--rays", "1e12")
@@ -113,7 +113,7 @@ class Statistics(CommandTest):
 
 class BlackView(CommandTest):
     def test_has_no_error_and_says_so(self):
-        """What a view shows reflects nothing: no error is known, and none is small enough for --until."""
+        """The view shows only a black surface: the error is unknown, so --until never ends the run."""
         black = vertices((-1, 4, 0), (3, 4, 0), (3, 4, 3), (-1, 4, 3)) + "m black =\n\trd 0\n"
         self.write("dark.mgf", room() + black + "f v0 v1 v2 v3\n")
         view = ("--eye", "1,6,1.5", "--look-at", "1,4,1.5", "--fov", "30")
@@ -123,13 +123,13 @@ class BlackView(CommandTest):
         _, *iterations = map(json.loads, (self.folder / "stats").read_text().splitlines())
         self.assertEqual({line["error_estimate"] for line in iterations}, {None})
         self.assertGreater(iterations[-1]["rays"], 90_000)  # the light may be absorbed before the rays are spent
-        inside = ("--eye", "1,2.5,1.5", "--look-at", "1,0,1.2")  # of the room
+        inside = ("--eye", "1,2.5,1.5", "--look-at", "1,0,1.2")  # the room
         self.assertNotIn("the error is not known", self.interflect("solve", "dark.mgf", *inside, *run).stderr)
 
 
 class Light(CommandTest):
     def test_a_closed_grey_room_reflects_what_the_geometric_series_says(self):
-        """Each lumen arrives somewhere, and a share rho of it leaves again: in all Phi (1 + rho + rho^2 + ...)."""
+        """Each lumen reaches a surface, and a share rho of it is reflected: in total Phi (1 + rho + rho^2 + ...)."""
         rho, emitted = 0.6, 1000  # 1, [lm]
         grey = room(LAMP + f"\trd {rho}\n").replace("cxy .36 .34", "")
         self.write("room.mgf", grey)

@@ -1,4 +1,4 @@
-"""Standard streams that are closed or full: what cannot be said is an error, and no result is lost."""
+"""Standard streams that are closed or full: a failed write is an error, and results are kept."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Wrong usage: exit code 2, a sentence that names the option, nothing written. And the help that prevents it."""
+"""Wrong usage: exit code 2, a message that names the option, no output; and the help."""
 
 import unittest
 

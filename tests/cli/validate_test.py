@@ -1,4 +1,4 @@
-"""`validate`: a sound room has no problem, and each fault that is built into it is found, with its place."""
+"""`validate`: a sound room has no problem, and each planted fault is found, with its position."""
 
 import json
 import unittest
@@ -9,7 +9,6 @@ ONE_SIDED = PAINT.replace("rd .6", "sides 1\n\trd .6")
 
 
 def panel(z=1, size=1, corner=(0.5, 1), material=PAINT, reverse=False):
-    """A horizontal square whose front looks up."""
     x, y = corner
     outline = "v3 v2 v1 v0" if reverse else "v0 v1 v2 v3"
     return vertices((x, y, z), (x + size, y, z), (x + size, y + size, z), (x, y + size, z)) + material + f"f {outline}\n"
@@ -22,7 +21,7 @@ def box(low, high):
 
 
 LIGHT = "v bulb =\n\tp 1 1 {z}\nlight point bulb {intensity}\n"
-FAULTS = {  # what is added to the room: kind, count and what its first place says
+FAULTS = {  # addition to the room: kind, count and first place of the finding
     "degenerate-face": (vertices((0, 0, 1), (1, 0, 1), (2, 0, 1)) + PAINT + "f v0 v1 v2\n", 1, "room.mgf:"),
     "duplicate-face": (panel() + panel(), 1, [1, 1.5, 1]),
     "coincident-face": (panel() + panel(size=0.5), 1, [1, 1.5, 1]),
@@ -50,7 +49,7 @@ class Validate(CommandTest):
         report = self.json("validate", "room.mgf", "--strict")
         self.assertEqual(report["problems"], 0)
         self.assertEqual([finding["kind"] for finding in report["findings"]], ["open-edge"])
-        self.assertEqual(report["findings"][0]["count"], 4)  # of the lamp
+        self.assertEqual(report["findings"][0]["count"], 4)  # edges of the lamp
         self.assertGreater(report["memory"], 1e6)
         self.assertAlmostEqual(report["seconds"] * report["rays_per_second"], 20e6, delta=1e3)
 
@@ -96,7 +95,7 @@ class Validate(CommandTest):
 
 
 class Misplaced(CommandTest):
-    """Probable mistakes of placing: `validate` lists them, and `solve`, `probe` and `report` warn."""
+    """Probable placement errors: `validate` lists them, and `solve`, `probe` and `report` warn."""
 
     LUMINAIRE = "IESNA:LM-63-2002\nTILT=NONE\n1 400 1 2 1 1 2 .2 .2 0\n1 1 30\n0 90\n0\n100 100\n"
     RAYS = ("--rays", "10k")
@@ -113,7 +112,7 @@ class Misplaced(CommandTest):
         return [line for line in self.interflect(*arguments).stderr.splitlines() if line.startswith("warning: ")]
 
     def test_luminaire_behind_the_ceiling(self):
-        """0.2 mm above it the room was dark, without a warning."""
+        """At 0.2 mm above the ceiling the room was dark, without a warning."""
         behind, before = ("--luminaire", "lamp.ies@.2,.2,2.5002"), ("--luminaire", "lamp.ies@.2,.2,2.4998")
         self.assertIn("close-luminaire", self.kinds(*behind))
         self.assertNotIn("close-luminaire", self.kinds(*before))

@@ -1,4 +1,4 @@
-// Cells of the regular 1:4 subdivision: the parts make up the whole, and a point is found in the part that holds it.
+// Cells of the regular 1:4 subdivision: the parts cover the whole, and search finds the part that contains a point.
 #include "interflect/elements/cell.h"
 
 #include <gtest/gtest.h>

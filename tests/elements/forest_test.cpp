@@ -1,4 +1,4 @@
-// The forest of quadtrees: areas, search, subdivision by many threads at once, values kept by element.
+// The forest of quadtrees: areas, search, concurrent subdivision, values per element.
 #include "interflect/elements/forest.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Scene three_shapes() {
     return scene;
 }
 
-/// Subdivides leaves that a seeded choice names, `count` times.
+/// Subdivides `count` leaves chosen at random.
 void subdivide_at_random(ElementForest& forest, int count, unsigned seed) {
     std::mt19937 random(seed);
     for (int i = 0; i < count; ++i) {
@@ -54,7 +54,7 @@ TEST(Forest, LeavesCoverTheirPatch) {
 }
 
 TEST(Forest, CellAreaIsTheShareOfPointsThatFallIntoIt) {
-    // The irregular quadrilateral: its cells differ in area though they are alike in parameters.
+    // The irregular quadrilateral: its cells differ in area though their parameter ranges are equal.
     const Scene scene = three_shapes();
     ElementForest forest(scene, capacity);
     const std::uint32_t child = forest.subdivide(1);
@@ -82,7 +82,6 @@ TEST(Forest, LeafAtFindsTheLeafWhoseCellHoldsThePoint) {
     }
 }
 
-/// All that describes a forest, element by element.
 std::vector<std::array<std::uint32_t, 4>> described(const ElementForest& forest) {
     std::vector<std::array<std::uint32_t, 4>> d;
     for (std::uint32_t e = 0; e < forest.size(); ++e)
@@ -92,7 +91,7 @@ std::vector<std::array<std::uint32_t, 4>> described(const ElementForest& forest)
 
 TEST(Forest, ThreadsThatSubdivideTogetherMakeTheForestThatOneMakes) {
     const Scene scene = testing_support::closed_box({1, 2, 3}, 3, {Material{"grey", Rgb(0.5f), Rgb(1)}});
-    // Refines down to level 4 around random points; threads with the same seed fight for the same elements.
+    // Refines to level 4 around random points; threads with the same seed compete for the same elements.
     const auto refine = [](ElementForest& forest, unsigned seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> uniform(0, 1);
@@ -159,7 +158,7 @@ TEST(Forest, GoesFromTheRootsToTheLeavesAndBackPastNoGeneration) {
     const Scene scene = three_shapes();
     ElementForest forest(scene, 1 << 20);
     std::mt19937 random(6);
-    for (unsigned batch = 0; batch < 4; ++batch) {  // the last one is not put in order
+    for (unsigned batch = 0; batch < 4; ++batch) {  // the last batch is left unsorted
         const std::uint32_t first = forest.size();
         for (int i = 0; i < 20'000; ++i) forest.subdivide(static_cast<std::uint32_t>(random()) % forest.size());
         if (batch == 3) break;

@@ -1,7 +1,7 @@
 // Means of textures over cells: a parent's is the area-weighted mean of its children's, on patches of every shape.
 //
-// Seen to fail when triangles are weighted by parameters in place of areas, and when one of the two in a square is left
-// out.
+// Seen to fail when triangles are weighted by parameters instead of areas, and when a triangle of a square is
+// omitted.
 #include "interflect/elements/texture_means.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-"""One experiment from end to end: a tiny Figure 3 of a maze of one room."""
+"""One complete experiment: a tiny Figure 3 of a maze of one room."""
 
 import csv
 import os
@@ -102,7 +102,7 @@ class Figure(CommandTest):
             line = process.stderr.readline()
             self.assertTrue(line, seen)
             seen += line
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        os.killpg(process.pid, signal.SIGINT)  # like a terminal
         _, messages = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, messages)
         self.assertIn("goes on from there", messages)

@@ -1,4 +1,4 @@
-"""What the experiments' files ask to be run, and in which order."""
+"""The runs that the experiments' files define, and their order."""
 
 import sys
 import tempfile
@@ -63,7 +63,7 @@ class Configuration(unittest.TestCase):
         self.assertEqual(self.read(False), {"view": "a", "budgets": [1, 2], "reference": {"rays": 9, "seed": 3}})
 
     def test_the_paper_at_its_own_scale(self):
-        """110 million rays a method, 433 million for the reference; at least 5 seeds where the lower budgets are."""
+        """110 million rays a method, 433 million for the reference; at least 5 seeds for the lower budgets."""
         entries = {name: experiment.Experiment(name).entries for name in experiment.PAPER}
         self.assertEqual(entries["fig1-reference"][0].task.solve.rays, 433_000_000)
         self.assertEqual({entry.task.solve.rays for entry in entries["fig2-equal-rays"]}, {110_000_000})

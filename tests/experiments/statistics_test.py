@@ -16,7 +16,7 @@ from lab import statistics
 
 class StudentT(unittest.TestCase):
     def test_tables(self):
-        # Two-sided, as printed in every table of Student's distribution.
+        # Two-sided, as in printed tables of Student's distribution.
         for degrees, confidence, t in (
             (1, 0.95, 12.706),
             (2, 0.95, 4.303),
@@ -47,7 +47,7 @@ class Mean(unittest.TestCase):
         self.assertEqual(str(found), "0.0123")
 
     def test_covers_as_often_as_it_says(self):
-        # 4,000 intervals of 5 normal samples: 95% cover, give or take 4 standard deviations of the binomial (1.4%).
+        # 4,000 intervals of 5 normal samples: 95% cover the mean, within 4 standard deviations of the binomial (1.4%).
         samples = np.random.default_rng(1).normal(10, 3, (4000, 5))
         intervals = [statistics.mean(row) for row in samples]
         covering = np.mean([abs(m.value - 10) < m.half_width for m in intervals])
@@ -88,7 +88,7 @@ class Curve(unittest.TestCase):
         x = np.array([1.0, 100.0])
         above = statistics.Curve(x, np.array([8.0, 2.0]), np.array([0.03, 0.03]), 4)
         below = statistics.Curve(x, np.array([2.0, 2.0]), np.array([0.04, 0.04]), 9)
-        ratio = statistics.ratio_at(above, below, 10)  # half way in logarithms: 4 over 2
+        ratio = statistics.ratio_at(above, below, 10)  # midpoint in logarithms: 4 over 2
         self.assertAlmostEqual(ratio.value, 2)
         self.assertAlmostEqual(math.log(ratio.high / ratio.value), 2.776 * 0.05, delta=1e-4)
         self.assertAlmostEqual(ratio.high / ratio.value, ratio.value / ratio.low)

@@ -1,4 +1,4 @@
-// A solution file of which any byte has changed is refused, whatever the byte was for.
+// A solution file in which any byte has changed is refused.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The smallest solution with everything in it: a cube of whole patches, seen from inside.
+/// Writes the smallest solution with all features: a cube of undivided patches, seen from inside.
 void write_small_solution(const fs::path& path) {
     Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
     scene.views = {{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}};
@@ -48,7 +48,7 @@ class DamagedFile : public testing::Test {
         return error();
     }
 
-    /// With one byte of the file changed, which must be `byte`, and then restored.
+    /// Returns the error with one byte of the file changed, which must be `byte`; restores the file.
     std::string error_with_flipped(std::size_t at, char byte, int mask) const {
         std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
         const auto write = [&](char c) { file.seekp(static_cast<std::streamoff>(at)).put(c).flush(); };

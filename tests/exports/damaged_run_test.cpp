@@ -1,5 +1,5 @@
-// A saved run that is damaged is refused, and never crashes what opens it. Seen to fail when Solver::open() reads a
-// file without comparing its checksums, and when it lets other exceptions than InputError pass.
+// A damaged saved run is refused and never crashes the reader. Seen to fail when Solver::open() reads a file without
+// comparing its checksums, and when it passes on other exceptions than InputError.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-/// Of an array in a file, in bytes.
+/// In bytes.
 struct Place {
     std::size_t begin, size;
 };
@@ -45,7 +45,7 @@ class DamagedRun : public testing::Test {
         bytes_ = {std::istreambuf_iterator<char>(file), {}};
     }
 
-    /// What Solver::open() says of the file; empty where it opens it. Other exceptions than InputError pass.
+    /// Returns the message of Solver::open(); empty if it opens. Does not catch other exceptions than InputError.
     std::string error() const {
         try {
             Solver::open(path_);
@@ -57,7 +57,6 @@ class DamagedRun : public testing::Test {
 
     void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes; }
 
-    /// The undamaged file but for one bit.
     void write_flipped(std::size_t at, std::size_t bit) const {
         std::string damaged = bytes_;
         damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));
@@ -102,7 +101,7 @@ TEST_F(DamagedRun, IsRefusedWithoutItsStateOrAPartOfIt) {
     }
 }
 
-// What the checksums do not tell, since it was there when they were made. Most such runs open, and are wrong.
+// Damage that the checksums include, so they do not detect it. Most such runs open, and are wrong.
 TEST_F(DamagedRun, NeverCrashesWhateverItsStateSays) {
     std::mt19937 random(1);
     int refused = 0;

@@ -18,7 +18,6 @@ using testing_support::closed_box;
 
 const Material grey{"grey", Rgb(0.5f), Rgb(0)};
 
-/// Every quadrilateral cut along a diagonal.
 Scene in_triangles(Scene scene) {
     const std::vector<Patch> quadrilaterals = std::exchange(scene.patches, {});
     for (const Patch& patch : quadrilaterals)
@@ -30,7 +29,7 @@ Scene in_triangles(Scene scene) {
     return scene;
 }
 
-/// Subdivides elements at random, down to eight levels, so that large leaves are beside small ones everywhere.
+/// Down to eight levels, to put large leaves beside small ones everywhere.
 void subdivide_at_random(ElementForest& forest) {
     constexpr int deepest = 8;
     for (std::uint32_t e = 0; e < forest.size(); ++e)
@@ -38,7 +37,7 @@ void subdivide_at_random(ElementForest& forest) {
     forest.put_in_order(forest.patch_count());
 }
 
-class ElementMeshOf : public testing::TestWithParam<bool> {  // whether of triangles
+class ElementMeshOf : public testing::TestWithParam<bool> {  // with triangles
   protected:
     ElementMeshOf() : scene(closed_box(V3f(1.1f, 2.3f, 3.7f), 3, {grey})) {
         if (GetParam()) scene = in_triangles(std::move(scene));
@@ -58,8 +57,8 @@ class ElementMeshOf : public testing::TestWithParam<bool> {  // whether of trian
     std::vector<Rgb> irradiance;
 };
 
-// A closed surface has no crack where every edge of a triangle is that of exactly one other, which runs the other way.
-// Fails without add_points_on_edge(), and without join_near_points().
+// A closed surface has no crack if every edge of a triangle belongs to exactly one other triangle, in the opposite
+// direction. Fails without add_points_on_edge(), and without join_near_points().
 TEST_P(ElementMeshOf, ClosedBoxIsWatertight) {
     ElementMesh mesh(scene, *forest, irradiance);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;

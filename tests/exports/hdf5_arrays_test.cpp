@@ -1,4 +1,4 @@
-// An HDF5 file may say that its arrays are in other files, any of the machine.
+// An HDF5 file may refer to arrays in any other file of the machine.
 #include "interflect/exports/hdf5_arrays.h"
 
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing_support::TemporaryFolder;
 
-constexpr hsize_t length = 6;  // of the array that is elsewhere
+constexpr hsize_t length = 6;  // of the external array
 
-/// Writes a file; `add` creates its arrays.
+/// `add` creates the arrays.
 template <class Add>
 fs::path made(const TemporaryFolder& folder, const Add& add) {
     const fs::path path = folder.path() / "made.h5";

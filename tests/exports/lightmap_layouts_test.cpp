@@ -16,15 +16,15 @@ namespace {
 using namespace lightmap_testing;
 using testing_support::add_rectangle;
 
-/// Gives the rectangle's vertices the corners of a part of the unit square.
+/// Sets the coordinates of the rectangle's vertices to the corners of a part of the unit square.
 void lay_out(Scene& scene, std::uint32_t patch, V2f corner, V2f across, V2f up) {
     scene.lightmap_coordinates.resize(scene.vertices.size(), V2f(std::nanf("")));
     const std::array<V2f, 4> at{corner, corner + across, corner + across + up, corner + up};
     for (std::size_t c = 0; c < at.size(); ++c) scene.lightmap_coordinates[scene.patches[patch].vertices[c]] = at[c];
 }
 
-/// A floor of 4 x 2 m and walls of 4 x 3 m and 2 x 3 m, of one object; the last is mirrored in its layout, and beside
-/// them a wall of another object without a layout.
+/// A floor of 4 x 2 m and walls of 4 x 3 m and 2 x 3 m, of one object; the last is mirrored in its layout. Beside them
+/// is a wall of another object without a layout.
 Scene corner_with_layout() {
     Scene scene;
     const std::uint32_t material = testing_support::add_material(scene, Rgb(0.5f), Rgb(0));
@@ -42,7 +42,6 @@ Scene corner_with_layout() {
     return scene;
 }
 
-/// H = 100 (1 + patch): each face has its own.
 Solution of_each_patch(const Scene& scene) {
     Solution solution = uniform(scene, 0);
     for (std::size_t p = 0; p < solution.irradiance.size(); ++p)
@@ -50,8 +49,8 @@ Solution of_each_patch(const Scene& scene) {
     return solution;
 }
 
-// Image coordinates, in texels, are affine in those of the file: three corners tell the map, all others agree with it.
-// Fails with the file's v not turned, and with a chart for each face.
+// Image coordinates, in texels, are an affine function of the file's: three corners define the map, and all
+// others agree with it. Fails without flipping the file's v, and with a chart for each face.
 TEST(LightmapLayout, IsMovedAndScaledAsAWhole) {
     const Scene scene = corner_with_layout();
     ASSERT_TRUE(scene_faults(scene).empty());
@@ -78,7 +77,7 @@ TEST(LightmapLayout, IsMovedAndScaledAsAWhole) {
     EXPECT_NEAR((texel(0, 1) - texel(0, 0)).length(), 4 * 20, 1);  // 20 texels a metre
 }
 
-// Fails with places found on the wrong patch, as in a layout that is upside down.
+// Fails if places are found on the wrong patch, for example with a layout upside down.
 TEST(LightmapLayout, HasTheLightOfEachFace) {
     const Scene scene = corner_with_layout();
     const Lightmap lightmap = make_lightmap(scene, of_each_patch(scene), at(20));
@@ -142,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, UnusableLightmapLayout,
                                                         "is mostly empty"}),
                          [](const auto& test) { return test.param.name; });
 
-// The front keeps its place, the back of the same coordinates gets a chart. Fails where both are laid out.
+// The front keeps its place; the back with the same coordinates receives a chart. Fails if both keep the layout.
 TEST(LightmapLayout, IsThatOfTheFrontWhereBothSidesAreLit) {
     Scene scene;
     const std::uint32_t screen = add_rectangle(scene, V3f(0), V3f(2, 0, 0), V3f(0, 1, 0),
@@ -163,7 +162,6 @@ TEST(LightmapLayout, IsThatOfTheFrontWhereBothSidesAreLit) {
         }
 }
 
-// Neighbours that share an edge in the map do not overlap.
 TEST(LightmapLayout, MayTouchItself) {
     Scene scene = corner_with_layout();
     lay_out(scene, 1, {0.1f, 0.3f}, {0, 0.3f}, {0.4f, 0});

@@ -76,7 +76,7 @@ TEST_P(RoomLightmap, UsesFourFifthsOfTheTexels) {
     EXPECT_GE(lightmap.used, lightmap.covered);
 }
 
-// Exact: a border that took in what is beside the chart would be darker. Fails with gutters that are not filled.
+// Exact: borders that included texels beside the chart would be darker. Fails if gutters are not filled.
 TEST_P(RoomLightmap, HasNoDarkOrBrightBorders) {
     const Scene scene = closed_box(GetParam(), 1, std::vector<Material>(6, grey));
     const Solution solution = uniform(scene, 3);
@@ -88,7 +88,7 @@ TEST_P(RoomLightmap, HasNoDarkOrBrightBorders) {
         }
 }
 
-// As seen from the lit side. Fails where charts that are turned in the atlas are mirrored.
+// As seen from the lit side. Fails if charts that are turned in the atlas are mirrored.
 TEST_P(RoomLightmap, IsNotMirrored) {
     const Scene scene = closed_box(GetParam(), 1, std::vector<Material>(6, grey));
     const Lightmap lightmap = make_lightmap(scene, uniform(scene, 1), at(20));
@@ -101,9 +101,9 @@ TEST_P(RoomLightmap, IsNotMirrored) {
 INSTANTIATE_TEST_SUITE_P(Sizes, RoomLightmap,
                          testing::Values(V3f(3, 4, 2.5f), V3f(6, 8, 2.7f), V3f(12, 5, 3), V3f(2, 2, 2)));
 
-// A lightmap whose texels are smaller than the elements is what smooth shading has, at borders too. The difference is
-// that of bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that
-// are shifted by half a texel, mirrored or stretched.
+// A lightmap with texels smaller than the elements matches smooth shading, at borders too. The difference is that of
+// bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that are
+// shifted by half a texel, mirrored or stretched.
 TEST(Lightmap, IsWhatSmoothShadingHas) {
     const Scene scene = turned_floor();
     const Solution solution = solution_of(
@@ -159,8 +159,8 @@ struct WallCase {
 
 class LightmapBesideWall : public testing::TestWithParam<WallCase> {};
 
-// 1000 lx on one side of a wall, 1 lx on the other. A texel that mixed the sides would show hundreds beside the wall.
-// Fails without find_conflicts(), and with SmoothField across contacts.
+// 1000 lx on one side of a wall, 1 lx on the other. A texel that mixed the sides would show hundreds of lux beside the
+// wall. Fails without find_conflicts(), and with SmoothField across contacts.
 TEST_P(LightmapBesideWall, LeaksNoLight) {
     const auto& [name, thickness, end, texels_per_metre] = GetParam();
     const Scene scene = floor_with_wall(thickness, end);
@@ -168,7 +168,7 @@ TEST_P(LightmapBesideWall, LeaksNoLight) {
     const Lightmap lightmap = make_lightmap(scene, solution, at(texels_per_metre));
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         const PatchGeometry& geometry = solution.forest->geometry(p);
-        if (geometry.normal().z < 0.9f || geometry.centre().z > 0.1f) continue;  // not of the floor
+        if (geometry.normal().z < 0.9f || geometry.centre().z > 0.1f) continue;  // not part of the floor
         for (std::uint64_t i = 0; i < 2000; ++i) {
             const Parameters place = random_place(geometry, i);
             const V3f x = geometry.point(place);
@@ -187,8 +187,8 @@ INSTANTIATE_TEST_SUITE_P(Walls, LightmapBesideWall,
 
 class SealedRoomsLightmap : public testing::TestWithParam<TwoRoomsOptions> {};
 
-// Two solved rooms, one of them sealed and dark, on both sides of a wall 1 cm thick: what the lightmap has there more
-// than smooth shading leaked through texels.
+// Two solved rooms on both sides of a wall 1 cm thick; one is sealed and dark. Light there in excess of smooth shading
+// leaked through texels.
 TEST_P(SealedRoomsLightmap, LeaksNoLight) {
     const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
     const Solution solution =
@@ -227,7 +227,6 @@ INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
 
 class LightmapOfGroups : public testing::TestWithParam<std::tuple<LightmapShading, LightmapContent>> {};
 
-// A box with two lamps; each lamp is a group.
 TEST_P(LightmapOfGroups, SumsToTheTotal) {
     const auto [shading, content] = GetParam();
     Scene scene = closed_box(V3f(1, 1.5f, 2), 1, {{"white", Rgb(0.5f), Rgb(0)}});
@@ -265,8 +264,8 @@ INSTANTIATE_TEST_SUITE_P(All, LightmapOfGroups,
                          testing::Combine(testing::Values(LightmapShading::smooth, LightmapShading::gather),
                                           testing::Values(LightmapContent::irradiance, LightmapContent::radiance)));
 
-// Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point, so every texel gathers that,
-// at the feet of walls and in corners too. Rays that started beyond a wall would escape: those texels would lose half.
+// Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point. Every texel gathers this
+// value, also in corners. Rays that started beyond a wall would escape, and those texels would lose half.
 TEST(Lightmap, GathersAtBordersAsAnywhere) {
     constexpr float exitance = 2, reflectance = 0.5f, expected = exitance / (1 - reflectance);
     Scene scene = closed_box(V3f(1, 1.5f, 2), 1, {{"lamp", Rgb(reflectance), Rgb(exitance)}});

@@ -14,10 +14,10 @@ namespace {
 
 using namespace lightmap_testing;
 
-/// A point of a curved surface, of parameters from 0 to 1.
+/// Parameters from 0 to 1.
 using CurvedSurface = V3f (*)(float u, float v);
 
-/// Triangles, two to a cell of a grid but one where two corners coincide. @param pairs  Planar cells stay whole.
+/// Triangles, two per grid cell, or one if two corners coincide. @param pairs  Planar cells stay undivided.
 Scene tessellated(CurvedSurface surface, int columns, int rows, bool pairs) {
     Scene scene;
     scene.objects = {""};
@@ -64,9 +64,9 @@ V3f sphere(float u, float v) {
     const float latitude = std::numbers::pi_v<float> * (v - 0.5f);
     return around(u, std::cos(latitude), std::sin(latitude));
 }
-/// Two and a half turns, which lie upon each other when they are unfolded.
+/// Two and a half turns, which overlap when unfolded.
 V3f ramp(float u, float v) { return around(2.5f * u, 2 - v, 2 * u); }
-/// Circles around a saddle's middle are longer than in the plane.
+/// Circles around the middle of a saddle are longer than in the plane.
 V3f saddle(float u, float v) {
     return {2 * u - 1, 2 * v - 1, 4 * (u - 0.5f) * (u - 0.5f) - 4 * (v - 0.5f) * (v - 0.5f)};
 }
@@ -87,7 +87,7 @@ class UnfoldedLightmap : public testing::TestWithParam<UnfoldedCase> {
         make_charts(scene_, std::vector<bool>(scene_.patches.size(), true), *at(50).lightmap);
 };
 
-// Fails where smooth surfaces are not joined.
+// Fails if smooth surfaces are not joined.
 TEST_P(UnfoldedLightmap, HasFewCharts) {
     EXPECT_LE(charts_.size(), GetParam().most_charts);
     std::size_t patches = 0;
@@ -118,9 +118,9 @@ TEST_P(UnfoldedLightmap, KeepsLengths) {
         }
 }
 
-// Wherever a facet ends, the light is that of smooth shading, of which both its neighbours have the same: so there are
-// no seams, whether they share a chart or not. Turns of the ramp have light of their own. Fails with layouts whose
-// patches come near others that are far in space.
+// At the edge of a facet, the light equals smooth shading, which both neighbours share. There are hence no seams, with
+// or without a common chart. Turns of the ramp have separate light. Fails with layouts that place patches near others
+// that are far in space.
 TEST_P(UnfoldedLightmap, HasContinuousLight) {
     const Solution solution = solution_of(scene_, GetParam().pairs ? 1 : 2, [](const V3f& x) {
         return Rgb(100 + 10 * std::sin(x.x) + 10 * std::cos(x.y) + 20 * std::sin(x.z));

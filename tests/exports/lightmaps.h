@@ -11,7 +11,8 @@
 
 namespace interflect::lightmap_testing {
 
-/// Irradiance `field(x)` at the centre x of each element of a forest whose patches are subdivided `levels` times.
+/// Sets the irradiance to `field(x)` at the centre x of each element of a forest whose patches are subdivided `levels`
+/// times.
 template <class Field>
 Solution solution_of(const Scene& scene, int levels, const Field& field) {
     const auto forest = std::make_shared<ElementForest>(scene, scene.patches.size() << (2 * levels + 1));
@@ -38,7 +39,7 @@ inline ExportOptions at(float texels_per_metre) {
     return options;
 }
 
-/// As a graphics card interpolates, from the centres of the four nearest texels.
+/// Computes the bilinear interpolation from the centres of the four nearest texels, as on a graphics card.
 inline Rgb sample(const Lightmap& lightmap, std::uint32_t patch, Parameters place) {
     const Image& image = lightmap.images[static_cast<std::size_t>(lightmap.page(patch))];
     const V2f at = lightmap.coordinate(patch, place);
@@ -50,7 +51,7 @@ inline Rgb sample(const Lightmap& lightmap, std::uint32_t patch, Parameters plac
            (image.at(i, j + 1) * (1 - s) + image.at(i + 1, j + 1) * s) * t;
 }
 
-/// Parameters of random points of a patch, every other one on its border.
+/// Returns parameters of random points of a patch, every other one on its border.
 inline Parameters random_place(const PatchGeometry& geometry, std::uint64_t index) {
     Parameters p = geometry.uniform_parameters(static_cast<float>(random_double(1, index)),
                                                static_cast<float>(random_double(2, index)));

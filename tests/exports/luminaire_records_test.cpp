@@ -1,4 +1,4 @@
-// Measured light in solution files: its web once, however many luminaires share it, and every number as it was.
+// Photometry in solution files: a web shared by luminaires is stored once, and every number is preserved.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

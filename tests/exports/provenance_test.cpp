@@ -1,4 +1,4 @@
-// How a solution was found, as its file tells it: every iteration, and the files that it came from.
+// History of a solution in its file: every iteration, and the source files.
 //
 // Seen to fail when the last iteration is left out and when checksums are those of other files.
 #include <gmock/gmock.h>
@@ -70,7 +70,7 @@ TEST_F(Provenance, RefusesIterationsThatCannotBe) {
     EXPECT_THROW(report_of_row(row), std::runtime_error);
 }
 
-/// The table of checksums has a line for all arrays of a group that are numbered.
+/// The table of checksums has one line for all numbered arrays of a group.
 TEST_F(Provenance, HasRoomForAnyNumberOfTextures) {
     solved.scene.textures.resize(300, Texture{"grey.png", 1, 1, {Rgb(0.5f)}});
     EXPECT_EQ(written_and_read().scene.textures.size(), 300u);

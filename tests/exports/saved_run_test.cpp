@@ -1,6 +1,5 @@
-// A run in many calls, saved and opened between them, or stopped anywhere, has the bits of one that is left alone.
-// Seen to fail when arrivals of a step that is cut short stay, and when the file is written after the state has
-// changed.
+// A run in many calls, saved and opened between them, or stopped at any point, has the bits of an undisturbed run. Seen
+// to fail when arrivals of an interrupted step stay, and when the file is written after the state has changed.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,13 +32,13 @@ namespace fs = std::filesystem;
 struct Case {
     std::string name;
     SolveOptions options{.method = find_method("srr")};
-    bool has_lights = false;  // that are no surfaces
+    bool has_lights = false;  // other than surfaces
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 const View into_the_room = {"room", {0.2f, 0.2f, 2}, {3.5f, 2.5f, 0.5f}, {0, 0, 1}, 60};
 
-/// A room without a ceiling's quarter, a lamp below it and a table.
+/// A room without a quarter of its ceiling, with a lamp below it and a table.
 Scene open_room() {
     Scene scene = closed_box({4.1f, 2.9f, 2.5f}, 2, {{"wall", {0.7f, 0.6f, 0.5f}, Rgb(0)}});
     scene.patches.pop_back();
@@ -150,7 +149,7 @@ TEST_P(SavedRun, HasTheSameBitsInManyCalls) {
         Solver solver(scene, GetParam().options);
         int calls = 1;
         while (!solver.advance(limits).is_finished) {
-            solver.solution();  // looking changes nothing
+            solver.solution();  // reading changes no state
             ASSERT_LT(++calls, 1000);
         }
         EXPECT_GT(calls, 2);
@@ -172,7 +171,7 @@ TEST_P(SavedRun, HasTheSameBitsWhereverItIsStopped) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
     Solver solver(scene, GetParam().options);
     std::uint64_t random = 7;
-    // A step that is stopped is undone: times grow, so that the run ends however slow the machine is.
+    // A step that is stopped is undone. The times grow, so the run ends on any machine.
     double longer = 1;
     for (bool is_finished = false; !is_finished; longer *= 1.05) {
         std::atomic<bool> stop = false;
@@ -213,7 +212,6 @@ View turned(double degrees) {
     return view;
 }
 
-/// A run that has found the light for one view.
 Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed = 1) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method(method);
@@ -245,8 +243,8 @@ TEST(ChangeOfViews, KeepsTheLightAndFindsImportanceAnew) {
     EXPECT_GT(*std::max_element(found.indirect_importance.begin(), found.indirect_importance.end()), 0);
 }
 
-// A tenth of the rays suffices after a turn. The median of nine runs, since estimates from few rays vary: seen is 0.8.
-// Seen to fail where what was averaged before is forgotten.
+// After a turn, a tenth of the rays suffices. The median of nine runs is used, because estimates from few rays vary;
+// measured: 0.8. Seen to fail when the averages before the change are discarded.
 TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
     std::vector<double> ratios;
     for (std::uint64_t seed = 1; seed <= 9; ++seed) {
@@ -259,8 +257,8 @@ TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
     EXPECT_LT(ratios[4], 1.1);
 }
 
-// In a closed box of grey walls that all shine, H = M / (1 - rho) everywhere, whatever was looked at before. The mean
-// over the walls of 24 runs has a standard error below 0.3%, so 1.8% would be noticed; false alarms once in 10^9.
+// In a closed box of grey walls that all emit, H = M / (1 - rho) everywhere, for all previous views. The mean over the
+// walls of 24 runs has a standard error below 0.3%, so an error of 1.8% is detected; false alarm 1e-9.
 TEST(ChangeOfViews, StaysUnbiased) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
@@ -304,8 +302,8 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
     }
 }
 
-/// A run with few rays, a step at a time, whose views change after so many steps. It is saved and opened at each step
-/// from then on where a file is given. @param grew  Whether the mesh grew in the pass that was under way at the change.
+/// A run with few rays, advanced one step at a time, whose views change after `steps` steps. With a file, it is saved
+/// and opened at each later step. @param grew  Whether the mesh grew in the pass that was running at the change.
 Solution changed_after_steps(int steps, RefinementCriterion criterion, const fs::path& file, bool& grew) {
     SolveOptions options{.method = find_method("srr")};
     options.method = find_method("ihsrr");
@@ -330,8 +328,8 @@ Solution changed_after_steps(int steps, RefinementCriterion criterion, const fs:
     return solver.solution();
 }
 
-// Seen to fail when Passes does not archive how rays were shared before the change, or refuses that where the mesh has
-// grown since.
+// Seen to fail when Passes does not archive the ray distribution before the change, or refuses it if the mesh has grown
+// since.
 TEST(ChangeOfViews, HasTheSameBitsWhenSavedInTheMiddleOfAPass) {
     const TemporaryFolder folder;
     for (const RefinementCriterion criterion : {RefinementCriterion::variance, RefinementCriterion::power}) {
@@ -354,7 +352,7 @@ TEST(ChangeOfViews, RefusesWhatIsNoView) {
     EXPECT_EQ(solver.options().views.front().view.look_at, into_the_room.look_at);
 }
 
-/// What is saved with a dimmed group shows as it is lit now, and goes on as if it had never been saved.
+/// A run saved with a dimmed group shows its current light, and continues like an unsaved run.
 TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
     const TemporaryFolder folder;
     const fs::path run = folder.path() / "run.h5", result = folder.path() / "result.h5";

@@ -66,7 +66,7 @@ Scene floor_with_box(float height, float gap) {
     return scene;
 }
 
-/// Irradiance 1 on the patches whose light can reach them, 0 on those in the box.
+/// Returns an irradiance of 1 on the patches whose light can reach them, 0 on those in the box.
 std::vector<Rgb> light_above(const Scene& scene) {
     std::vector<Rgb> irradiance(scene.patches.size(), Rgb(0));
     irradiance[0] = Rgb(1);

@@ -1,5 +1,5 @@
-// Skies, environment maps and the sun's disc in solution files: they come back to the bit, and a run under them goes on
-// with the same bits.
+// Skies, environment maps and the sun's disc in solution files: they are preserved to the bit, and a run under them
+// continues with the same bits.
 #include <gtest/gtest.h>
 
 #include "interflect/scene/environment_maps.h"

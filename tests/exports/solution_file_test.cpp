@@ -23,8 +23,8 @@ using namespace testing_support;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A scene with everything that a solution file holds: triangles, two-sided faces, objects, views, names in UTF-8. Its
-/// patches are whole, and it was solved without a view.
+/// A scene with all features of a solution file: triangles, two-sided faces, objects, views, names in UTF-8. Its
+/// patches are undivided, and it was solved without a view.
 SolvedScene example() {
     SolvedScene solved;
     Scene& scene = solved.scene;
@@ -48,7 +48,7 @@ SolvedScene example() {
     return solved;
 }
 
-/// The same, looked at and refined: with importance and elements of several levels.
+/// The same with a view and refined: with importance and elements of several levels.
 SolvedScene refined_example() {
     SolvedScene solved = example();
     SolveOptions options = solved.solution.options;
@@ -123,7 +123,6 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What /elements/subdivided holds.
 std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     std::vector<std::uint32_t> parents;
     for (std::uint32_t e = solution.forest->patch_count(); e < solution.forest->size(); e += 4)
@@ -131,7 +130,6 @@ std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     return parents;
 }
 
-/// Finds the only array that has these contents in a file's bytes, and changes it to others of the same size.
 template <class T>
 std::string replaced(std::string bytes, const std::vector<T>& before, const std::vector<T>& after) {
     const auto raw = [](const std::vector<T>& values) {
@@ -161,15 +159,14 @@ class SolutionFile : public testing::Test {
         return contents(path_);
     }
 
-    /// A file of these bytes with checksums that are right: what they cannot protect the reader from.
+    /// Writes a file of these bytes with valid checksums, which therefore cannot protect the reader.
     fs::path write_with_checksums(const std::string& bytes) const {
         const fs::path path = folder_.write("damaged.h5", bytes);
         write_checksums(path, {});
         return path;
     }
 
-    /// What was never written must be refused, or make a scene that is valid all the same; it must never crash the
-    /// reader.
+    /// Modified contents must be refused or give a valid scene; they must never crash the reader.
     void expect_harmless(const std::string& bytes, const std::string& what) const {
         const fs::path damaged = write_with_checksums(bytes);
         try {
@@ -202,7 +199,7 @@ TEST_F(SolutionFile, KeepsTheOriginAndViewsFarFromTheWorlds) {
     expect_equal(read_solution(path_), solved);
 }
 
-/// Takes from the patches what version 2 did not have: their surfaces, the last number of each.
+/// Removes the surfaces from the patches, the last number of each, which version 2 did not have.
 void drop_surfaces_of_patches(const std::filesystem::path& path) {
     const char* name = "/scene/patches";
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), old = H5Dopen2(file, name, H5P_DEFAULT);
@@ -221,7 +218,7 @@ void drop_surfaces_of_patches(const std::filesystem::path& path) {
     H5Dclose(set), H5Sclose(space), H5Fclose(file);
 }
 
-/// What version 3 made of the same scene: no checksums, and less in the description.
+/// Converts a file to version 3: no checksums, and less in the description.
 std::string as_version_3(std::string bytes) {
     bytes.erase(0, checksum_block_size);
     for (const auto& [now, before] :
@@ -256,7 +253,7 @@ TEST_F(SolutionFile, OpensAFileOfItsTime) {
     EXPECT_EQ(read.solution.iterations.back().elements, 13u);
 }
 
-/// The same room with a light group, looked at and refined, solved by Interflect 0.1.0 when version 4 was the newest.
+/// The same room with a light group and a view, refined, solved by Interflect 0.1.0 when version 4 was the newest.
 TEST_F(SolutionFile, OpensVersion4) {
     const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/version-4.h5");
     EXPECT_EQ(read.format_version, 4);
@@ -326,7 +323,8 @@ TEST_F(SolutionFile, CannotBeWrittenIntoAMissingFolder) {
                  std::runtime_error);
 }
 
-/// Of a solution that is written before by bytes_of().
+/// Returns the message of a refused write of `solved` to `path`, whose previous file (from bytes_of()) must stay
+/// unchanged.
 std::string refusal(const fs::path& path, const SolvedScene& solved) {
     const std::string before = contents(path);
     try {
@@ -380,7 +378,7 @@ TEST_F(SolutionFile, IsRefusedWithNumbersThatCannotBe) {
                 HasSubstr("the indirect importance of element 5 is negative"));
 }
 
-/// An element with children can neither have them twice nor come after them, nor lie below the deepest level.
+/// An element with children can neither appear twice, nor after its children, nor below the deepest level.
 TEST_F(SolutionFile, IsRefusedWithAForestThatCannotGrow) {
     const SolvedScene solved = refined_example();
     const std::vector<std::uint32_t> subdivided = subdivided_elements(solved.solution);

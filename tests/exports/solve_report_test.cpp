@@ -7,7 +7,7 @@
 namespace interflect {
 namespace {
 
-/// No option has its default, so that none can be forgotten.
+/// All options differ from their defaults, so a missing option is noticed.
 SolveOptions unusual_options() {
     SolveOptions o{.method = find_method("srr")};
     o.method = find_method("ihsrr");

@@ -1,7 +1,7 @@
-// Textures and lightmap coordinates in solution files: a textured scene comes back as it was, and a run in it goes on
-// with the same bits.
+// Textures and lightmap coordinates in solution files: a textured scene is preserved, and a run in it continues with
+// the same bits.
 //
-// Seen to fail when coordinates of either kind are left out, and when the means of elements are not found again after a
+// Seen to fail when coordinates of either kind are left out, and when the means of elements are not recomputed after a
 // file is opened.
 #include <gtest/gtest.h>
 
@@ -71,8 +71,8 @@ TEST(LightmapCoordinates, ComeBackWithThoseThatAreMissing) {
     for (std::size_t i = read.size() - 4; i < read.size(); ++i) EXPECT_TRUE(std::isnan(read[i].x)) << i;
 }
 
-/// Other renderers multiply reflectance by opacity, which a Scene's has already been. Seen to fail where it is not
-/// undone.
+/// Other renderers multiply reflectance by opacity, which is already included in that of a Scene. Seen to fail when the
+/// export does not divide by it.
 TEST(Opacity, IsDividedOutOfTheReflectance) {
     Scene scene;
     scene.textures = {{"reflectance", 3, 1, {Rgb(0.25f), Rgb(0), Rgb(0.75f)}},

@@ -28,14 +28,13 @@ double area(const PolygonMesh& mesh) {
     return sum;
 }
 
-/// By the divergence theorem; positive where the faces look outwards. Only meaningful for a closed mesh.
+/// Computes the volume by the divergence theorem; positive if the faces look outwards. Requires a closed mesh.
 double volume(const PolygonMesh& mesh) {
     double sum = 0;
     for (const auto& face : mesh.faces) sum += area_vector(mesh, face).dot(mesh.points[face[0]]) / 3;
     return sum;
 }
 
-/// Every edge is used once in each direction.
 bool is_closed(const PolygonMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const auto& face : mesh.faces)
@@ -95,7 +94,7 @@ TEST(Curves, ConeWithATipIsMadeOfTriangles) {
          {make_cone(centre, 1, centre + tilted, 0, 4), make_cone(centre + tilted, 0, centre, 1, 4)}) {
         EXPECT_EQ(cone.faces.size(), 16u);
         EXPECT_EQ(triangles(cone), 16u);
-        // Outside of a cone whose tip is up looks up a little.
+        // The outside of a cone whose tip is up faces slightly up.
         for (const auto& face : cone.faces) EXPECT_GT(area_vector(cone, face).dot(tilted), 0);
     }
 }

@@ -13,7 +13,7 @@ using Imath::V3d;
 
 struct Up {
     Axis axis;
-    V3d direction, of_x;  // in the file; where x comes to point
+    V3d direction, of_x;  // in the file; the image of x
 };
 class FileToWorld : public testing::TestWithParam<Up> {};
 

@@ -1,4 +1,4 @@
-// Files that other files name: where they may lie, and that no message quotes them.
+// Files that other files name: permitted locations, and messages that do not quote them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ class TiltFiles : public testing::Test {
         fs::create_symlink(folder.path() / "outside.tlt", folder.path() / "lamps/link.tlt");
     }
 
-    /// The error for a file beside `lamps/secret` with this TILT file; "no error" where it is read.
+    /// Returns the error for a file beside `lamps/secret` with this TILT file; "no error" if it can be read.
     std::string fault(const std::string& tilt, const ReadOptions& options = {}) {
         const fs::path path = folder.write("lamps/lamp.ies", IesText{.tilt = "TILT=" + tilt + "\n"}.str());
         Warnings warnings;
@@ -74,7 +74,7 @@ TEST_F(TiltFiles, AreNotQuoted) {
 }
 
 TEST_F(TiltFiles, OfFilesWithinAGltfLieInItsFolder) {
-    // The name of the profile is no part of the path.
+    // The name of the profile is not part of the path.
     GltfBuilder file;
     file.add_triangle();
     file.add_node({{"extensions", {{"EXT_lights_ies", {{"light", 0}}}}}});
@@ -90,7 +90,6 @@ TEST_F(TiltFiles, OfFilesWithinAGltfLieInItsFolder) {
     EXPECT_THAT(fault_of("secret"), HasSubstr("has no TILT data"));
 }
 
-/// A scene, and a file beside it that it names.
 struct NamingScene {
     const char *name, *scene, *text, *file;
 };

@@ -1,8 +1,8 @@
-// Files that are damaged or hostile: refused by name of the file and the place in it, before memory is taken.
+// Damaged or hostile files are refused, with the name of the file and the place in it, before memory is allocated.
 //
 // Seen to fail when accessors are not checked against their views, when a node's second parent is not noticed, when
-// paths are compared as text alone (a symbolic link then leaves the folder), and when the counts that Draco's data
-// claim are believed.
+// paths are compared as text alone (a symbolic link then leaves the folder), and when the counts in Draco's data are
+// trusted.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <libdeflate.h>
@@ -32,7 +32,7 @@ std::string png_chunk(const std::string& content) {  // type and data
            big_endian(libdeflate_crc32(0, content.data(), content.size()));
 }
 
-/// A PNG of 8 bit RGB that claims a size, and whose data are `bytes` zeros, deflated.
+/// Creates a PNG of 8 bit RGB that claims a size, with data of `bytes` zeros, deflated.
 std::string png_of_zeros(std::uint32_t width, std::uint32_t height, std::size_t bytes) {
     const std::string zeros(bytes, '\0');
     libdeflate_compressor* compressor = libdeflate_alloc_compressor(6);
@@ -64,12 +64,11 @@ TEST_P(GltfFaults, AreNamed) {
     EXPECT_THAT(error, HasSubstr(GetParam().expected));
 }
 
-/// Puts a value at a JSON pointer: "/accessors/0/count".
+/// Sets the value at a JSON pointer, for example "/accessors/0/count".
 std::function<void(GltfBuilder&)> put(const char* pointer, const json& value) {
     return [=](GltfBuilder& file) { file.file[json::json_pointer(pointer)] = value; };
 }
 
-/// The triangle's indices, in a file that had none.
 std::function<void(GltfBuilder&)> index(std::vector<std::uint16_t> values) {
     return [=](GltfBuilder& file) { file.file["meshes"][0]["primitives"][0]["indices"] = file.add_indices(values); };
 }
@@ -80,7 +79,7 @@ std::function<void(GltfBuilder&)> show_image(const std::string& bytes) {
     };
 }
 
-/// Indices without data: all zero, however many.
+/// Indices without data are zero.
 std::function<void(GltfBuilder&)> index_zeros(std::uint64_t count) {
     return [=](GltfBuilder& file) {
         file.file["meshes"][0]["primitives"][0]["indices"] =
@@ -183,7 +182,7 @@ TEST(GltfBadInput, DataBeyondAnImageAreNotInflated) {
     GltfBuilder file;
     file.add_triangle();
     show_image(png_of_zeros(1, 1, std::size_t{1} << 28))(file);
-    file.fault();  // whether refused or not, at once
+    file.fault();  // at once, refused or not
 }
 
 TEST(GltfBadInput, AGlbIsRefusedWhereverItIsCut) {
@@ -222,7 +221,7 @@ class GltfPaths : public testing::Test {
     }
     static std::string binary() { return triangle().binary; }
 
-    /// What loading a file whose buffer has that URI is refused with; empty where it is read.
+    /// Returns the message for a file whose buffer has that URI; empty if the file is read.
     std::string fault(const std::string& uri, const ReadOptions& options = {}) {
         GltfBuilder file = triangle();
         file.file["buffers"] = {{{"uri", uri}, {"byteLength", binary().size()}}};

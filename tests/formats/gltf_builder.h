@@ -52,15 +52,13 @@ class GltfBuilder {
     int add_indices(const std::vector<std::uint16_t>& values) {
         return add_accessor(add_view(bytes_of_values(values)), ushort_type, values.size(), "SCALAR");
     }
-    /// A mesh of one primitive.
     int add_mesh(json primitive) { return add("meshes", {{"primitives", {std::move(primitive)}}}); }
-    /// In the scene itself.
     int add_node(json node) {
         const int index = add("nodes", std::move(node));
         file["scenes"][0]["nodes"].push_back(index);
         return index;
     }
-    /// A node with the triangle (0, 0, 0), (1, 0, 0), (0, 1, 0), which faces +z, and the given material.
+    /// Adds a node with the triangle (0, 0, 0), (1, 0, 0), (0, 1, 0), which faces +z, and the given material.
     json& add_triangle(json material = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}) {
         const int positions = add_vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
         const int coordinates = add_coordinates({{0, 0}, {1, 0}, {0, 1}});
@@ -87,7 +85,6 @@ class GltfBuilder {
                word(padded.size()) + std::string("BIN\0", 4) + padded;
     }
     Scene read(const ReadOptions& options = {}) const { return read_gltf_bytes(glb(), "test.glb", options); }
-    /// What reading it is refused with.
     std::string fault(const ReadOptions& options = {}) const {
         try {
             read(options);
@@ -98,7 +95,7 @@ class GltfBuilder {
     }
 };
 
-/// Positions of a patch's corners in the world.
+/// Returns world positions of a patch's corners.
 inline std::vector<V3f> corners(const Scene& scene, std::size_t patch) {
     std::vector<V3f> result;
     for (int k = 0; k < scene.patches[patch].vertex_count(); ++k)

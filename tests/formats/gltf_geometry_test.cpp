@@ -1,4 +1,4 @@
-// Where glTF puts faces: nodes, instances, primitive modes, accessors of every kind and compressed meshes.
+// Positions of faces in glTF: nodes, instances, primitive modes, accessors of every kind and compressed meshes.
 //
 // Seen to fail when matrices are transposed, when strips do not turn, when normalised integers are not divided, when
 // sparse elements are not replaced and when the filter of a compressed view is not applied.
@@ -94,7 +94,7 @@ struct ModeCase {
 
 class GltfModes : public testing::TestWithParam<ModeCase> {};
 
-/// Five points that are not in one plane, so that no two triangles become a quadrilateral.
+/// Five points that are not coplanar, so that no two triangles become a quadrilateral.
 const std::vector<V3f> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5f}, {0, 2, 1}};
 
 TEST_P(GltfModes, GiveTheirTriangles) {
@@ -138,7 +138,7 @@ TEST(GltfModes, PointsAndLinesAreLeftOut) {
     EXPECT_THAT(warning_kinds(scene), testing::Contains("no-faces"));
 }
 
-/// The triangle's positions as integers of some type. @param one  What stands for 1.
+/// Returns the triangle's positions as integers of some type. @param one  The representation of 1.
 template <class T>
 std::string integer_positions(T one) {
     return bytes_of_values(std::vector<T>{0, 0, 0, 0, one, 0, 0, 0, 0, one, 0, 0});  // three, and one of padding
@@ -235,13 +235,13 @@ TEST(GltfMeshes, SkinsAreInTheirPose) {
 
 // ---- Compressed meshes
 
-/// Compressors may begin a triangle with another of its corners.
+/// Rotates the vertices: compressors may begin a triangle with another of its corners.
 std::vector<V3f> from_origin(std::vector<V3f> found) {
     std::rotate(found.begin(), std::find(found.begin(), found.end(), V3f(0)), found.end());
     return found;
 }
 
-/// The triangle's view of positions, compressed. @param mode, filter  As the extension has them.
+/// @param mode, filter  As in the extension.
 void compress_view(GltfBuilder& file, int view, const std::string& compressed, std::size_t count, std::size_t stride,
                    const char* mode, const char* filter = "NONE") {
     const int packed = file.add_view(compressed);
@@ -305,7 +305,7 @@ TEST(GltfMeshopt, QuaternionFilterIsUndone) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((found[i] - expected[i]).length(), 1e-3f) << "16 bits";
 }
 
-/// The triangle with positions and two sets of texture coordinates, as Draco compresses them.
+/// Compresses a triangle with positions and two sets of texture coordinates.
 std::string draco_triangle() {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(1);

@@ -1,6 +1,6 @@
 // The lightmap coordinates of a glTF file: its second set of texture coordinates.
 //
-// Seen to fail when v is not flipped, when normalised integers are not divided, when what is no place in a lightmap is
+// Seen to fail when v is not flipped, when normalised integers are not divided, when coordinates outside a lightmap are
 // kept, when a texture's transform is applied to them, and when instances share a part of a lightmap.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What light and which views a glTF file has, in its units: candela, lux, cd/m^2, radians.
+// Lights and views of a glTF file, in its units: candela, lux, cd/m^2, radians.
 //
 // Seen to fail when the exitance lacks its factor of pi, when lights face along +z, when cones' angles stay in radians
 // and when an orthographic view shows half of its height.
@@ -61,7 +61,7 @@ TEST(GltfLights, SpotsHaveAnglesInRadians) {
     EXPECT_EQ(light.intensity, Rgb(10));
 }
 
-/// The specification recommends ((cos a - cos outer) / (cos inner - cos outer))^2 between the angles, as ours has it.
+/// Between the angles, the specification recommends ((cos a - cos outer) / (cos inner - cos outer))^2, as used here.
 TEST(GltfLights, DefaultConeGoesFromTheAxisTo45Degrees) {
     const Scene scene = file_with_light({{"type", "spot"}}).read();
     const auto& light = std::get<SpotLight>(scene.luminaires.at(0).kind);
@@ -77,8 +77,8 @@ TEST(GltfLights, DirectionalOnesShineInLux) {
     expect_close(light.direction, {0, 1, 0});
 }
 
-// A point light of I candela, h above a corner of the black triangle: E = I h / r^3 where r is the distance. Its mean
-// over the triangle is found by the midpoint rule; about 16,000 rays arrive, so that the standard error is below 1%.
+// A point light of I candela, h above a corner of the black triangle: E = I h / r^3, with distance r. The midpoint rule
+// gives its mean over the triangle. About 16,000 rays arrive, so the standard error is below 1%.
 TEST(GltfLights, APointLightGivesItsIlluminance) {
     constexpr double intensity = 100, height = 2;
     GltfBuilder file;

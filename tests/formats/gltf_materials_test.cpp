@@ -1,4 +1,4 @@
-// What surfaces of a glTF file do with light: factors, textures, metals, glass and masks.
+// Surface materials of a glTF file: factors, textures, metals, glass and masks.
 //
 // Seen to fail when metals reflect, when colours are not decoded from sRGB, when v is not flipped, and when a texture
 // transform turns the wrong way.
@@ -27,7 +27,7 @@ using testing::Not;
 using testing::Pointwise;
 using namespace testing_support;
 
-/// The bytes of an image file. @param pixels  Linear; 8 bit values.
+/// @param pixels  Linear; 8 bit values.
 std::string encoded(const std::vector<Rgb>& pixels, int width, const char* extension = ".png") {
     Image image(width, static_cast<int>(pixels.size()) / width);
     image.pixels = pixels;
@@ -150,7 +150,8 @@ class GltfAlpha : public testing::Test {
         file.add_triangle(diffuse({{"baseColorTexture", {{"index", index}}}}));
         material()["alphaMode"] = mode;
     }
-    /// What is there of the triangle, by its transmittance; the reflectance must be that much of grey.
+    /// Returns the opacity of the triangle's texels, from the transmittance; the reflectance must be that share of
+    /// grey.
     std::vector<float> coverage() {
         const Scene scene = file.read();
         const Material& m = scene.materials[scene.patches.at(0).material];
@@ -165,7 +166,7 @@ class GltfAlpha : public testing::Test {
     }
 };
 
-/// Seen to fail where alpha is decoded from sRGB, and where reflectances are left as they are.
+/// Seen to fail when alpha is decoded from sRGB, and when reflectances are not scaled.
 TEST_F(GltfAlpha, BlendedIsTheShareThatIsThere) {
     add("BLEND");
     EXPECT_THAT(coverage(), Pointwise(FloatNear(1e-5f), {0.0f, 0.2f, 0.6f, 1.0f}));
@@ -173,7 +174,7 @@ TEST_F(GltfAlpha, BlendedIsTheShareThatIsThere) {
     EXPECT_THAT(coverage(), Pointwise(FloatNear(1e-5f), {0.0f, 0.1f, 0.3f, 0.5f}));
 }
 
-/// Seen to fail where the factor is left out.
+/// Seen to fail without the factor.
 TEST_F(GltfAlpha, MaskedIsThereFromTheCutoffOn) {
     add("MASK");
     EXPECT_THAT(coverage(), ElementsAre(0, 0, 1, 1));
@@ -207,13 +208,12 @@ TEST_F(GltfAlpha, GlassIsWhereItIsThere) {
         EXPECT_NEAR(open[static_cast<std::size_t>(i)].x, 1 - share + share * 0.5f * grey, 1e-5f);
 }
 
-/// Reflectance of the first patch at a texel of its texture.
 Rgb reflectance_at(const Scene& scene, std::size_t texel) {
     const Material& material = scene.materials[scene.patches.at(0).material];
     return material.reflectance * scene.textures.at(material.reflectance_texture).texels.at(texel);
 }
 
-/// A triangle with a texture of 2 x 2 pixels: (0, 0) of the file is its upper left one.
+/// A triangle with a texture of 2 x 2 pixels; (0, 0) in the file is the upper left one.
 class GltfTextures : public testing::Test {
   protected:
     const std::vector<Rgb> pixels = {srgb(10, 20, 30), srgb(40, 50, 60), srgb(70, 80, 90), srgb(100, 110, 120)};
@@ -255,7 +255,7 @@ TEST_F(GltfTextures, JpegIsReadToo) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(reflectance_at(scene, i)[c], grey[0][c], 0.01f);
 }
 
-/// The specification's own example: the image's lower left quadrant, turned.
+/// The specification's own example: the image's lower left quadrant, rotated.
 TEST_F(GltfTextures, TransformScalesTurnsAndMoves) {
     add_textured({{"extensions",
                    {{"KHR_texture_transform",

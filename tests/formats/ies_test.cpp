@@ -1,7 +1,7 @@
-// What stands in IES LM-63 files beside the angles: versions, factors, openings, TILT, separators; what is tolerated
-// with a warning, and what is an error with a line.
+// IES LM-63 files, apart from the angles: versions, factors, openings, TILT, separators; tolerated faults with a
+// warning, and errors with a line.
 //
-// Seen to fail when the multiplier or the ballast factor is forgotten, when feet are metres, when width and length are
+// Seen to fail when the multiplier or the ballast factor is omitted, when feet are metres, when width and length are
 // exchanged, when the last factor counts in files of 2019.
 #include "interflect/formats/ies.h"
 

@@ -1,6 +1,6 @@
-// What stands in EULUMDAT files beside the angles, what is tolerated with a warning, and what is an error with a line.
+// EULUMDAT files, apart from the angles: tolerated faults with a warning, and errors with a line.
 //
-// Seen to fail when the opening's length runs along C0, and when a half plane is taken for another.
+// Seen to fail when the opening's length runs along C0, and when half planes are confused.
 #include "interflect/formats/ldt.h"
 
 #include <gmock/gmock.h>
@@ -55,7 +55,7 @@ struct Oddity {
     std::string kind, text;
 };
 
-/// With the n-th line, from 1, replaced.
+/// Counts lines from 1.
 std::string with_line(const LdtText& ldt, int n, const std::string& line) {
     std::string text = ldt.str();
     std::size_t begin = 0;

@@ -1,4 +1,4 @@
-// Scenes that are named, not read.
+// Scenes generated from a name.
 #include "interflect/load_scene.h"
 
 #include <gtest/gtest.h>

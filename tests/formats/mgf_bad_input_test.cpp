@@ -1,4 +1,4 @@
-// Bad input gives an InputError that names file and line, at once, and nothing else.
+// Bad input gives an InputError that names file and line, without delay.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -36,7 +36,7 @@ void expect_in(const std::string& message, const std::string& part) {
 
 struct BadLine {
     const char* name;
-    const char* line;      // the seventh, after the vertices; what else it takes for a face to use it
+    const char* line;      // the seventh, after the vertices; then all that a face needs to use it
     const char* expected;  // part of the message
 };
 
@@ -136,7 +136,7 @@ TEST(MgfBadInput, AFaultCountsWhereItIsOnceAFaceUsesIt) {
     expect_in(message(three_vertices + "m x =\n rd -1\nsph a 1\n"), "bad.mgf:8: '-1' must not be");
 }
 
-// ---- What cannot be computed
+// ---- Values beyond the numeric limits
 
 std::string square(const std::string& size, const std::string& more = "") {
     return "m x =\n rd .5\nv a =\nv b =\n p " + size + " 0 0\nv d =\n p 0 " + size + " 0\n" + more + "f a b d\n";
@@ -182,7 +182,7 @@ TEST(MgfBadInput, FileCutAtAnyPlaceIsReadOrRefused) {
 // ---- Limits: refused before the time and memory are spent
 
 TEST(MgfLimits, CopiesTimesContent) {
-    // 1,000 copies are within the limit of 10,000 patches; with 256 patches each they are not.
+    // 1,000 copies are within the limit of 10,000 patches; with 256 patches each they exceed it.
     const std::string text = "v c =\nxf -a 1000 -t 3 0 0\nsph c 1\nxf\n";
     expect_in(message(text, {.max_patches = 10'000}),
               "bad.mgf:4: this would give more than 10000 patches (max_patches)");
@@ -280,7 +280,7 @@ TEST(MgfBadFiles, IncludedFileCannotCloseWhatItDidNotOpen) {
 }
 
 TEST(MgfBadFiles, FilesThatIncludeEachOtherManyTimesEnd) {
-    // 10 files that include the next ten times each: 10^10 lines if nobody counts.
+    // 10 files that include the next ten times each: 10^10 lines without a limit.
     const TemporaryFolder folder;
     for (int i = 0; i < 10; ++i) {
         std::string text;
@@ -291,7 +291,7 @@ TEST(MgfBadFiles, FilesThatIncludeEachOtherManyTimesEnd) {
     expect_in(message_of([&] { read_mgf(folder.path() / "f0.mgf", {.max_patches = 1000}); }), "(max_patches)");
 }
 
-// Seen to fail without the count of what was made: 50 million patches would allow for 10^9 words.
+// Seen to fail without the limit by generated patches: 50 million patches would allow for 10^9 words.
 TEST(MgfBadFiles, IncludesThatMakeNothingEndSoon) {
     const TemporaryFolder folder;
     for (int i = 0; i < 9; ++i) {

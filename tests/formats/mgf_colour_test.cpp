@@ -31,7 +31,7 @@ TEST(MgfColour, D65IsBluerThanNeutral) {
 
 TEST(MgfColour, AdaptationIsBradfords) {
     // Lindbloom's published matrix from E to D65, then his sRGB matrix, by hand for x = 0.4, y = 0.4: XYZ = (1, 1,
-    // 0.5); adapted (0.93853, 0.99530, 0.54420); RGB = (1.24006, 0.98011, 0.42450), of luminance 0.99526, divided out.
+    // 0.5); adapted (0.93853, 0.99530, 0.54420); RGB = (1.24006, 0.98011, 0.42450), divided by its luminance 0.99526.
     expect_near(to_rec709({0.4, 0.4}, 1, unbounded).rgb, Rgb(1.2460f, 0.9848f, 0.4265f), 2e-4f);
 }
 
@@ -83,7 +83,7 @@ TEST(MgfColour, FlatSpectrumIsNeutral) {
 }
 
 TEST(MgfColour, NarrowSpectrumIsOnTheSpectralLocus) {
-    // CIE 1931 at 520 nm and 600 nm; the table's step of 10 nm shows.
+    // CIE 1931 at 520 nm and 600 nm; the tolerance covers the table's step of 10 nm.
     expect_chromaticity(chromaticity_of_spectrum(519, 521, std::vector<double>{1, 1}), 0.0743, 0.8338, 5e-3);
     expect_chromaticity(chromaticity_of_spectrum(599, 601, std::vector<double>{1, 1}), 0.6270, 0.3725, 5e-3);
 }
@@ -122,8 +122,8 @@ Chromaticity daylight(double m1, double m2) {
 
 // Seen to fail while a negative tristimulus value was refused.
 TEST(MgfColour, TheBasisOfDaylightIsLegal) {
-    // D65 is S0 - 0.2965 S1 - 0.6883 S2 (CIE 15); the steps of 20 nm show. The table's white of equal energy is (1, 1,
-    // 1).
+    // D65 is S0 - 0.2965 S1 - 0.6883 S2 (CIE 15); the tolerance covers the steps of 20 nm. The table's white of equal
+    // energy is (1, 1, 1).
     expect_chromaticity(daylight(-0.2965, -0.6883), 0.3127, 0.3290, 5e-4);
     for (const auto& values : daylight_basis) {
         const Chromaticity c = chromaticity_of_spectrum(380, 780, values);
@@ -136,7 +136,7 @@ TEST(MgfColour, TheBasisOfDaylightIsLegal) {
 }
 
 TEST(MgfColour, NegativeWeightsTakeAway) {
-    // (1 + 3, 4, ...) of the test below, less the second part again.
+    // (1 + 3, 4, ...) of the test below, minus the second part.
     const MixedColour parts[] = {{1, {0.5, 0.25}}, {3, {0.25, 0.5}}, {-3, {0.25, 0.5}}};
     expect_chromaticity(mix(parts), 0.5, 0.25, 1e-12);
 }

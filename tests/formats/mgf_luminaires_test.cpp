@@ -1,4 +1,4 @@
-// `ies` in MGF files, and luminaires that are placed beside those of a scene's file.
+// `ies` in MGF files, and luminaires added to those of a scene's file.
 //
 // Seen to fail when the transform around an `ies` does not turn it, when a mirror image keeps its sides.
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ class MgfLuminaires : public testing::Test {
     static const MeasuredLight& light(const Scene& scene, std::size_t i = 0) {
         return std::get<MeasuredLight>(scene.luminaires.at(i).kind);
     }
-    /// What the light causes 1 m away from it.
+    /// Returns the irradiance at a distance of 1 m.
     static float intensity(const Scene& scene, const V3f& towards, std::size_t i = 0) {
         return illumination(scene.luminaires.at(i), light(scene, i).position + towards.normalized()).irradiance.y;
     }

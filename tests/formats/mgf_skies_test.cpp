@@ -1,6 +1,6 @@
-// `light sky` and `light environment` in MGF files, and daylight that is placed beside the lights of a scene's file.
+// `light sky` and `light environment` in MGF files, and daylight added to the lights of a scene's file.
 //
-// Seen to fail when east and west change places in all skies, when azimuths count the other way, when the ground is
+// Seen to fail when east and west are exchanged in all skies, when azimuths count the other way, when the ground is
 // black, when a dome's integral lacks a factor of pi.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ const std::string sunlight = "v up =\n n 0 0 1\nv s =\n n -0.6 0 -0.8\n";  // th
 
 class MgfSkies : public testing::Test {
   protected:
-    /// Four texels a row: the back (south), west, north ... of the upper half bright, each in its own way.
+    /// Four texels a row: the back (south), west, north ...; those of the upper half are bright and all different.
     MgfSkies() {
         map = folder.path() / "map.exr";
         write_texture(
@@ -112,8 +112,7 @@ TEST_F(MgfSkies, MayBeTheSunsDisc) {
     expect_fault("light directional s 1 91", "has a disc of 91 degrees; expected 0 to 90");
 }
 
-/// The middle of the image is north, y, and east is to the right of it; a rotation turns it clockwise as seen from
-/// above.
+/// The middle of the image is north (y), with east to its right. A rotation turns it clockwise as seen from above.
 TEST_F(MgfSkies, MayBeAnImage) {
     const V3f from_back(-0.1f, -1, 0.1f), west(-1, -0.1f, 0.1f), north_west(-0.1f, 1, 0.1f), north_east(0.1f, 1, 0.1f);
     const Scene scene = read("light environment map.exr\n");
@@ -189,7 +188,7 @@ TEST_F(MgfSkies, ComeBackAsTheyWereWritten) {
     EXPECT_THROW(write_mgf(scene, path), std::runtime_error) << "the map has no file";
 }
 
-// ---- Placed beside a scene's own lights
+// ---- Added to a scene's own lights
 
 class PlacedDaylight : public MgfSkies {
   protected:

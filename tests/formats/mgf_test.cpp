@@ -1,4 +1,4 @@
-// What the reader makes of each entity, on texts small enough to work out by hand.
+// The reader's results for each entity.
 #include "interflect/formats/mgf.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace interflect {
 namespace {
 
-/// Corners of the unit square, and of one half as large inside it.
+/// Corners of the unit square, and of a square of half the size inside it.
 const std::string vertices =
     "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\nv e =\n p 0 1 0\n"
     "v ha =\n p .25 .25 0\nv hb =\n p .75 .25 0\nv hd =\n p .75 .75 0\nv he =\n p .25 .75 0\n";
@@ -26,7 +26,7 @@ Scene read(const std::string& text, const ReadOptions& options = {}) {
     return scene;
 }
 
-/// Reads faces between the vertices above, one-sided and grey.
+/// Faces between the vertices above, one-sided and grey.
 Scene read_faces(const std::string& text) { return read(vertices + one_sided + text); }
 
 const Material& material_of(const Scene& scene, std::size_t patch) {
@@ -83,7 +83,7 @@ TEST(Mgf, FaceWithHoles) {
 TEST(Mgf, HoleBehindASeam) { EXPECT_NEAR(total_area(read_faces("f a b d e he hd hb ha he e\n")), 0.75, 1e-6); }
 
 TEST(Mgf, VertexContexts) {
-    // `v a` goes back to a; `v b = a` copies; without a name there is an unnamed vertex, which harms nobody.
+    // `v a` returns to a; `v b = a` copies; without a name there is an unnamed vertex, which has no effect here.
     const Scene scene = read("v a =\n p 1 2 3\nv b = a\nv d =\n p 0 1 0\nv\n p 9 9 9\nv a\n p 0 0 0\nf a b d\n");
     EXPECT_EQ(scene.vertices, (std::vector<V3f>{{0, 0, 0}, {1, 2, 3}, {0, 1, 0}}));
 }
@@ -241,7 +241,7 @@ TEST(Mgf, TransformsNestTheInnerFirst) {
 }
 
 TEST(Mgf, MirrorImageKeepsTheFrontOutside) {
-    // The square's front is up. Mirrored in x it still is; mirrored in z it is down; two mirrors undo each other.
+    // The square faces up. Mirrored in x it still does; mirrored in z it faces down; two mirrors cancel.
     const Scene scene = read_faces(
         "xf -mx\nf a b d e\nxf\nxf -mz\nf a b d e\nxf\nxf -mx\nxf -my\nf a b d e\nxf\nxf\nxf -s -1\nf a b d e\nxf\n");
     const float up[] = {1, -1, 1, -1};
@@ -275,7 +275,7 @@ TEST(Mgf, ArraysNestAndHaveManyDimensions) {
 }
 
 TEST(Mgf, ContextsOutliveAnArraysCopies) {
-    // Each copy changes the vertex that the next one starts from.
+    // Each copy changes the vertex from which the next one starts.
     const Scene scene = read_faces("xf -a 2 -t 0 0 1\nf a b d\nv a\n p 0 0 .5\nxf\n");
     EXPECT_EQ(scene.vertices[scene.patches[0].vertices[0]], V3f(0, 0, 0));
     EXPECT_EQ(scene.vertices[scene.patches[1].vertices[0]], V3f(0, 0, 1.5f));

@@ -1,4 +1,4 @@
-// OBJ files and their material libraries.
+// OBJ files and material libraries.
 #include "interflect/formats/obj.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(, ObjIndices,
                                          "f 1 2 3\nf 1 3 4\n", "f 1 2 3 4 4\n"));
 
 TEST(Obj, PolygonsOfAnyShapeKeepTheirArea) {
-    const Scene scene = read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");  // a W turned over
+    const Scene scene = read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");  // an inverted W
     double area = 0;
     for (std::size_t i = 0; i < scene.patches.size(); i += 2) area += patch_area(scene, scene.patches[i]);
     EXPECT_NEAR(area, 16 - 6, 1e-5);
@@ -101,8 +101,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Finish{"DissolveBeforeTransparency", "Kd .4 .4 .4\nTr 1\nd 1\n", Rgb(.4f), Rgb(0), Rgb(0)}),
     [](const auto& finish) { return finish.param.name; });
 
-/// A triangle 2 mm long and 3 um wide, six steps of a float there, beside a floor of 8 x 8 m: litter, not a face that
-/// the scene's coordinates are too coarse for. Seen to be refused where its length counts.
+/// A triangle 2 mm long and 3 um wide, six float steps at its position, beside a floor of 8 x 8 m. It is negligible,
+/// not a sign of too coarse coordinates. Seen to be refused when its length counts.
 TEST(Obj, SliversThatRoundingFlattensAreLeftOut) {
     const Scene scene = read(
         "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 7.1 7.3 2\nv 7.102 7.3 2\nv 7.101 7.300003 2\nf 1 2 3 4\nf 5 6 7\n");
@@ -124,7 +124,7 @@ TEST(Obj, TextureMultipliesTheReflectance) {
     EXPECT_EQ(scene.texture_coordinates[scene.patches[0].vertices[2]], V2f(.5f, 1));
 }
 
-/// The alpha of a mask, or its greys where it has none, as they are stored: not decoded from sRGB.
+/// The alpha of a mask, or its greys without alpha, as stored: not decoded from sRGB.
 TEST(Obj, MasksMakeHoles) {
     const TemporaryFolder folder;
     write_texture(folder.path() / "bark.png", {"", 2, 1, {Rgb(1), Rgb(1)}});

@@ -1,4 +1,4 @@
-// Files of measured light of all types and symmetries, made here from functions of direction whose flux is known.
+// Photometric files of all types and symmetries, generated from functions of direction with known flux.
 //
 // Seen to fail when C0 and C90 are exchanged, when A and B count horizontal angles counter-clockwise, when a quadrant
 // is mirrored once only, when planes of both sides of C0 begin at C90.
@@ -41,7 +41,7 @@ V3d type_a(double vertical, double horizontal) {
     return {std::cos(v) * std::cos(h), -std::cos(v) * std::sin(h), std::sin(v)};
 }
 
-// Distributions [cd], by their symmetry, and what they integrate to over the sphere [lm].
+// Distributions [cd], by their symmetry, and their integrals over the sphere [lm].
 double round_beam(const V3d& d) { return 120 * d.z * d.z; }
 double both_planes(const V3d& d) { return 100 * (1 + d.x * d.x); }
 double c0_plane(const V3d& d) { return 100 * (1 + 0.5 * d.x + 0.3 * d.y * d.y); }
@@ -51,12 +51,12 @@ constexpr double sphere = 4 * pi * 100, round_flux = 160 * pi, both_flux = spher
 
 struct Case {
     std::string name;
-    int type;  // of LM-63; 0: EULUMDAT
+    int type;  // LM-63 type; 0: EULUMDAT
     std::vector<double> vertical, horizontal;
     Distribution distribution;
     double flux;
     std::function<bool(const V3d&)> is_covered = [](const V3d&) { return true; };
-    int symmetry = 0;  // of EULUMDAT
+    int symmetry = 0;  // EULUMDAT symmetry
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 

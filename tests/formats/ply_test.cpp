@@ -1,4 +1,3 @@
-// PLY files, ASCII and binary.
 #include "interflect/formats/ply.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +74,7 @@ std::string coloured(const std::string& colours) {
 TEST(Ply, OneColourOfAllVerticesIsTheReflectance) {
     const Scene scene = read(coloured("0 0 0 188 0 255\n1 0 0 188 0 255\n0 1 0 188 0 255\n"));
     const Rgb reflectance = scene.materials[scene.patches[0].material].reflectance;
-    EXPECT_NEAR(reflectance.x, 0.5029, 1e-3);  // of sRGB 188
+    EXPECT_NEAR(reflectance.x, 0.5029, 1e-3);  // from sRGB 188
     EXPECT_EQ(reflectance.y, 0);
     EXPECT_FLOAT_EQ(reflectance.z, 0.99f);
     EXPECT_TRUE(scene.warnings.entries().empty());

@@ -1,4 +1,4 @@
-// Radiance scenes: exact geometry, what becomes of each material, commands that are never run, and bad files.
+// Radiance scenes: exact geometry, conversion of each material, commands that are never run, and bad files.
 #include "interflect/formats/rad.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,6 @@ Scene read(const std::string& text, const ReadOptions& options = {}) {
     return read_rad_text(text, "room.rad", options);
 }
 
-/// The material of the first patch, which a surface of this material is.
 Material material_of(const std::string& definition, const std::string& name) {
     const Scene scene = read(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
     return scene.materials[scene.patches[0].material];
@@ -43,7 +42,7 @@ double area(const Scene& scene) {
     return sum;
 }
 
-/// A third of the integral of x . n over the fronts: the volume between them and the origin.
+/// Computes a third of the integral of x . n over the fronts: the volume between them and the origin.
 double volume(const Scene& scene) {
     double sum = 0;
     for (std::size_t i = 0; i < scene.patches.size(); i += 2) {
@@ -80,8 +79,8 @@ TEST(Rad, SeamLeadsToAHole) {
 struct Curve {
     const char* name;
     const char* surface;
-    double area;    // [m^2] of the true surface
-    double volume;  // [m^3] of what lies between it and the origin, positive where its front looks away from there
+    double area;    // of the true surface [m^2]
+    double volume;  // between it and the origin [m^3], positive if its front faces away from there
 };
 class RadCurve : public testing::TestWithParam<Curve> {};
 
@@ -208,7 +207,7 @@ TEST(Rad, XformPlacesCopiesOfAFile) {
     EXPECT_EQ(scene.objects.back(), "square");
     EXPECT_EQ(scene.objects[6], "row.1.2.square");
     const Patch& last =
-        scene.patches[10];  // of copy 1.2: the square moved by (10, 10), then all twice as large and 3 m up
+        scene.patches[10];  // of copy 1.2: the square moved by (10, 10), then all scaled by 2 and raised by 3 m
     EXPECT_EQ(scene.objects[last.object], "row.1.2.square");
     EXPECT_EQ(V3f(scene.origin) + scene.vertices[last.vertices[0]], V3f(20, 20, 3));
     EXPECT_EQ(PatchGeometry(scene, scene.patches[12]).normal(), V3f(0, -1, 0));
@@ -282,7 +281,7 @@ TEST(Rad, FilesThatMultiplyEachOtherAreRefusedInTime) {
 
 // ---- Bad files
 
-// Each comes after the material, which has four lines.
+// Each follows the material, which has four lines.
 class RadBadText : public testing::TestWithParam<BadText> {};
 
 TEST_P(RadBadText, IsNamedWithItsFault) {

@@ -8,7 +8,7 @@
 
 namespace interflect::testing_support {
 
-/// The message of the InputError that `read` throws; "no error" where it throws none.
+/// Returns the message of the InputError, or "no error".
 template <class Read>
 std::string message_of(const Read& read) {
     try {
@@ -23,7 +23,6 @@ inline void expect_in(const std::string& message, const std::string& part) {
     EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
 }
 
-/// A file that is refused.
 struct BadText {
     const char* name;
     std::string text;

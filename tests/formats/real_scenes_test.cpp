@@ -1,5 +1,5 @@
-// The scenes of the 1990s that this reader was made for. Numbers were counted apart from it: faces by their count of
-// vertices with awk, areas and powers with a 30-line Python script that knows v, p, m, ed, f and the scale of xf only.
+// Real scenes of the 1990s. The numbers were counted independently: faces by number of vertices with awk, areas and
+// powers with a 30-line Python script that supports only v, p, m, ed, f and the scale of xf.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(RealScenes, Office2) {
     // 103 triangles and 319 quadrilaterals: one of them is one-sided, and 8 are warped and become 16 triangles.
     EXPECT_EQ(scene.patches.size(), 2u * (421 + 8) + 1);
     EXPECT_EQ(triangles(scene), 2u * (103 + 16));
-    EXPECT_NEAR(area(scene), 217.59212, 1e-4);  // 0.00023 more than the flat areas of the warped ones
+    EXPECT_NEAR(area(scene), 217.59212, 1e-4);  // 0.00023 more than with flat areas for the warped ones
     EXPECT_NEAR(luminous_power(scene), 2600, 0.01);
 }
 
@@ -92,8 +92,8 @@ TEST(RealScenes, FloorGloss) {
 
 TEST(RealScenes, Examp1) {
     const Scene scene = load("examp1.mgf");
-    // All one-sided. Twice (the array mirrors it) a lamp of 16, a case of 12 and two prisms of 15 corners, a reflector
-    // of 2 + 5; then 15 vanes of 4. A prism has 15 walls and two ends.
+    // All one-sided. Twice, because the array mirrors it: a lamp of 16, a case of 12, two prisms of 15 corners, and a
+    // reflector of 2 + 5. Then 15 vanes of 4. A prism has 15 walls and two ends.
     std::size_t ends = 0;
     for (const Patch& p : scene.patches) {
         EXPECT_EQ(p.other_side, none);
@@ -101,7 +101,7 @@ TEST(RealScenes, Examp1) {
     }
     EXPECT_EQ(scene.patches.size() - ends, 2u * (16 + 12 + 2 * 15 + 7) + 15 * 4);
     EXPECT_EQ(ends, 2u * 2 * 2 * 13);
-    // The lamps' fronts look away from their axes (y = +-1 in, z = 1.25 in), on both sides of the mirror.
+    // The lamps' fronts face away from their axes (y = +-1 in, z = 1.25 in), on both sides of the mirror.
     for (const Patch& p : scene.patches) {
         if (largest_channel(scene.materials[p.material].exitance) == 0) continue;
         const PatchGeometry lamp(scene, p);
@@ -110,7 +110,7 @@ TEST(RealScenes, Examp1) {
     }
 }
 
-/// Flux as found by a 20-line Python script: bilinear intensities at 1800 x 180 midpoints.
+/// The flux comes from a 20-line Python script: bilinear intensities at 1800 x 180 midpoints.
 TEST(RealScenes, LuminaireOfTheExampleHasItsFlux) {
     Warnings warnings;
     const PhotometricWeb web = load_photometric_web(testing_support::real_scenes() / "examp1.ies", {}, warnings);

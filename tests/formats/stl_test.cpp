@@ -1,4 +1,3 @@
-// STL files, ASCII and binary.
 #include "interflect/formats/stl.h"
 
 #include <gtest/gtest.h>
@@ -21,10 +20,9 @@ Scene read(const std::string& bytes, const ReadOptions& options = {}) {
 const std::string facet =
     "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 2 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
 
-/// A triangle of the corners (0, 0, 0), (2, 0, 0) and (0, y, 0).
 std::string binary(float y = 1, std::uint32_t count = 1) {
     std::string bytes(80, '\0');
-    bytes.replace(0, 5, "solid");  // as some programs write, though it is binary
+    bytes.replace(0, 5, "solid");  // some programs write this in binary files
     bytes.append(reinterpret_cast<const char*>(&count), 4);
     const float numbers[12] = {0, 0, -1, 0, 0, 0, 2, 0, 0, 0, y, 0};
     bytes.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
@@ -36,7 +34,7 @@ TEST_P(StlForm, GivesTheSameTriangle) {
     const Scene scene = read(GetParam());
     ASSERT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(patch_area(scene, scene.patches[0]), 1);
-    EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));  // by its corners, whatever it says
+    EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));  // from its corners, not from the file
     EXPECT_EQ(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
 }
 INSTANTIATE_TEST_SUITE_P(, StlForm, testing::Values("solid part\n" + facet + "endsolid part\n", binary()));

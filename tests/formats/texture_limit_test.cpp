@@ -1,4 +1,4 @@
-// Textures of too many texels are halved.
+// Textures with too many texels are halved.
 #include "interflect/formats/texture_limit.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ double mean(const Texture& texture) {
     return sum / static_cast<double>(texture.texels.size());
 }
 
-/// Seen to fail where the texel that two others share counts for one of them alone.
+/// Seen to fail when a texel shared by two others counts for only one of them.
 TEST(TextureLimit, KeepsTheMeanOfOddSizesToo) {
     for (const auto& [width, height] : {std::pair(8u, 6u), {7u, 5u}, {1u, 9u}, {2u, 1u}}) {
         std::vector<Texture> textures{noise(width, height)};

@@ -1,7 +1,7 @@
 // Interflect's own entities of MGF, `uv` and `texture`: docs/mgf-extensions.md.
 //
 // Seen to fail when images are not found relative to the file that names them, when a material's textures are not part
-// of its identity, and when texels that 8 bits cannot hold are written as PNG.
+// of its identity, and when texels beyond 8 bits are written as PNG.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST_F(MgfTextures, BelongToMaterialsAndCoordinatesToVertices) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
 }
 
-/// Seen to fail where materials that differ in this alone are one.
+/// Seen to fail when materials that differ only in this are merged.
 TEST_F(MgfTextures, OfTransmittanceMakeHoles) {
     const std::string material = "m fence =\n rd .5\n ts 1 0\n texture rd black.exr\n";
     Image image(2, 1, Rgb(1));
@@ -119,7 +119,7 @@ TEST_F(MgfTextures, MayBePhotographs) {
     const Scene scene = read(three_vertices + "m paint =\n rd .8\n texture rd photo.jpg\nf a b d\n");
     ASSERT_EQ(scene.textures.at(0).texels.size(), 256u);
     for (const Rgb& texel : scene.textures[0].texels)
-        EXPECT_LT((texel - Rgb(0.25f, 0.5f, 0.1f)).length(), 0.02f);  // what JPEG loses
+        EXPECT_LT((texel - Rgb(0.25f, 0.5f, 0.1f)).length(), 0.02f);  // loss due to JPEG
 }
 
 TEST_F(MgfTextures, OfAMaterialThatNoFaceUsesAreNotRead) {
@@ -179,7 +179,6 @@ TEST_F(MgfTextures, NeedCoordinates) {
                 HasSubstr("only faces (f, fh) have texture"));
 }
 
-/// Where a written scene goes, with its images.
 Scene there_and_back(const Scene& scene, const fs::path& path) {
     const std::vector<std::string> names = texture_files(scene, path);
     write_mgf(scene, path, names);
@@ -187,7 +186,7 @@ Scene there_and_back(const Scene& scene, const fs::path& path) {
     return load_scene(path);
 }
 
-/// The same but for the textures' names; every patch has its own vertices in `expected`, if it has a texture.
+/// Expects equal scenes, except for textures' names; every textured patch has its own vertices in `expected`.
 void expect_same(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     ASSERT_FALSE(expected.textures.empty());

@@ -83,7 +83,7 @@ TEST(ViewList, FaultsNameFileViewAndKey) {
     expect_in(list("{" + good + "}, {" + good + "}"), "view 2: there is another view 'x'");
 }
 
-// Seen to fail with the parser's own exception, which is no InputError and has no place.
+// Seen to fail with the parser's own exception, which is not an InputError and has no place.
 TEST(ViewList, NumbersBeyondDoublePrecisionAreFoundWithTheirLine) {
     const std::string fault = fault_of_list("{\"views\": [\n {\"name\": \"x\",\n  \"eye\": [1e400, 0, 0]}]}");
     expect_in(fault, "room.views.json:3: no valid JSON: ");

@@ -1,4 +1,4 @@
-// What is written comes back: scenes through write_mgf() and read_mgf(), views through their list.
+// Round trips: scenes through write_mgf() and read_mgf(), views through their list.
 #include "interflect/formats/write_mgf.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ std::string mgf_of(const Scene& scene) {
 
 Scene there_and_back(const Scene& scene) { return read_mgf_text(mgf_of(scene), "written.mgf"); }
 
-constexpr float colour_error = 1e-6f;  // promised, relative to the largest channel
+constexpr float colour_error = 1e-6f;  // guaranteed, relative to the largest channel
 
 void expect_colour(const Rgb& actual, const Rgb& expected, const std::string& what) {
     const Rgb difference = actual - expected;
@@ -41,7 +41,7 @@ void expect_colour(const Rgb& actual, const Rgb& expected, const std::string& wh
 
 const Material& material_of(const Scene& scene, const Patch& patch) { return scene.materials[patch.material]; }
 
-/// The same patches in the same order at exactly the same places, of the same materials and objects.
+/// Expects the same patches in the same order at identical positions.
 void expect_same(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     for (std::size_t i = 0; i < expected.patches.size(); ++i) {
@@ -59,7 +59,6 @@ void expect_same(const Scene& actual, const Scene& expected) {
     EXPECT_TRUE(actual.warnings.entries().empty());
 }
 
-/// A triangle somewhere; one of its own for each material to be looked at.
 void add_triangle(Scene& scene, std::uint32_t material, const V3f& at, bool two_sided = false) {
     const auto v = static_cast<std::uint32_t>(scene.vertices.size());
     scene.vertices.insert(scene.vertices.end(), {at, at + V3f(1, 0, 0), at + V3f(0, 1, 0.25f)});

@@ -1,4 +1,4 @@
-// Whatever bytes come in: the glTF reader returns a valid scene or throws an InputError.
+// For arbitrary bytes, the glTF reader returns a valid scene or throws an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     interflect::ReadOptions options;
     options.max_patches = 10'000;
-    options.max_include_depth = 0;  // the outcome depends on these bytes alone
+    options.max_include_depth = 0;  // reads no other files
     options.max_model_bytes = 1 << 22;
     try {
         const interflect::Scene scene =

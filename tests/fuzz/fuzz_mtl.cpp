@@ -1,4 +1,4 @@
-// Whatever bytes come in: a material library gives a valid material or an InputError.
+// For arbitrary bytes, a material library gives a valid material or an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

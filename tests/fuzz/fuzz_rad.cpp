@@ -1,4 +1,4 @@
-// Whatever bytes come in: the Radiance reader returns a valid scene or throws an InputError.
+// For arbitrary bytes, the Radiance reader returns a valid scene or throws an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

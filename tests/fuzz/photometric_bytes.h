@@ -11,7 +11,7 @@
 
 namespace interflect {
 
-/// Whatever bytes come in: a reader of measured light returns a web without a fault or throws an InputError.
+/// For arbitrary bytes, a photometry reader returns a faultless web or throws an InputError.
 inline void read_photometric_bytes(decltype(read_ies_text)& read, const std::uint8_t* data, std::size_t size) {
     ReadOptions options;
     options.max_photometric_values = 10'000;

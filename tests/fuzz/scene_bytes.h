@@ -10,7 +10,7 @@
 
 namespace interflect::fuzzing {
 
-/// What reads small scenes in little time, the outcome depending on the bytes alone.
+/// Options for small scenes and short times; the result depends on the bytes alone.
 inline ReadOptions options() {
     ReadOptions options;
     options.curve_divisions = 2;

@@ -1,4 +1,4 @@
-// What holds for every scene that the library makes: mazes, offices, rooms of boxes.
+// Properties of all generated scenes: mazes, offices, rooms of boxes.
 #include <gtest/gtest.h>
 
 #include <ImathBox.h>
@@ -65,7 +65,7 @@ TEST_P(MadeScenes, DependOnTheSeedAlone) {
 }
 
 TEST_P(MadeScenes, SurfacesAreClosed) {
-    // Each edge belongs to two patches that run along it in opposite directions: no gap, no T-vertex, no patch twice.
+    // Each edge belongs to two patches, in opposite directions: no gap, no T-vertex, no duplicate patch.
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const Patch& patch : scene.patches) {
         ASSERT_EQ(patch.other_side, none) << "all faces are one-sided";
@@ -77,7 +77,7 @@ TEST_P(MadeScenes, SurfacesAreClosed) {
     for (const auto& [from, to] : edges) ASSERT_TRUE(edges.contains({to, from})) << "an edge has one patch only";
 }
 
-/// A convex solid, as the scene has it: six patches one after the other with vertices of their own.
+/// A convex solid in the scene: six consecutive patches with their own vertices.
 struct Solid {
     std::string object;
     std::vector<V3d> vertices, normals;
@@ -86,7 +86,7 @@ struct Solid {
 
 std::vector<Solid> solids_of(const Scene& scene) {
     std::vector<Solid> solids;
-    std::uint32_t next = 0;  // the first patch that is in no solid yet
+    std::uint32_t next = 0;  // the first patch outside all solids so far
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         if (is_shell(scene, scene.patches[i]) || i < next) continue;
         next = i + 6;
@@ -125,8 +125,8 @@ TEST_P(MadeScenes, SolidsLookOutwards) {
     }
 }
 
-/// A lower bound of the distance between two solids [m], negative where they overlap: the largest gap between their
-/// projections on a face normal of either, or on a cross product of two.
+/// Computes a lower bound of the distance between two solids [m], negative if they overlap: the largest gap between
+/// their projections on a face normal of either, or on a cross product of two.
 double separation(const Solid& a, const Solid& b) {
     const auto projected = [](const Solid& solid, const V3d& axis) {
         double low = HUGE_VAL, high = -HUGE_VAL;
@@ -169,10 +169,11 @@ TEST_P(MadeScenes, SolidsKeepTheirDistance) {
     }
 }
 
-/// "room-12" of "room-12.bookcase-3".
+/// Returns "room-12" of "room-12.bookcase-3".
 std::string room_of(const std::string& object) { return object.substr(0, object.find('.')); }
 
-/// The inside of each room: from its floor (z = 0) to its ceiling, both as large as the room; thresholds count to none.
+/// Returns the interior of each room: from its floor (z = 0) to its ceiling, both of the room's size. Excludes
+/// thresholds.
 std::map<std::string, Box3d> rooms_of(const Scene& scene) {
     std::map<std::string, Box3d> rooms;
     for (const Patch& patch : scene.patches) {
@@ -199,7 +200,6 @@ TEST_P(MadeScenes, SolidsAreInTheirRooms) {
     }
 }
 
-/// A direction uniform over the sphere.
 V3f uniform_direction(std::uint64_t key, std::uint64_t index) {
     const auto words = random_words(key, index);
     const float z = 2 * unit_float(words[0]) - 1, angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);

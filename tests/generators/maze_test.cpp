@@ -1,4 +1,4 @@
-// What is particular to mazes: how large they are, how their rooms hang together, what is seen in them.
+// Properties of mazes: size, connections between rooms, and visibility.
 #include "interflect/generators/maze.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(Maze, RefusesOptionsOutOfRange) {
 }
 
 TEST(Maze, ThingsAreFartherApartThanRaysAreLifted) {
-    // Else a ray from the underside of a thing would start below what it stands on.
+    // Otherwise a ray from the underside of an object would start below its support.
     const Scene scene = make_maze({.rooms = MazeOptions::most_rooms});
     const RayCaster ray_caster(scene);
     for (std::uint32_t i = 0; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.ray_offset(i), building::gap);
@@ -69,8 +69,8 @@ TEST(Maze, FirstRoomsHaveViews) {
 
 // ---- Doorways
 
-/// Independent closed ways through the rooms of an unfurnished maze, by Euler's formula for its closed surface:
-/// V - E + F = 2 (pieces - holes). Where all rooms hang together in one way only, that is 2.
+/// Computes the Euler characteristic of the closed surface of an unfurnished maze: V - E + F = 2 (pieces - holes),
+/// where holes are the independent loops through its rooms. It is 2 if exactly one path connects any two rooms.
 std::int64_t euler_characteristic(const Scene& scene) {
     std::set<std::uint32_t> vertices;
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -87,7 +87,7 @@ std::int64_t euler_characteristic(const Scene& scene) {
     return std::ssize(vertices) - std::ssize(edges) + faces;
 }
 
-/// Pieces of the walls' surface that no patch joins. Rooms share vertices through doorways only.
+/// Rooms share vertices through doorways only.
 std::int64_t pieces(const Scene& scene) {
     std::vector<std::uint32_t> parent(scene.vertices.size());
     std::iota(parent.begin(), parent.end(), 0u);
@@ -106,7 +106,7 @@ std::int64_t pieces(const Scene& scene) {
     return std::ssize(roots);
 }
 
-/// Doorways, counted by their soffits: what looks down at a door's height.
+/// Number of doorways, from their soffits: faces at a door's height that face down.
 std::int64_t doorways(const Scene& scene) {
     return std::count_if(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
         return scene.objects[patch.object].ends_with(".shell") && scene.vertices[patch.vertices[0]].z < 2.5f &&
@@ -129,7 +129,7 @@ TEST(Maze, WithoutExtraDoorsThereIsOneWayOnly) {
 }
 
 TEST(Maze, ExtraDoorsMakeMoreWays) {
-    // 7 x 7 rooms have 84 walls between them, of which a tree needs 48.
+    // 7 x 7 rooms have 84 walls between them; a tree needs 48.
     const Scene some = make_maze({.rooms = 49, .extra_doors = 0.25f}), all = make_maze({.rooms = 49, .extra_doors = 1});
     EXPECT_NEAR(static_cast<double>(doorways(some)), 48 + 9, 7);
     EXPECT_EQ(doorways(all), 84);
@@ -152,7 +152,7 @@ TEST(FloorPlan, DoorwaysAcrossARoomAreAbreastOrApart) {
     EXPECT_GT(apart, 50);
 }
 
-/// What rays from `eye` along the middle line of a doorway, at several heights, meet within `length`.
+/// Returns whether rays from `start` along the middle line of a doorway, at several heights, are free for `length`.
 bool is_free(const RayCaster& ray_caster, const V3f& start, const V3f& direction, float length) {
     std::vector<Ray> rays;
     for (const float z : {0.1f, 0.5f, 1.0f, 1.5f, 2.0f}) rays.push_back({{start.x, start.y, z}, direction});
@@ -180,7 +180,7 @@ TEST(Maze, DoorwaysAreKeptFree) {
 
 // ---- Views
 
-/// Shares of a 16:9 picture that show the furniture of the eye's own room, and other rooms.
+/// Shares of a 16:9 picture that show the furniture of the camera's own room, and other rooms.
 struct Seen {
     double furniture = 0, other_rooms = 0;
 };

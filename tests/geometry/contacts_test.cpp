@@ -25,7 +25,7 @@ using testing_support::face_areas;
 
 constexpr ContactOptions any_aspect{.largest_aspect = 1e9f};
 
-/// A floor of 4 x 3 m at z = 0, face 0, of material 0, moved by `offset`; things get material 1.
+/// A floor of 4 x 3 m at z = 0, face 0, of material 0, moved by `offset`; other objects use material 1.
 Scene floor_scene(V3f offset = V3f(0, 0, 0), bool two_sided = false) {
     Scene scene;
     scene.name = "floor";
@@ -53,7 +53,7 @@ double contact_length(const Scene& scene) {
     return length;
 }
 
-/// Whether no patch of the material has points on both sides of the plane, deeper than the tolerance.
+/// Returns whether every patch of the material lies on one side of the plane, within the tolerance.
 bool keeps_to_one_side(const Scene& scene, std::uint32_t material, const V3f& point, const V3f& normal,
                        float tolerance = 1e-5f) {
     return std::all_of(scene.patches.begin(), scene.patches.end(), [&](const Patch& patch) {
@@ -75,8 +75,8 @@ void expect_same_surfaces(const Scene& before, const Scene& after) {
     for (const auto& [key, area] : old_areas) EXPECT_NEAR(areas.at(key), area, 1e-5 * area);
 }
 
-/// Cut along the four edges of the leg: its own part, and four or more around it. Without them, or along only some of
-/// them, a patch of the floor would lie on both sides of a side of the leg.
+/// The floor is cut along the four edges of the leg into its own part, and four or more around it. With fewer cuts, a
+/// patch of the floor would lie on both sides of a side of the leg.
 TEST(Contacts, ALegOnAFloor) {
     Scene scene = floor_scene();
     add_box(scene, V3f(1, 1, 0), V3f(1.1f, 1.2f, 0.7f), 1);
@@ -95,7 +95,7 @@ TEST(Contacts, ALegOnAFloor) {
         }
 }
 
-/// As that of a lamp which emits on one side. Seen to fail where backs get the material of their fronts.
+/// For example of a lamp that emits on one side. Seen to fail when backs receive the material of their fronts.
 TEST(Contacts, BacksKeepTheirMaterial) {
     Scene scene;
     const std::uint32_t front = add_material(scene, Rgb(0.5f), Rgb(9)), back = add_material(scene, Rgb(0.5f), Rgb(0));
@@ -145,7 +145,7 @@ TEST(Contacts, ATurnedWallOfOneTwoSidedFace) {
     EXPECT_EQ(count_of_material(cut, 1), 2u);
 }
 
-/// Both are cut: the floor along the box, the box's sides at the height of the floor, which goes on inside.
+/// Both are cut: the floor along the box, the box's sides at the height of the floor, which continues inside.
 TEST(Contacts, ABoxThatPenetrates) {
     Scene scene = floor_scene();
     add_box(scene, V3f(1, 1, -0.4f), V3f(1.5f, 2, 0.6f), 1);
@@ -156,7 +156,7 @@ TEST(Contacts, ABoxThatPenetrates) {
     EXPECT_TRUE(keeps_to_one_side(cut, 1, V3f(0, 0, 0), V3f(0, 0, 1)));
 }
 
-/// The larger one is cut, whichever comes first; the diagonal of the paper's triangles is no outline.
+/// The larger face is cut, in either order. The diagonal of the paper's triangles is not part of its outline.
 TEST(Contacts, PaperOnADesk) {
     for (const bool paper_first : {false, true}) {
         Scene scene;
@@ -197,7 +197,7 @@ TEST(Contacts, ALegInTheCornerAndOneAtTheEdge) {
     EXPECT_NEAR(contact_length(cut), 0.5, 1e-5);
 }
 
-/// What touches a one-sided floor from below does nothing to its light; a two-sided one is cut, both sides alike.
+/// An object that touches a one-sided floor from below has no effect. A two-sided floor is cut, both sides alike.
 TEST(Contacts, OnlyTheLitSidesCount) {
     for (const bool two_sided : {false, true}) {
         Scene scene = floor_scene(V3f(0, 0, 0), two_sided);
@@ -216,7 +216,7 @@ TEST(Contacts, OnlyTheLitSidesCount) {
     }
 }
 
-/// Random places: about 5 cuts a leg in a plane that is cut again and again by their lines. In rows the lines are
+/// At random places there are about 5 cuts a leg, whose lines cut the plane again and again. In rows the lines are
 /// shared.
 TEST(Contacts, AHundredLegs) {
     for (const bool in_rows : {false, true}) {
@@ -251,7 +251,7 @@ TEST(Contacts, TrianglesAndIrregularQuadrilaterals) {
     EXPECT_TRUE(std::any_of(cut.patches.begin(), cut.patches.end(), [](const Patch& p) { return p.is_triangle(); }));
 }
 
-/// Areas of what is cut out do not depend on which face comes first.
+/// Areas of the cut parts do not depend on the order of faces.
 TEST(Contacts, TheOrderOfFacesDoesNotMatter) {
     Scene scene = floor_scene();
     for (int i = 0; i < 12; ++i) {
@@ -320,7 +320,7 @@ TEST(Contacts, AWarpedQuadrilateralIsCutAsTwoTriangles) {
     const Scene cut = cut_at_contacts(scene);
     EXPECT_GT(count_of_material(cut, 0), 5u);
     expect_same_surfaces(scene, cut);
-    EXPECT_TRUE(keeps_to_one_side(cut, 0, scene.vertices[1], V3f(3, 4, 0).normalized()));  // of the diagonal
+    EXPECT_TRUE(keeps_to_one_side(cut, 0, scene.vertices[1], V3f(3, 4, 0).normalized()));  // the diagonal
 }
 
 /// Boxes of all sizes at all angles, on and through each other.

@@ -10,7 +10,6 @@
 namespace interflect {
 namespace {
 
-/// A scene of one patch with these corners.
 struct Single {
     Scene scene;
     explicit Single(std::vector<V3f> corners) {
@@ -35,7 +34,7 @@ const Shape square{"square", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 1};
 const Shape parallelogram{"parallelogram", {{0, 0, 0}, {2, 1, 0}, {3, 4, 0}, {1, 3, 0}}, 5};
 const Shape trapezium{"trapezium", {{0, 0, 0}, {4, 0, 0}, {3, 2, 0}, {1, 2, 0}}, 6};
 const Shape irregular{"irregular", {{0, 0, 0}, {5, 1, 0}, {3, 4, 0}, {1, 3, 0}}, 11};
-// One corner lies on the line between its neighbours: still legal, its jacobian vanishes there.
+// One corner lies on the line between its neighbours: legal, but its jacobian vanishes there.
 const Shape straight_corner{"straight_corner", {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {0, 2, 0}}, 2};
 
 /// Scaled, turned and moved; `scale` changes the area by its square.
@@ -92,7 +91,7 @@ TEST_P(PatchGeometries, FindsTheParametersOfItsPoints) {
         }
 }
 
-// Convex quadrilaterals far from parallelograms. Meant to fail with Newton's method in place of the closed form, which
+// Convex quadrilaterals far from parallelograms. Meant to fail with Newton's method instead of the closed form, which
 // did not converge for the first of them.
 class SkewQuadrilaterals : public testing::TestWithParam<std::vector<V3f>> {};
 INSTANTIATE_TEST_SUITE_P(Corners, SkewQuadrilaterals,
@@ -105,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Corners, SkewQuadrilaterals,
                                          std::vector<V3f>{{0, 0, 0}, {1, 0, 0}, {1.001f, 0.001f, 0}, {0, 1, 0}}));
 
 TEST_P(SkewQuadrilaterals, HaveParametersThatLeadBackToTheirPoints) {
-    for (std::size_t first = 0; first < 4; ++first) {  // whichever corner comes first
+    for (std::size_t first = 0; first < 4; ++first) {  // for each first corner
         std::vector<V3f> corners = GetParam();
         std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
         const Single single(corners);
@@ -142,8 +141,8 @@ TEST_P(PatchGeometries, HasAJacobianThatIntegratesToTheArea) {
     EXPECT_NEAR(area / geometry_.area(), 1, 1e-4);
 }
 
-// A uniform grid of (a, b) must put the patch's centroid, and its second moments, where the polygon has them: found
-// from triangles that fan out from the first corner.
+// A uniform grid of (a, b) must have the centroid and second moments of the polygon. These are computed from a fan of
+// triangles around the first corner.
 TEST_P(PatchGeometries, SpreadsUniformParametersUniformlyOverTheArea) {
     const auto& c = GetParam().corners;
     const V3f direction = (c[2] - c[0]).normalized();

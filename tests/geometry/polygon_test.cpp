@@ -13,7 +13,7 @@ namespace {
 
 using Loop = std::vector<std::uint32_t>;
 
-/// A polygon that was offered to a scene, and what became of it.
+/// A polygon added to a scene, and the result.
 struct Offered {
     Scene scene;
     PolygonResult result = PolygonResult::degenerate;
@@ -32,7 +32,7 @@ struct Offered {
     }
 };
 
-/// Offers loops of points, each given in its own list; vertices are numbered in order.
+/// Adds a polygon from loops of points, each in a separate list; vertices are numbered in order.
 Offered offer(const std::vector<std::vector<V3f>>& loops, bool two_sided = false) {
     Offered offered;
     offered.scene.objects = {""};
@@ -55,7 +55,7 @@ Offered offer(const std::vector<V3f>& outline, bool two_sided = false) {
 }
 
 const V3f up(0, 0, 1);
-// Area 4; no three of its vertices are on one line.
+// Area 4; no three vertices are collinear.
 const std::vector<V3f> concave_l = {{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {1, 1, 1}, {1, 3, 1}, {0, 3, 1}};
 const std::vector<V3f> unit_square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
@@ -133,7 +133,7 @@ TEST(Polygon, HoleOfEitherDirection) {
 }
 
 TEST(Polygon, HoleBehindASeam) {
-    // MGF's way: the outline goes from its last vertex to the hole, round it, and back along the same edge.
+    // As in MGF: the outline runs from its last vertex to the hole, round it, and back along the same edge.
     Scene scene;
     scene.vertices = unit_square;
     for (const V3f& x : {V3f(0.25f, 0.75f, 0), V3f(0.75f, 0.75f, 0), V3f(0.75f, 0.25f, 0), V3f(0.25f, 0.25f, 0)})
@@ -154,21 +154,21 @@ TEST(Polygon, CollinearVerticesLoseNoArea) {
 
 TEST(Polygon, RepeatedVerticesCountOnce) {
     Scene scene;
-    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}};  // 4 is where 1 is
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}};  // 4 coincides with 1
     EXPECT_EQ(add_polygon(scene, std::vector<Loop>{{0, 1, 4, 2, 2, 3, 0}}, 0, 0, false), PolygonResult::added);
     ASSERT_EQ(scene.patches.size(), 1u);
     EXPECT_EQ(scene.patches[0].vertices, (std::array<std::uint32_t, 4>{0, 1, 2, 3}));
 }
 
 TEST(Polygon, BowTieGetsItsCrossingAsAVertex) {
-    // The wings differ in size, so that the whole has a front.
+    // The wings differ in size, which defines the front.
     const Offered o = offer({{0, 0, 0}, {4, 0, 0}, {1, 3, 0}, {3, 3, 0}});
     EXPECT_EQ(o.scene.vertices.size(), 5u);
     EXPECT_NEAR((o.scene.vertices[4] - V3f(2, 2, 0)).length(), 0, 1e-6);
     EXPECT_NEAR(o.area(), 4.0 * 2 / 2 + 2.0 * 1 / 2, 1e-5);
 }
 
-// Seen to fail as 'degenerate': a face 4 m wide was said to have no area.
+// Seen to fail as 'degenerate': a face 4 m wide was reported to have no area.
 TEST(Polygon, ThatCrossesItselfIntoNothingIsNotCalledWithoutArea) {
     EXPECT_EQ(offer({{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {4, 3, 0}}).result, PolygonResult::self_crossing);
     EXPECT_EQ(offer({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {4, 0, 0}}).result, PolygonResult::self_crossing);
@@ -203,7 +203,7 @@ TEST_P(PolygonSize, DoesNotMatter) {
 }
 INSTANTIATE_TEST_SUITE_P(Metres, PolygonSize, testing::Values(1e-4f, 1.0f, 1e4f));
 
-/// A random polygon around the origin without crossings: its vertices have rising angles. Returns also its exact area.
+/// A random polygon around the origin without crossings: its vertices have rising angles. Also returns its exact area.
 std::vector<V3f> random_star(std::mt19937& random, const Imath::V3d& u, const Imath::V3d& v, double& area) {
     std::uniform_real_distribution<double> uniform(0, 1);
     const int n = 3 + static_cast<int>(random() % 20);

@@ -30,7 +30,6 @@ Corners random_triangle(std::uint64_t seed, float size) {
     return {start, start + offset(2), start + offset(4)};
 }
 
-/// Of the texels at the centres of n^2 equal triangles.
 Rgb mean_of_points(const Texture& texture, const Corners& x, int n) {
     RgbD sum(0, 0, 0);
     const auto add = [&](float i, float j) {
@@ -50,7 +49,7 @@ void expect_near(const Rgb& actual, const Rgb& expected, float tolerance) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], tolerance);
 }
 
-class TextureIntegralOfSize : public testing::TestWithParam<float> {};  // of triangles, in repeats
+class TextureIntegralOfSize : public testing::TestWithParam<float> {};  // size of triangles, in repeats
 INSTANTIATE_TEST_SUITE_P(FromTexelsToRepeats, TextureIntegralOfSize, testing::Values(0.01f, 0.1f, 1.0f, 6.0f));
 
 TEST_P(TextureIntegralOfSize, AgreesWithManyPoints) {

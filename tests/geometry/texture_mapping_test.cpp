@@ -1,4 +1,5 @@
-// Coordinates in textures and lightmaps through all that makes new vertices: those that are linear in space stay so.
+// Texture and lightmap coordinates through all operations that create vertices: coordinates that are linear in space
+// stay so.
 //
 // Seen to fail when cuts or crossings of outlines make vertices without coordinates, splits with those of a corner,
 // when either kind is interpolated as the other, when vertices that differ in coordinates alone are merged, and when a
@@ -25,7 +26,7 @@ using namespace testing_support;
 /// An image laid askew on the plane z = 0.
 V2f laid(const V3f& x) { return {0.3f * x.x - 0.1f * x.y + 0.7f, 0.2f * x.x + 0.4f * x.y - 0.3f}; }
 
-/// A chart of a lightmap, laid another way.
+/// A chart of a lightmap with another orientation.
 V2f charted(const V3f& x) { return {0.12f * x.x + 0.02f * x.y + 0.05f, 0.8f - 0.15f * x.y - 0.01f * x.x}; }
 
 const V2f no_chart(std::numeric_limits<float>::quiet_NaN());
@@ -37,7 +38,7 @@ void lay_image(Scene& scene) {
     }
 }
 
-/// A trapezoid and a triangle in the plane z = 0, with image and chart, and walls without a chart that stand on them.
+/// A trapezoid and a triangle in the plane z = 0, with image and chart; walls without a chart stand on them.
 Scene floor_with_walls() {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(0));
@@ -59,8 +60,8 @@ void expect_near(const V2f& actual, const V2f& expected) {
     EXPECT_NEAR(actual.y, expected.y, 1e-5f);
 }
 
-/// Whether image and chart are where they were, at the corners and in the middle of each patch of material 0, and the
-/// others have no chart.
+/// Expects unchanged image and chart coordinates at the corners and in the middle of each patch of material 0, and no
+/// chart elsewhere.
 void expect_laid(const Scene& scene) {
     ASSERT_EQ(scene_faults(scene), std::vector<std::string>());
     ASSERT_EQ(scene.texture_coordinates.size(), scene.vertices.size());
@@ -159,7 +160,7 @@ TEST(VertexCoordinates, StayInTheLightmapWhateverRoundingDoes) {
     EXPECT_EQ(interpolated(scene, vertices, weights).lightmap, V2f(1, 0));
 }
 
-/// Two squares side by side, each with the whole image or lightmap and so with vertices of its own.
+/// Two squares side by side, each with the whole image or lightmap and so with separate vertices.
 class SeamInAFlatSurface : public testing::TestWithParam<std::vector<V2f> Scene::*> {};
 
 TEST_P(SeamInAFlatSurface, DoesNotDivideIt) {

@@ -34,7 +34,7 @@ const std::vector<std::uint32_t> halves_of_square{0, 1, 2, 0, 2, 3};
 const std::vector<V2f> linear{{0.1f, 0}, {0.5f, 0.2f}, {0.4f, 0.8f}, {0, 0.6f}};
 const std::vector<V2f> distorted{{0, 0}, {1, 0}, {1, 0.5f}, {0, 1}};
 
-/// The vertices of a face, from the lowest on in its order round the face.
+/// Returns the vertices of a face in order, starting with the lowest.
 FaceVertices from_lowest(FaceVertices face) {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     return face;
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(With, CoordinatesOfPairs,
                                                            std::vector<V2f>(4, V2f(std::nanf(""))), 1}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// A grid of cells 1 by 0.7, its triangles in any order and each turned any way: no triangle is left alone.
+/// A grid of cells 1 by 0.7, with its triangles in random order and orientation: all triangles are paired.
 TEST(TrianglePairs, AGridIsMergedWholeWhateverTheOrder) {
     constexpr std::uint32_t n = 20;
     std::vector<V3f> vertices;

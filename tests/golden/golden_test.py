@@ -1,4 +1,4 @@
-"""The office looks as it did when people looked at it. README.md beside this file tells how the tolerances were found."""
+"""Compares the office with approved pictures. README.md beside this file explains the tolerances."""
 
 import shutil
 import unittest
@@ -7,7 +7,7 @@ from command import BAD_INPUT, ROOT, CommandTest
 
 REFERENCE = ROOT / "tests" / "golden" / "office-desk.hdr"
 OFFICE = ROOT / "scenes" / "office.mgf"
-RATIO_OF_MEANS, BLOCKS_OF_5 = 0.01, 0.03  # tolerances: about the mean, in relative RMSE
+RATIO_OF_MEANS, BLOCKS_OF_5 = 0.01, 0.03  # tolerances: of the mean, of relative RMSE
 
 
 class Golden(CommandTest):
@@ -20,7 +20,7 @@ class Golden(CommandTest):
         return abs(difference["ratio_of_means"] - 1), blocks
 
     def changed_office(self, old, new):
-        """A copy of the scene in which a line of its materials is another."""
+        """Returns a copy of the scene with one line of its materials replaced."""
         folder = self.folder / "scenes"
         shutil.copytree(OFFICE.parent, folder)
         materials = folder / "furniture" / "materials.mgf"
@@ -44,7 +44,7 @@ class Golden(CommandTest):
     def test_office_from_other_rays(self):
         self.assert_within_tolerance(self.difference(seed=2))
 
-    # That it can fail:
+    # Negative controls:
 
     def test_another_view_is_noticed(self):
         self.assert_noticed(self.difference(view="bookcase"))

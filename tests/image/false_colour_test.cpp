@@ -14,7 +14,7 @@ constexpr int steps = 100;
 
 Rgb colour_at(int step) { return false_colour(static_cast<float>(step) / steps); }
 
-/// CIE 1976 L*: how light a linear colour looks, 0 to 100.
+/// Computes CIE 1976 L*: perceived lightness of a linear colour, 0 to 100.
 float lightness(const Rgb& colour) { return 116 * std::cbrt(luminance(colour)) - 16; }
 
 TEST(FalseColour, StaysWithinTheDisplaysGamut) {
@@ -32,7 +32,7 @@ TEST(FalseColour, LightnessRisesEvenly) {
         EXPECT_NEAR(lightness(colour_at(i + 1)) - lightness(colour_at(i)), whole / steps, 0.4f * whole / steps) << i;
 }
 
-/// The reverse of what makes the map: Oklab (Ottosson 2020), where distances are about as large as they look.
+/// Inverse of the map's conversion: Oklab (Ottosson 2020), where distances approximate perceived differences.
 V3f oklab(const Rgb& c) {
     const float l = std::cbrt(0.4122214708f * c.x + 0.5363325363f * c.y + 0.0514459929f * c.z);
     const float m = std::cbrt(0.2119034982f * c.x + 0.6806995451f * c.y + 0.1073969566f * c.z);
@@ -89,7 +89,7 @@ TEST(FitScale, LinearIsFromZeroToTheLargest) {
 }
 
 TEST(FitScale, LogarithmicLeavesOutTheExtremes) {
-    std::vector<float> values{0, 1e-3f, 1e9f, std::nanf("")};  // each one of a thousand
+    std::vector<float> values{0, 1e-3f, 1e9f, std::nanf("")};  // outliers, each a thousandth of the values
     for (int i = 0; i < 1000; ++i) values.push_back(2 + static_cast<float>(i % 10));
     expect_range(fit_scale(values, Spacing::logarithmic), 2, 11);
 }

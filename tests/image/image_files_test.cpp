@@ -37,7 +37,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing_support::TemporaryFolder;
 
-/// Colours in [0, 1] that are smooth over the picture, with stretches of one colour and of many.
+/// Smooth colours in [0, 1], with runs of one colour and runs of many.
 Image gradient(int width, int height) {
     Image image(width, height);
     for (int y = 0; y < height; ++y)
@@ -86,7 +86,7 @@ TEST(ImageFiles, OpenExrKeepsEveryBit) {
     EXPECT_EQ(after_round_trip(image, "a.exr").pixels, image.pixels);
 }
 
-/// The largest component has 8 bits, the first of which is 1: half a unit is 1 / 256 of it at most.
+/// The largest component has 8 bits, the first of which is 1: half a unit is at most 1 / 256 of it.
 TEST(ImageFiles, RadianceKeepsEightBitsOfTheLargestComponent) {
     for (const int width : {37, 5}) {  // run-length encoded, and too narrow for that
         Image image = gradient(width, 23);
@@ -197,7 +197,7 @@ TEST(ImageFiles, OpenExrStoresTheMetadata) {
     EXPECT_EQ(number("interflect.exposure"), -6.5f);
 }
 
-/// Every value of every layer, and the picture itself as ever.
+/// Every value of every layer is kept, and the picture itself.
 TEST(ImageFiles, OpenExrKeepsLayersBesideThePicture) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.exr";
@@ -283,7 +283,7 @@ TEST_P(ReadableFormats, JunkIsRefused) {
     EXPECT_THAT(refusal(folder.write(name(), "")), HasSubstr("cannot read this image"));
 }
 
-/// Whatever a damaged file says, reading it ends, in an image or in an InputError.
+/// Reading a damaged file always ends, with an image or an InputError.
 TEST_P(ReadableFormats, DamageNeverCrashes) {
     write_image(folder.path() / name(), gradient(40, 30));
     const std::string whole = bytes_of(folder.path() / name());
@@ -307,7 +307,7 @@ TEST_P(EveryFormat, WritingWhereNothingCanBeWrittenFails) {
     EXPECT_THROW(write_image(folder.path() / "no such folder" / name(), gradient(4, 4)), std::exception);
 }
 
-/// Seen to fail when the file is not closed before it is checked, and when the system's reason is not given.
+/// Seen to fail when the file is not closed before it is checked, and when the system's reason is missing.
 TEST_P(EveryFormat, AFullDiskIsNamedWithThePath) {
     const auto path = folder.path() / name();
     std::filesystem::create_symlink("/dev/full", path);
@@ -374,7 +374,7 @@ TEST(ImageFiles, FormatIsThatOfTheExtension) {
     }
 }
 
-/// The format as Ward 1991 has it: 0x80 / 256 x 2^(0x81 - 128) = 1.
+/// The format of Ward 1991: 0x80 / 256 x 2^(0x81 - 128) = 1.
 TEST(ImageFiles, ReadsRadianceFilesWithoutRuns) {
     const TemporaryFolder folder;
     const std::string pixels("\x80\x40\x00\x81\x00\x00\x00\x00", 8);

@@ -17,7 +17,6 @@ namespace {
 const Rgb background(0.25f);
 constexpr ColourScale bright_lines{0, 1000, Spacing::linear}, dark_lines{0, 1, Spacing::linear};
 
-/// A picture of `value`(x, y) at the pixels' centres.
 template <class Value>
 Image values_of(int width, int height, const Value& value) {
     Image values(width, height);
@@ -27,7 +26,6 @@ Image values_of(int width, int height, const Value& value) {
     return values;
 }
 
-/// White lines on grey.
 Image lines(const Image& values, const std::vector<float>& levels, const ColourScale& scale = bright_lines) {
     return with_isolines(Image(values.width, values.height, background), values, levels, scale);
 }
@@ -73,8 +71,8 @@ TEST(Isolines, LeaveNoiseOut) {
     EXPECT_NE(lines(values, {8}).pixels, Image(64, 48, background).pixels) << "and one of 10";
 }
 
-/// A ridge on the diagonal: smoothed it is 97.81 high, and 97.27 beside it, so that between four pixels' centres the
-/// middle is 97.54. Below that lines run along the ridge on both sides; above, each pixel of the ridge is an island.
+/// A ridge on the diagonal: after smoothing it is 97.81 high, 97.27 beside it, and 97.54 in the middle between four
+/// pixel centres. Below that, lines run along the ridge on both sides; above, each pixel of the ridge is an island.
 TEST(Isolines, FollowARidge) {
     const Image values = values_of(48, 48, [](float x, float y) { return 100 - 2 * std::abs(x - y); });
     double covered = 0;

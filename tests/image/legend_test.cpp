@@ -66,7 +66,7 @@ TEST(Legend, LiesBelowThePicture) {
     for (std::size_t i = 640u * 30; i < image.pixels.size(); ++i) EXPECT_NE(image.pixels[i], red);
 }
 
-/// Some row has the colours of the scale from its left end to its right one.
+/// Some row has the colours of the scale from its left end to its right end.
 TEST(Legend, HasAStripOfTheColours) {
     const Image image = with_legend(Image(640, 1), scale, "");
     int rows = 0;
@@ -95,7 +95,7 @@ TEST(Legend, GrowsWithThePictureAndIsCutOffInASmallOne) {
         EXPECT_EQ(with_legend(Image(width, 1), scale, "irradiance [lm/m^2]").width, width);
 }
 
-/// What fits is drawn as on a wider picture with the same dots: nothing of the title is missing at its right end.
+/// Text that fits has the same dots as on a wider picture: the right end of the title is complete.
 TEST(Legend, FitsWhereNothingIsCutOff) {
     const std::string title = "relative standard error of irradiance";
     EXPECT_TRUE(legend_fits(640, 360, title));
@@ -123,7 +123,7 @@ TEST(Legend, RefusesWhatItCannotDraw) {
 }
 
 TEST(Legend, IsRefusedWhereTheImageGetsTooLarge) {
-    Image wide;  // without its pixels, which are not asked for
+    Image wide;  // without its pixels, which are not accessed
     wide.width = most_image_pixels / 4;
     wide.height = 4;
     EXPECT_THROW(with_legend(wide, scale, "level"), InputError);

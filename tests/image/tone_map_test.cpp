@@ -92,12 +92,12 @@ TEST(ToneMap, WhiteIsWhereTheHeaderSaysItIs) {
     EXPECT_NEAR(mapped(grey(0.18f), 0, Tonemap::agx).x, std::pow(0.5, 2.2), 1e-4);
 }
 
-/// Narkowicz's curve at an input of 1, where its fraction is (2.51 + 0.03) / (2.43 + 0.59 + 0.14).
+/// Narkowicz's curve at an input of 1, with the fraction (2.51 + 0.03) / (2.43 + 0.59 + 0.14).
 TEST(ToneMap, FilmicIsNarkowiczsFit) {
     EXPECT_NEAR(mapped(grey(1 / 0.72317f), 0, Tonemap::filmic).x, 2.54 / 3.16, 1e-5);
 }
 
-/// The polynomial that Wrensch fitted to AgX's curve, whose error there is 0.006.
+/// The polynomial that Wrensch fitted to AgX's curve; the error of the fit is 0.006.
 TEST(ToneMap, AgxHasTheCurveOfItsFit) {
     for (double x = 0.02; x < 1; x += 0.02) {
         const double fit = ((((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x) + 0.1191) * x - 0.00232;

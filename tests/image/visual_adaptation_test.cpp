@@ -9,7 +9,7 @@
 namespace interflect {
 namespace {
 
-/// What an even grey of this luminance [cd/m^2] is shown as, 1 being white.
+/// Returns the display value of a uniform grey of this luminance [cd/m^2], with 1 for white.
 double shown(float luminance, Tonemap curve, float white = 100) {
     return tone_map(Image(4, 4, Rgb(luminance)), 0, curve, white).at(1, 1).y;
 }
@@ -31,7 +31,7 @@ TEST(Ward, PicturesAreMultipliedByTheFactorOfTheirLogarithmicMean) {
     EXPECT_NEAR(mapped.pixels[99].x, 10 * std::pow(6.0008 / 7.5286, 2.5) / 100, 1e-5);
 }
 
-/// gamma(1) = 1.855, gamma(10) = 2.255 and gamma(100) = 2.655 but for the 2.3e-5 in the logarithm; a display of 100
+/// gamma(1) = 1.855, gamma(10) = 2.255 and gamma(100) = 2.655, without the 2.3e-5 in the logarithm. A display of 100
 /// cd/m^2 with a contrast of 100 has its middle at 10.
 TEST(Tumblin, EquationsOfThePaper) {
     const auto expected = [](double gamma) { return 0.1 * std::pow(10, gamma / 2.255 - 1); };
@@ -66,7 +66,7 @@ TEST(Ferwerda, BrightScenesAreSeenByConesAlone) {
     EXPECT_NEAR(colour.x / colour.y, 2, 1e-5);
 }
 
-/// At 0.001 cd/m^2 rods see 2.573 times that [scotopic cd/m^2], and all of it is added.
+/// At 0.001 cd/m^2 the scotopic luminance is 2.573 times that [scotopic cd/m^2], and all of it is added.
 TEST(Ferwerda, InTheDarkColoursAreGrey) {
     const double display = std::pow(10, std::pow(0.249 * std::log10(50) + 0.65, 2.7) - 0.72);
     const double rods = std::pow(10, std::pow(0.405 * std::log10(0.002573) + 1.6, 2.18) - 2.86);
@@ -77,14 +77,15 @@ TEST(Ferwerda, InTheDarkColoursAreGrey) {
     EXPECT_LT(colour.x / colour.y, 1.05);
 }
 
-/// In between some of what the rods see is added: at 10 cd/m^2 (1 - 4.99 / 9.99)^2 of it.
+/// At intermediate luminance a part of the rods' signal is added: at 10 cd/m^2 (1 - 4.99 / 9.99)^2 of it.
 TEST(Ferwerda, BothAtDusk) {
     const double display = std::pow(10, std::pow(0.249 * std::log10(50) + 0.65, 2.7) - 0.72);
     const double rods = std::pow(10, -0.395), cones = std::pow(10, std::pow(0.249 + 0.65, 2.7) - 0.72);
     EXPECT_NEAR(shown(10, Tonemap::ferwerda), 0.01 * display * (10 / cones + 0.25050 / rods), 1e-5);
 }
 
-/// Larson et al. 1997 of white, X, Y, Z = 0.9505, 1, 1.089; and of green alone, which rods see far better than red.
+/// Larson et al. 1997 for white, X, Y, Z = 0.9505, 1, 1.089; and for green, to which rods are far more sensitive than
+/// to red.
 TEST(Ferwerda, ScotopicLuminance) {
     EXPECT_NEAR(scotopic_luminance(Rgb(1)), 1.33 * (1 + 2.089 / 0.9505) - 1.68, 0.002);
     EXPECT_NEAR(scotopic_luminance(Rgb(0, 1, 0)), 0.7152 * (1.33 * (1 + (0.7152 + 0.1192) / 0.3576) - 1.68), 0.001);

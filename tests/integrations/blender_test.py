@@ -14,7 +14,7 @@ INSIDE = Path(__file__).with_name("inside_blender.py")
 
 class Addon(unittest.TestCase):
     def blender(self, case: str, command: str = os.environ["INTERFLECT_COMMAND"]) -> dict:
-        """What a case of inside_blender.py finds."""
+        """Runs a case of inside_blender.py and returns its results."""
         with tempfile.TemporaryDirectory() as folder:
             addons, temporary = Path(folder, "scripts", "addons"), Path(folder, "temporary")
             addons.mkdir(parents=True)
@@ -120,11 +120,11 @@ class Addon(unittest.TestCase):
     def test_an_image_lights_the_side_that_it_is_turned_to(self):
         found = self.blender("hdri_world")
         self.assertEqual(found["result"], ["FINISHED"])
-        half = math.pi / 8  # of the bright part, which is as wide as high
+        half = math.pi / 8  # half angle of the bright part, which is as wide as high
         irradiance = 8 * 2 * math.sin(half) * (half + math.sin(2 * half) / 2)
         sides = found["sides"]
         self.assertAlmostEqual(sides.pop("-y") / (irradiance * 0.8 / math.pi), 1, delta=0.02)
-        self.assertLess(max(sides.values()), 0.2)  # of light that reaches them at a low angle
+        self.assertLess(max(sides.values()), 0.2)  # light at grazing angles
         self.assertEqual(sides["+y"], 0)
         self.assertEqual(*found["left"])
 

@@ -1,4 +1,4 @@
-"""The cases of blender_test.py, each run in a Blender of its own: `-- CASE COMMAND FOUND.json`."""
+"""The cases of blender_test.py, each run in a separate Blender: `-- CASE COMMAND FOUND.json`."""
 
 import json
 import math
@@ -49,7 +49,7 @@ def bake(kind: str = "VERTEX", rays: float = 0.2) -> dict:
     settings.rays, settings.kind, settings.texels_per_metre = rays, kind, 8
     try:
         return {"result": list(bpy.ops.interflect.bake()), "said": ""}
-    except RuntimeError as error:  # how Blender's scripts are told of a report of an error
+    except RuntimeError as error:  # Blender reports an operator's error to scripts this way
         return {"result": ["CANCELLED"], "said": str(error)}
 
 
@@ -69,26 +69,24 @@ def corners(lit) -> list:
 
 
 def colours(lit) -> list:
-    """Radiance of a lit object's loops, where its colours are in its vertices."""
+    """Returns the radiance of a lit object's loops, for results in vertex colours."""
     surface = next(node for node in lit.data.materials[0].node_tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
     strength = surface.links[0].from_node.inputs[1].links[0].from_node.inputs["Strength"].default_value
     return [[strength * channel for channel in texel.color[:3]] for texel in lit.data.color_attributes[0].data]
 
 
 def brightness(name: str) -> float:
-    """Mean radiance of an object's lit copy."""
     (lit,) = [o for o in lit_meshes() if o.name.split(".")[0] == name]
     light = colours(lit)
     return sum(map(sum, light)) / len(light) / 3
 
 
 def in_file() -> dict:
-    """Names of everything in the file."""
     return {kind: sorted(data.name for data in getattr(bpy.data, kind)) for kind in KINDS_OF_DATA}
 
 
 def shown() -> dict:
-    """How the user has hidden things: in pictures, by the monitor, by the eye."""
+    """Returns the visibility settings of the user: in pictures, by the monitor, by the eye."""
     return {o.name: [o.hide_render, o.hide_viewport, o.hide_get()] for o in bpy.context.scene.objects}
 
 
@@ -149,7 +147,7 @@ def visibility() -> dict:
     objects["eye"].hide_set(True)
     objects["off"].hide_render = True
     objects["alone"].hide_viewport = True
-    bpy.data.objects["camera"].hide_render = True  # cameras take pictures nevertheless
+    bpy.data.objects["camera"].hide_render = True  # cameras work nevertheless
     before = shown()
     found = bake()
     baked = {o.name.split(".")[0]: [round(d, 3) for d in o.dimensions] for o in lit_meshes()}
@@ -158,7 +156,7 @@ def visibility() -> dict:
 
 
 def user() -> dict:
-    """A task as users have it: bake, edit, bake, delete by hand, undo, save and open again."""
+    """A typical session: bake, edit, bake, delete by hand, undo, save and open again."""
     make_room()
     scene, wall = bpy.context.scene, bpy.data.materials["grey"]
     wall.use_nodes = True
@@ -224,7 +222,7 @@ def scenes() -> dict:
 
 
 def instances() -> dict:
-    """A collection with an area lamp, which is in the scene twice as instances."""
+    """A collection with an area lamp, instanced twice in the scene."""
     make_room()
     scene = bpy.context.scene
     fitting = bpy.data.collections.new("fitting")
@@ -247,7 +245,7 @@ SHAPES = {"SQUARE": (0.8, 0.3), "RECTANGLE": (0.9, 0.4), "DISK": (0.8, 0.3), "EL
 
 
 def panels() -> dict:
-    """Area lamps of all shapes: light that Cycles finds below each lamp, and below the panel in its place."""
+    """Area lamps of all shapes: Cycles' light below each lamp, and below the panel that replaces it."""
     scene, lamps = bpy.context.scene, []
     bpy.ops.mesh.primitive_plane_add(size=8, location=(1.5, 0, 0.5))
     floor, glass = bpy.context.object, bpy.data.materials.new("glass")
@@ -278,7 +276,7 @@ def panels() -> dict:
 
 
 def powers_seen() -> list:
-    """Mean light in each quarter of a picture from below, which has a lamp in its middle."""
+    """Measures the mean light in each quarter of a picture from below, with a lamp in its middle."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 1, False
@@ -327,7 +325,6 @@ def failures() -> dict:
 
 
 def long_bake(folder: Path) -> pipeline.Bake:
-    """A running bake of many hours."""
     scene = folder / "scene.glb"
     exchange.export_scene(bpy.context.scene, scene)
     wanted = pipeline.Settings(command=command, rays=10**11)
@@ -366,7 +363,7 @@ def new_world():
 
 
 def plain_world() -> dict:
-    """A grey floor under a sky of one colour, of radiance L: as bright as the sky times its reflectance."""
+    """A grey floor under a sky of constant radiance L: its radiance is L times its reflectance."""
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
     nodes, _ = new_world()
@@ -379,11 +376,11 @@ def plain_world() -> dict:
 
 
 def hdri_world() -> dict:
-    """A cube in an image that is bright towards x, turned by a quarter, and other light that cameras alone would see."""
+    """A cube in an image that is bright towards x, turned by a quarter, and other light that only cameras would see."""
     bpy.ops.mesh.primitive_cube_add(size=1)
     bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
     scene = bpy.context.scene
-    scene.camera = put("camera", bpy.data.cameras.new("camera"), (0, -4, 0))  # it sees the lit side, for the exposure
+    scene.camera = put("camera", bpy.data.cameras.new("camera"), (0, -4, 0))  # shows the lit side, for the exposure
     scene.camera.rotation_euler = (math.pi / 2, 0, 0)
     nodes, links = new_world()
     with tempfile.TemporaryDirectory() as folder:

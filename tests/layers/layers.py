@@ -1,5 +1,5 @@
-"""The rules of docs/design.md that a compiler does not check: who may include whom, what a header may hold, and what a
-message of the library may say."""
+"""The rules of docs/design.md that a compiler does not check: permitted includes, contents of headers, and wording of
+the library's messages."""
 
 import re
 from pathlib import Path
@@ -22,7 +22,7 @@ USES = re.compile(r"\bUSES\s+([a-z_ \n]+)")
 
 
 def faults(root: Path) -> list[str]:
-    """Every broken rule below `root`, the repository's folder, as 'file: what is wrong'; empty if all is well."""
+    """Returns every violation below `root`, the repository's folder, as 'file: problem'; empty if all rules hold."""
     library = root / "src" / "interflect"
     folders = sorted(path for path in library.iterdir() if path.is_dir())
     found = [f"{folder}: not one of the layers {' '.join(LAYERS)}" for folder in folders if folder.name not in LAYERS]
@@ -49,7 +49,7 @@ def faults(root: Path) -> list[str]:
 
 
 def layer_faults(folder: Path) -> list[str]:
-    """A layer includes only itself and what its CMakeLists.txt says it USES, and that lies before it in LAYERS."""
+    """Finds includes from other layers than those under USES in CMakeLists.txt, which must come earlier in LAYERS."""
     found = []
     earlier = LAYERS[: LAYERS.index(folder.name)]
     build_file = folder / "CMakeLists.txt"

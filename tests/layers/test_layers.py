@@ -1,4 +1,4 @@
-"""The repository keeps its own rules, and the checker sees each of them broken."""
+"""The repository follows its own rules, and the checker finds each violation."""
 
 import tempfile
 import unittest
@@ -15,7 +15,7 @@ class Repository(unittest.TestCase):
 
 
 class Checker(unittest.TestCase):
-    """Small trees of sources, each with one fault (or none)."""
+    """Small trees of sources, each with at most one fault."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

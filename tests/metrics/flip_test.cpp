@@ -42,9 +42,9 @@ double flip_of_colours(const Rgb& image, const Rgb& reference) {
     return flip_map(Image(3, 2, image), Image(3, 2, reference)).at(1, 1).x;
 }
 
-/// One colour has neither edges nor details: what is left is the distance of two colours, HyAB^0.7, and its largest
-/// value is 41.2760, that of green and blue. Black and white are 100 apart, all of it lightness: 100^0.7 = 25.1189 is
-/// above the knee 0.4 x 41.2760 = 16.5104, so 0.95 + 0.05 (25.1189 - 16.5104) / (41.2760 - 16.5104) = 0.96738.
+/// A uniform colour has neither edges nor details, so only the distance of two colours remains, HyAB^0.7. Its largest
+/// value is 41.2760, for green and blue. Black and white are 100 apart in lightness: 100^0.7 = 25.1189 is above the
+/// knee 0.4 x 41.2760 = 16.5104, so 0.95 + 0.05 (25.1189 - 16.5104) / (41.2760 - 16.5104) = 0.96738.
 TEST(Flip, OfBlackAndWhiteByHand) { EXPECT_NEAR(flip_of_colours(grey(0), grey(1)), 0.96738, 1e-4); }
 
 TEST(Flip, OfGreenAndBlueIsOne) { EXPECT_NEAR(flip_of_colours(Rgb(0, 1, 0), Rgb(0, 0, 1)), 1, 1e-6); }
@@ -54,7 +54,7 @@ TEST(Flip, OfGreenAndBlueIsOne) { EXPECT_NEAR(flip_of_colours(Rgb(0, 1, 0), Rgb(
 TEST(Flip, OfTwoGreysByHand) { EXPECT_NEAR(flip_of_colours(grey(0.125f), grey(0.216f)), 0.31995, 1e-4); }
 
 /// Numbers from the formulas of the paper's reference implementation (github.com/NVlabs/flip, python/flip_api.py of
-/// version 1.2), evaluated in double precision with whole square kernels instead of separated ones.
+/// version 1.2), evaluated in double precision with full square kernels instead of separated ones.
 TEST(Flip, AgreesWithTheReferenceImplementation) {
     const Image reference = pattern(24, 16), image = mirrored(reference);
     const Image map = flip_map(image, reference);
@@ -80,7 +80,7 @@ TEST(Flip, DoesNotDependOnWhichIsTheReference) {
 TEST(Flip, LiesBetweenZeroAndOne) {
     Image image = pattern(40, 30), opposite = image;
     for (Rgb& pixel : opposite.pixels) pixel = Rgb(1) - pixel;
-    image.at(3, 3) = Rgb(50, -2, 0);  // clamped to what a display shows
+    image.at(3, 3) = Rgb(50, -2, 0);  // clamped to the display's range
     for (const double pixels_per_degree : {0.5, 5.0, 67.0, 300.0})
         for (const Rgb& pixel : flip_map(image, opposite, {pixels_per_degree}).pixels) {
             EXPECT_GE(pixel.x, 0);
@@ -102,7 +102,7 @@ TEST(Flip, RisesWithNoise) {
     }
 }
 
-/// Lines of one pixel are averaged by the eye where a degree has many pixels.
+/// Lines of one pixel are averaged by vision at many pixels per degree.
 TEST(Flip, FineDetailsCountLessFromFarAway) {
     Image lines(48, 32), reference(48, 32, grey(0.5f));
     for (int y = 0; y < 32; ++y)

@@ -16,7 +16,6 @@ namespace {
 
 Rgb grey(float v) { return Rgb(v, v, v); }
 
-/// Varies from pixel to pixel, by no simple pattern.
 Image speckle(int width, int height, float mean, float amplitude) {
     Image image(width, height);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -51,7 +50,7 @@ TEST(Compare, KnownByHand) {
     EXPECT_NEAR(d.blocks[0].relative_rmse, 0.2126 / 3.02 / std::sqrt(2), 1e-6);
 }
 
-/// A constant factor: every block says the same, and with `scale` nothing is left.
+/// A constant factor appears in every block, and `scale` removes it.
 TEST(Compare, AFactorShowsInEveryBlockAndCanBeDividedOut) {
     const Image reference(18, 18, grey(2)), image(18, 18, grey(3));
     for (const BlockDifference& block : compare(image, reference).blocks) {
@@ -71,7 +70,7 @@ TEST(Compare, NoiseAveragesOutInBlocks) {
     EXPECT_LT(d.blocks[2].relative_rmse, d.blocks[1].relative_rmse);
 }
 
-/// One block of 10 x 10 = 100 is wrong: all of the error, and just the percent that is left out.
+/// One block of 10 x 10 = 100 is wrong: it has the whole error, and is the omitted percent.
 TEST(Compare, TrimmingLeavesTheWorstPercentOut) {
     Image reference(50, 50, grey(1)), image = reference;
     image.at(12, 31) = grey(26);  // its block of 5 x 5 has mean 2
@@ -85,7 +84,7 @@ TEST(Compare, WhatIsLeftOverAtTheBordersIsNoBlock) {
     Image reference(7, 6, grey(1)), image = reference;
     image.at(6, 0) = image.at(0, 5) = grey(9);
     EXPECT_EQ(compare(image, reference).blocks[1].relative_rmse, 0);  // one block of 5 x 5
-    EXPECT_EQ(compare(image, reference).blocks[2].relative_rmse, 0);  // none of 9 x 9
+    EXPECT_EQ(compare(image, reference).blocks[2].relative_rmse, 0);  // no block of 9 x 9
     EXPECT_GT(compare(image, reference).blocks[0].relative_rmse, 0);
 }
 
@@ -124,7 +123,7 @@ TEST(Compare, PerceptualDistanceIsThatOfTheFieldOfView) {
     EXPECT_THROW(compare(image, reference, {.field_of_view = 180}), InputError);
 }
 
-/// Both with the reference's exposure: a darker image stays darker. A picture from a file of 8 bits is shown as it is.
+/// Both use the reference's exposure, so a darker image stays darker. 8-bit files are shown without a change.
 TEST(Compare, FlipIsThatOfWhatADisplayShows) {
     const Image reference = speckle(18, 9, 300, 100), image = speckle(18, 9, 150, 50);
     const float exposure = automatic_exposure(reference);

@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 Rgb grey(double v) { return Rgb(static_cast<float>(v)); }
 
-/// In [-1, 1], by no simple pattern.
+/// An irregular pattern in [-1, 1].
 double speckle(int x, int y) { return (x * 7 + y * 13 + x * y * 3) % 11 / 5.0 - 1; }
 
 Image mottled(int width, int height, double mean, double amplitude) {
@@ -26,8 +26,8 @@ Image mottled(int width, int height, double mean, double amplitude) {
     return image;
 }
 
-/// A picture that the eye's response, luminance to the power 0.33, sees as 1 + contrast cos(...): so many cycles across
-/// and down.
+/// Creates a picture whose perceptual response, luminance to the power 0.33, is 1 + contrast cos(...), with the given
+/// cycles across and down.
 Image grating(int width, int height, int across, int down, double contrast) {
     Image image(width, height);
     for (int y = 0; y < height; ++y)
@@ -55,8 +55,8 @@ TEST(ContrastSensitivity, IsBestAtEightCyclesPerDegreeAndNoBetterThanOne) {
 }
 
 /// The reference is 1 everywhere, so m = 1 and d = c cos(...): D is c / 2 at the grating's frequency and at its
-/// negative, 0 elsewhere. The distance is A(f) sqrt(2 (c / 2)^2) = A(f) c / sqrt(2). A picture of 1 degree with 8
-/// cycles down it: f = 8, A = 0.9808, and with c = 0.1 the distance is 0.06935.
+/// negative, 0 elsewhere. The distance is A(f) sqrt(2 (c / 2)^2) = A(f) c / sqrt(2). For a picture of 1 degree with 8
+/// cycles down it, f = 8, A = 0.9808, and with c = 0.1 the distance is 0.06935.
 TEST(PerceptualDistance, OfAGratingKnownByHand) {
     EXPECT_NEAR(perceptual_distance(grating(32, 32, 0, 8, 0.1), Image(32, 32, grey(1)), 1), 0.06935, 1e-5);
 }
@@ -78,7 +78,7 @@ TEST(PerceptualDistance, OfGratingsGoesByCyclesPerDegree) {
     }
 }
 
-/// D by its definition, on sizes that no fast transform likes.
+/// D by its definition, on sizes that fast transforms do not support.
 TEST(PerceptualDistance, IsTheSumOverTheSpectrum) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 8}, {7, 13}, {17, 2}, {9, 15}}) {
         const Image image = mottled(width, height, 4, 3), reference = mottled(width, height, 2, 0);
@@ -113,7 +113,7 @@ TEST(PerceptualDistance, DoesNotDependOnACommonFactor) {
     EXPECT_NEAR(perceptual_distance(bright_image, bright_reference, 45), distance, 1e-6);
 }
 
-/// Four copies side by side, in a field of view twice as wide: the same frequencies, as much of each.
+/// Four copies side by side, with twice the field of view: the frequencies and their shares stay the same.
 TEST(PerceptualDistance, DoesNotDependOnTheSizeOfThePicture) {
     const auto four_times = [](const Image& image) {
         Image tiled(2 * image.width, 2 * image.height);
@@ -135,7 +135,7 @@ TEST(PerceptualDistance, RisesWithNoise) {
     }
 }
 
-/// Noise of single pixels is seen in a picture of a wide field; in a narrow one the pixels are too fine.
+/// Noise of single pixels is visible in a picture of a wide field; in a narrow one the pixels are too fine.
 TEST(PerceptualDistance, WhatIsTooFineToSeeDoesNotCount) {
     const Image image = grating(64, 64, 32, 0, 0.1), reference(64, 64, grey(1));
     EXPECT_LT(perceptual_distance(image, reference, 0.5), 0.01 * perceptual_distance(image, reference, 4));

@@ -1,4 +1,4 @@
-// Unified Glare Rating against published position indices and sources whose luminance and solid angle are known.
+// Unified Glare Rating against published position indices and sources of known luminance and solid angle.
 
 #include "interflect/glare.h"
 
@@ -21,7 +21,7 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-/// CIE 117:1995, table of position indices, T/R = 0: straight above the line of sight, H/R as high as it is far.
+/// CIE 117:1995, table of position indices, T/R = 0: straight above the line of sight, by H/R (height over distance).
 class PositionIndex : public testing::TestWithParam<std::tuple<float, double>> {};
 TEST_P(PositionIndex, IsThatOfTheTable) {
     const auto [height, p] = GetParam();
@@ -48,7 +48,6 @@ TEST(UnifiedGlareRating, IsThatOfTheFormula) {
     EXPECT_EQ(unified_glare_rating(40, {}), -std::numeric_limits<double>::infinity());
 }
 
-/// A room of 6 x 4 x 3 m, reflectance rho.
 Scene room(float rho = 0.5f) {
     Scene scene = closed_box({6, 4, 3}, 1, {Material{"paint", Rgb(rho), Rgb(0)}});
     scene.objects = {"", "lamp"};
@@ -56,7 +55,7 @@ Scene room(float rho = 0.5f) {
 }
 const Observer observer{{1, 2, 1.2}, {2, 0, 0}};
 
-/// A small disk of 0.1 m across that shines with 300 cd cos(theta): its luminance is 300 / A from everywhere.
+/// A disk of 0.1 m diameter that emits 300 cd cos(theta): its luminance is 300 / A in all directions.
 Luminaire disk(const V3f& position, const V3f& faces) {
     auto web = std::make_shared<PhotometricWeb>();
     for (int i = 0; i <= 90; ++i) web->polar.push_back(static_cast<float>(i));
@@ -75,7 +74,7 @@ void expect_source(const GlareSource& source, double luminance, double solid_ang
     EXPECT_NEAR(source.glare, luminance * luminance * solid_angle / (p * p), 4e-3 * source.glare);
 }
 
-/// 3 m ahead and 1.5 m above the eye, facing down: A = 0.00785 m^2, cos = 1.5 / r, omega = A cos / r^2.
+/// 3 m ahead and 1.5 m above the observer, facing down: A = 0.00785 m^2, cos = 1.5 / r, omega = A cos / r^2.
 TEST(GlareSources, OfOneSmallDiskAreAsComputed) {
     Scene scene = room();
     scene.luminaires.push_back(disk({4, 2, 2.7f}, {0, 0, -1}));
@@ -85,12 +84,12 @@ TEST(GlareSources, OfOneSmallDiskAreAsComputed) {
     ASSERT_EQ(sources.size(), 1u);
     EXPECT_EQ(sources[0].name, "disk");
     expect_source(sources[0], 300 / area, omega, p);
-    // From behind, and above its plane, it is not seen.
+    // Not visible from behind, or from above its plane.
     EXPECT_TRUE(glare_sources(scene, RayCaster(scene), {{1, 2, 1.2}, {-1, 0, 0}}).empty());
     EXPECT_TRUE(glare_sources(scene, RayCaster(scene), {{1, 2, 2.9}, {1, 0, 0}}).empty());
 }
 
-/// The same as a patch of 0.1 x 0.1 m, of object 'lamp': L = M / pi. Divided into many it is one source all the same.
+/// The same as a patch of 0.1 x 0.1 m, of object 'lamp': L = M / pi. Divided into many patches it remains one source.
 TEST(GlareSources, OfPatchesAreGroupedByObject) {
     for (const int divisions : {1, 4}) {
         Scene scene = room();
@@ -106,7 +105,7 @@ TEST(GlareSources, OfPatchesAreGroupedByObject) {
     }
 }
 
-/// A screen hides the upper half of a panel that stands straight ahead; glass lets a part of it through.
+/// A screen hides the upper half of a panel that stands straight ahead; glass transmits a part of its light.
 TEST(GlareSources, AreSeenAsFarAsNothingHidesThem) {
     for (const float transmittance : {0.0f, 0.6f}) {
         Scene scene = room();
@@ -127,7 +126,7 @@ TEST(GlareSources, AreSeenAsFarAsNothingHidesThem) {
     }
 }
 
-/// Lb is the indirect illuminance at the eye over pi, and the rating that of the formula.
+/// Lb is the indirect illuminance at the observer over pi, and the rating follows from the formula.
 TEST(RateGlare, PutsSourcesBeforeTheirBackground) {
     Scene scene = room();
     scene.luminaires.push_back(disk({4, 2, 2.7f}, {0, 0, -1}));

@@ -1,4 +1,4 @@
-// Where measuring points lie: spacing and number by EN 12464-1, within the faces of an area and off its border.
+// Positions of measuring points: spacing and number by EN 12464-1, within the faces of an area and off its border.
 
 #include "interflect/measuring_grid.h"
 
@@ -16,7 +16,7 @@ namespace {
 using namespace testing_support;
 using testing::HasSubstr;
 
-/// A point of the table in EN 12464-1 (4.4): the length of an area and the distance that it rounds p to [m].
+/// A point of the table in EN 12464-1 (4.4): the length of an area, and the rounding of p there [m].
 struct TableRow {
     double length, spacing, rounding;
 };
@@ -40,7 +40,7 @@ TEST(GridSpacing, OfALongAreaIsThatOfItsShorterSide) {
     EXPECT_EQ(grid_spacing(1e4, 1e4), 10);
 }
 
-/// A desk of 2 x 1 m on a floor of 6 x 5 m, both of two-sided faces, and walls that look inwards.
+/// A desk of 2 x 1 m on a floor of 6 x 5 m, both of two-sided faces, and walls that face inwards.
 Scene furnished(int divisions = 1) {
     Scene scene = closed_box({6, 5, 3}, 1, {Material{"", Rgb(0.5f), Rgb(0)}});
     scene.objects = {"", "room.floor", "room.desk.top", "room.walls"};
@@ -64,7 +64,7 @@ TEST(MeasuringGrid, LiesInTheMiddlesOfCells) {
     EXPECT_EQ(grid.normal, V3f(0, 0, 1));
 }
 
-/// Spacing is at most p: of 6 x 5 m p is 0.6867 m, so that there are 9 x 8 points.
+/// Spacing is at most p: 6 x 5 m give p = 0.6867 m and hence 9 x 8 points.
 TEST(MeasuringGrid, HasNoLargerSpacingThanAllowed) {
     const Scene scene = furnished();
     const MeasuringGrid by_standard = area_grid(scene, find_top(scene, "room.floor"));
@@ -85,8 +85,9 @@ TEST(MeasuringGrid, LeavesOutTheBoundaryStrip) {
     EXPECT_THROW(area_grid(scene, find_top(scene, "room.floor"), {.boundary = 2.5}), InputError);
 }
 
-/// An L of three squares of 2 m, one of them cut into triangles: points in the notch are left out, and with a strip
-/// those within it of the notch's two sides, which no rectangle around the L tells. The cuts are no border.
+/// An L of three squares of 2 m, one of them cut into triangles. Points in the notch are omitted. A boundary strip also
+/// excludes points near the notch's two sides, which a bounding rectangle would miss. The cuts are not part of the
+/// border.
 TEST(MeasuringGrid, KeepsToTheFacesAndTheirBorder) {
     Scene scene;
     scene.materials = {Material{}};
@@ -105,14 +106,14 @@ TEST(MeasuringGrid, KeepsToTheFacesAndTheirBorder) {
     EXPECT_EQ(whole.columns, 8);
     EXPECT_EQ(whole.points.size(), 48u);
     for (const Imath::V3d& p : whole.points) EXPECT_FALSE(p.x > 1002 && p.y > -1998);
-    // Cells of 0.5 m from 0.5 m on: middles at 0.75, 1.25, ... 3.25 in both directions, and none in (1.5, 4)^2.
+    // Cells of 0.5 m from 0.5 m on: middles at 0.75, 1.25, ... 3.25 in both directions, except in (1.5, 4)^2.
     const MeasuringGrid inner = area_grid(scene, area, {.spacing = 0.5, .boundary = 0.5});
     EXPECT_EQ(inner.columns, 6);
     EXPECT_EQ(inner.points.size(), 20u);
     for (const Imath::V3d& p : inner.points) EXPECT_FALSE(p.x > 1001.5 && p.y > -1998.5);
 }
 
-/// The same, divided as the solver's mesh is: the border is still that of the whole.
+/// The same, divided like the solver's mesh: the border is still that of the whole.
 TEST(MeasuringGrid, DoesNotDependOnHowFacesAreDivided) {
     for (const int divisions : {1, 3}) {
         const Scene scene = furnished(divisions);
@@ -149,7 +150,7 @@ TEST(MeasuringGrid, AtAHeightLiesOverTheFloor) {
     EXPECT_THROW(find_floor(scene, 20.2), InputError);
 }
 
-/// Walls of one size: which one, and which side of a two-sided face, is told by the way that it faces.
+/// The orientation distinguishes walls of equal size and the sides of a two-sided face.
 TEST(MeasuringGrid, OfASurfaceFacesAsItDoes) {
     const Scene scene = furnished();
     try {

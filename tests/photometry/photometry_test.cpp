@@ -1,4 +1,4 @@
-// What is told of measured points, and light from a point light over a floor in closed form.
+// Summaries of measured points, and a point light over a floor in closed form.
 
 #include "interflect/photometry.h"
 
@@ -38,7 +38,6 @@ TEST(Summary, IsThatOfTheSums) {
     EXPECT_EQ(summarise({}).uniformity(), 0);
 }
 
-/// A colour counts by its luminance.
 TEST(Summary, WeighsColours) {
     const std::vector<MeasuredIrradiance> green{{Rgb(0, 10, 0), Rgb(0), Rgb(0, 1, 0), 0}};
     EXPECT_NEAR(summarise(green).mean, 7.152, 1e-4);
@@ -57,7 +56,7 @@ TEST(SolutionError, IsTheDifferenceFromPathTracing) {
     EXPECT_NEAR(s.mean_solution_error, 6, 1e-4);
     EXPECT_NEAR(s.min_solution_error, 3, 1e-4);
 
-    // One point stands for all three, whose own errors are independent of it.
+    // One point represents all three; their individual errors are independent of it.
     const SolutionError of_one = estimate_solution_error(gathered, std::array<std::size_t, 1>{1}, {&traced[1], 1});
     EXPECT_NEAR(of_one.mean, std::sqrt(100 + 100 * 2.0 / 3), 1e-3);
 }
@@ -90,7 +89,7 @@ TEST(ExteriorIlluminance, IsThatOfTheUniformSkyWithoutTheSun) {
     EXPECT_TRUE(has_other_light_than_sky(scene));
 }
 
-/// Of a map: pi L sin^2 of the angle that its only bright row reaches down to; below the horizon nothing counts.
+/// For a map: pi L sin^2 of the angle to the lower edge of its only bright row; the part below the horizon is ignored.
 TEST(ExteriorIlluminance, AddsDomesAndMaps) {
     Scene scene = closed_box({1, 1, 1}, 1, {Material{}});
     scene.luminaires.push_back({"overcast", 0, SkyDome{cie_standard_sky(1), Rgb(5000), {0, 0, 1}, {0, 0, 1}, 0.5f}});
@@ -101,7 +100,7 @@ TEST(ExteriorIlluminance, AddsDomesAndMaps) {
     EXPECT_FALSE(has_other_light_than_sky(scene));
 }
 
-/// E = I cos / r^2 = I h / r^3 at every point of a grid on a black floor; nothing on the side that faces away.
+/// E = I cos / r^2 = I h / r^3 at every point of a grid on a black floor; 0 on the averted side.
 TEST(MeasuringGrid, MeasuresThePointLightOverIt) {
     Scene scene = closed_box({6, 5, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});
     scene.objects = {"", "floor"};

@@ -73,7 +73,6 @@ TEST(Camera, NarrowFieldOfView) {
     EXPECT_NEAR(std::atan2(top.direction.z, top.direction.y), 5 * std::numbers::pi / 180, 1e-6);
 }
 
-/// The message with which a view is refused.
 std::string refusal(const View& view, int width = 16, int height = 9) {
     try {
         Camera(view, width, height, world);
@@ -103,7 +102,7 @@ TEST(Camera, RefusesViewsThatShowNothing) {
     EXPECT_THAT(refusal(view), HasSubstr("must be finite"));
 }
 
-// Seen to fail: such rays were drawn in steps of 6e-8, and the picture in blocks.
+// Seen to fail: such rays were quantised in steps of 6e-8, which gave blocks in the picture.
 TEST(Camera, RefusesPixelsFinerThanDirections) {
     View view = straight_view();
     view.fov = 0.01f;

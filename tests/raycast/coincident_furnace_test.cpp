@@ -1,4 +1,5 @@
-// What coincident faces do to the light of a closed room: coincident_test.cpp tells how these tests were seen to fail.
+// Effect of coincident faces on the light of a closed room; coincident_test.cpp describes how these tests were seen to
+// fail.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ SolveOptions furnace_options(std::uint64_t seed) {
 
 float radiosity(const Solution& solution, std::uint32_t patch) { return exitance + rho * solution.irradiance[patch].x; }
 
-// The room's floor is the middle of a larger black slab. Every ray that the slab answered would be lost.
+// The room's floor is the middle of a larger black slab. Every ray for which the slab is reported would be lost.
 TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
     Scene scene;
     const std::uint32_t black = add_material(scene, Rgb(0), Rgb(0));
@@ -56,13 +57,10 @@ TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
     EXPECT_LT(bonferroni(p_values_of_one_percent), false_alarm);
 }
 
-/// Power that leaves a solution's surfaces by itself [W].
 double emitted(const Solution& solution) { return solution.emitted_power.x; }
 
-/// How a wall is doubled.
 enum class Copy { same_corners, other_first_corner, in_quarters };
 
-/// Adds a copy of each wall of a box.
 void double_walls(Scene& scene, Copy copy) {
     const std::vector<Patch> walls = scene.patches;
     for (Patch doubled : walls) {
@@ -81,8 +79,8 @@ class DoubledWalls : public testing::TestWithParam<Copy> {};
 INSTANTIATE_TEST_SUITE_P(Copies, DoubledWalls,
                          testing::Values(Copy::same_corners, Copy::other_first_corner, Copy::in_quarters));
 
-// B = M / (1 - rho) on what answers, whichever of the two that is, and no power is emitted but that of one of them.
-// Seen to fail, with twice the light, where Materials does not ask for uncovered_share().
+// The reported faces have B = M / (1 - rho), and only one of each pair emits power. Seen to fail, with twice the light,
+// when Materials does not use uncovered_share().
 TEST_P(DoubledWalls, OfAFurnaceEmitOnce) {
     Scene scene = closed_box({1, 2, 3}, 1, {wall});
     double_walls(scene, GetParam());
@@ -105,7 +103,7 @@ TEST_P(DoubledWalls, OfAFurnaceEmitOnce) {
                     area += solution.forest->area(i);
                 }
                 EXPECT_NEAR(area, 22, 1e-4);
-                // Whatever is sent arrives: the mean has hardly any noise but that of Russian roulette.
+                // All power is received, so almost the only noise of the mean is that of Russian roulette.
                 EXPECT_NEAR(power / area, exitance / (1 - rho), 0.01 * exitance / (1 - rho)) << method;
             }
     }
@@ -122,7 +120,7 @@ TEST(DoubledWalls, OfAFurnaceEmitOnceWithLinks) {
     EXPECT_NEAR(radiosity(solution, 0), exitance / (1 - rho), 0.1 * exitance / (1 - rho));
 }
 
-// The lamp comes after a face of the same corners that does not emit.
+// The lamp comes after a face of the same corners without emission.
 TEST(Lamp, CoincidentWithAnEarlierFaceLightsTheRoom) {
     std::vector<double> apart, together;
     for (const bool coincides : {false, true}) {
@@ -131,7 +129,7 @@ TEST(Lamp, CoincidentWithAnEarlierFaceLightsTheRoom) {
         const V3f corner(0.2f, 0.2f, coincides ? 2.5f : 2.498f);
         const std::uint32_t shade = add_material(scene, Rgb(0), Rgb(0));
         add_rectangle(scene, {0.2f, 0.2f, 2.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, shade, 1, 1, true);
-        add_rectangle(scene, corner, {0, 0.5f, 0}, {0.5f, 0, 0}, lamp);  // looks down
+        add_rectangle(scene, corner, {0, 0.5f, 0}, {0.5f, 0, 0}, lamp);  // faces down
         const RayCaster ray_caster(scene);
         for (std::uint64_t seed = 1; seed <= 16; ++seed) {
             const Solution solution = solve(scene, ray_caster, furnace_options(seed));
@@ -139,12 +137,12 @@ TEST(Lamp, CoincidentWithAnEarlierFaceLightsTheRoom) {
             (coincides ? together : apart).push_back(solution.irradiance[4].x);
         }
     }
-    // It is 2 mm farther from the floor, which takes 0.2% of the light on that. Without the lamp there is none.
+    // It is 2 mm farther from the floor, which reduces the direct light by 0.2%. Without the lamp the room is dark.
     const auto mean = [](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0) / 16; };
     EXPECT_NEAR(mean(together) / mean(apart), 1, 0.01);
 }
 
-// What is under the decal, 0.05% of the surface, does not emit.
+// The covered part of the floor, 0.05% of the surface, does not emit.
 TEST(CoincidentFurnace, DecalOnAFloorGetsItsLight) {
     Scene scene = closed_box({1, 2, 3}, 1, {wall});
     const std::uint32_t decal = add_rectangle(scene, {0.4f, 0.9f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 0);

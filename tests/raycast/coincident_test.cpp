@@ -1,8 +1,8 @@
-// Faces that lie in one place: whatever a ray's direction, the same one must answer. Embree alone does not do that.
-// With RayCaster's use of is_overlapped and is_hidden taken out, 18 of these tests fail (not those that ask
-// CoincidentFaces alone, nor those where Embree has no choice): half of the rays towards a decal get the table, and the
-// furnace's black slab swallows light. Each part of the resolution (sidedness, surfaces of many patches, tolerances in
-// the plane and off it, inside or not) was broken once too, and a test failed each time.
+// Coincident faces: for any direction of a ray, the same face must be reported, which Embree alone does not guarantee.
+// Without RayCaster's use of is_overlapped and is_hidden, 18 of these tests fail: half of the rays towards a decal hit
+// the table, and the furnace's black slab absorbs light. (Tests of CoincidentFaces alone, and those where Embree has no
+// choice, still pass.) Each part of the resolution was broken once, and a test failed each time: sidedness, surfaces of
+// many patches, tolerances in the plane and off it, inside or not.
 
 #include "interflect/raycast/coincident.h"
 
@@ -33,7 +33,7 @@ Patch reversed(Patch patch) {
     return patch;
 }
 
-/// Adds a face of these corners; returns its patch, of a two-sided one the first.
+/// Adds a face with these corners; returns its patch, or the first patch of a two-sided face.
 std::uint32_t add_face(Scene& scene, Patch front, bool two_sided) {
     const auto index = static_cast<std::uint32_t>(scene.patches.size());
     front.other_side = two_sided ? index + 1 : none;
@@ -45,7 +45,7 @@ std::uint32_t add_face(Scene& scene, Patch front, bool two_sided) {
     return index;
 }
 
-/// Room for faces over the unit square, whose front is up.
+/// Vertices for faces over the unit square, whose front faces up.
 Scene empty_scene() {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(1));
@@ -56,17 +56,17 @@ Scene empty_scene() {
 
 constexpr Patch unit_square{{0, 1, 2, 3}};
 
-/// A parallelogram to aim at, and a frame to look at it from.
+/// A target parallelogram, and a frame for ray origins.
 struct Target {
     V3f corner, u, v;
 
     V3f normal() const { return u.cross(v).normalized(); }
-    /// At (a, b) of [0, 1]^2, but no closer to the border than 0.1% of the edge.
+    /// Returns the point at (a, b) of [0, 1]^2, at least 0.1% of the edge from the border.
     V3f inner_point(float a, float b) const { return corner + (0.001f + 0.998f * a) * u + (0.001f + 0.998f * b) * v; }
 };
 
-/// How many of the rays from all over one side of `target`, towards points within it, are not answered by `expected`.
-/// Directions are uniform over the hemisphere but for the last degree; eyes 0.1 to 5 m away.
+/// Counts the rays from one side of `target`, towards points within it, that do not hit `expected`. Directions are
+/// uniform over the hemisphere except for the last degree; origins are 0.1 to 5 m away.
 int wrong_answers(const Scene& scene, const Target& target, float side, std::uint32_t expected,
                   int rays = rays_per_scene) {
     const RayCaster ray_caster(scene);
@@ -136,7 +136,7 @@ TEST(Duplicates, ATwoSidedOneAnswersWhereAOneSidedOneBeforeItDoesNot) {
 
 TEST(Duplicates, OfWarpedQuadrilateralsAreFound) {
     Scene scene = empty_scene();
-    scene.vertices[2].z = 0.009f;  // as far off the plane as a reader lets pass
+    scene.vertices[2].z = 0.009f;  // the largest distance from the plane that a reader accepts
     const std::uint32_t first = add_face(scene, unit_square, true);
     add_face(scene, rotated(unit_square, 1), true);
     const Target middle{{0.4f, 0.4f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}};  // the flattest rays would miss the border
@@ -149,20 +149,20 @@ TEST(Duplicates, AHundredThousandOfOneFaceTakeNoQuadraticTime) {
     EXPECT_EQ(CoincidentFaces(scene, 1e-5f).hidden_count(), 99'999u);
 }
 
-/// A table top and a decal in its plane, or a little off it, in any position in space.
+/// A table top and a decal in its plane, or slightly off it, at any position in space.
 struct DecalOnTable {
     Scene scene;
     Target table, decal;
     std::uint32_t table_face = 0, decal_face = 0;
 
-    /// @param offset  Of the decal above the table, in ray offsets of the decal.
+    /// @param offset  Height of the decal above the table, in ray offsets of the decal.
     DecalOnTable(unsigned position, float offset, bool decal_first) {
         std::mt19937 random(position);
         std::uniform_real_distribution<float> uniform(-1, 1);
         const auto direction = [&] { return V3f(uniform(random), uniform(random), uniform(random)).normalized(); };
         const V3f u = direction(), n = u.cross(direction()).normalized(), v = n.cross(u);
         table = {8.0f * V3f(uniform(random), uniform(random), uniform(random)), 2.0f * u, 1.25f * v};
-        // Turned in the table's plane, reaching from its middle towards its corner.
+        // Rotated in the table's plane, from its middle towards its corner.
         const V3f decal_u = 0.25f * u + 0.125f * v, decal_v = -0.0625f * u + 0.25f * v;
         decal = {table.corner + 0.75f * u + 0.5f * v, decal_u, decal_v};
 
@@ -199,14 +199,14 @@ TEST_P(Decal, AnswersEveryRayThatMeetsTheTableWithinIt) {
 
 TEST_P(Decal, LeavesTheRestOfTheTableAlone) {
     const DecalOnTable d(1, GetParam(), false);
-    Target beside = d.table;  // the quarter by its first edge, where no decal is
+    Target beside = d.table;  // the quarter at its first edge, without the decal
     beside.v *= 0.25f;
     EXPECT_EQ(wrong_answers(d.scene, beside, above, d.table_face), 0);
 }
 
 TEST(Decal, WinsOverTheCellsOfADividedTable) {
     DecalOnTable d(1, 0, false);
-    const Scene divided = split_patches(d.scene, 0.28f, 1'000'000);  // cells of 0.25 x 0.25 m, less than the decal
+    const Scene divided = split_patches(d.scene, 0.28f, 1'000'000);  // cells of 0.25 x 0.25 m, smaller than the decal
     const RayCaster ray_caster(divided);
     const V3f n = d.decal.normal();
     int wrong = 0;
@@ -273,7 +273,6 @@ TEST(Decal, OfAThousandOnOneFloorEachAnswers) {
     }
 }
 
-/// The five visible sides of a box that stands at `corner`.
 std::uint32_t add_box(Scene& scene, V3f corner, V3f s) {
     const V3f x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
     const std::uint32_t front = add_rectangle(scene, corner, x, z, 0, 1, 1, true);
@@ -293,7 +292,7 @@ TEST(Boxes, WithACommonSideAnswerByTheSmallerOneWhereTheyOverlap) {
     EXPECT_EQ(CoincidentFaces(scene, 1e-5f).pair_count(), 1u);
 }
 
-// ---- What never answers sends nothing
+// ---- Faces that are never reported emit no power
 
 float share_left(const Scene& scene, std::uint32_t patch) {
     return CoincidentFaces(scene, 1e-6f).uncovered_share(patch);
@@ -319,7 +318,7 @@ TEST(Covered, AreNotFacesBackToBack) {
 TEST(Covered, IsOnlyTheSideThatTheOtherFaceHasAsItsFront) {
     Scene scene = empty_scene();
     const std::uint32_t both = add_face(scene, unit_square, true);
-    add_rectangle(scene, {0, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);  // looks up
+    add_rectangle(scene, {0, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);  // faces up
     add_rectangle(scene, {0.5f, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);
     EXPECT_EQ(share_left(scene, both), 0);
     EXPECT_EQ(share_left(scene, both + 1), 1);
@@ -328,10 +327,10 @@ TEST(Covered, IsOnlyTheSideThatTheOtherFaceHasAsItsFront) {
 TEST(Covered, IsTheExactShareWhereOthersOverlapEachOther) {
     Scene scene = empty_scene();
     const std::uint32_t face = add_face(scene, unit_square, false);
-    add_rectangle(scene, {0.1f, 0.1f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);         // 0.08
-    add_rectangle(scene, {0.3f, 0.2f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);         // 0.08, of which 0.02 are the first's
-    add_rectangle(scene, {0.9f, 0.9f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, 0);         // 0.01, and the rest outside
-    add_rectangle(scene, {0.6f, 0.6f, 0}, {0.1f, 0.1f, 0}, {-0.1f, 0.1f, 0}, 0);  // 0.02, turned
+    add_rectangle(scene, {0.1f, 0.1f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);  // 0.08
+    add_rectangle(scene, {0.3f, 0.2f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);  // 0.08, with 0.02 shared with the first
+    add_rectangle(scene, {0.9f, 0.9f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, 0);  // 0.01, and the rest outside
+    add_rectangle(scene, {0.6f, 0.6f, 0}, {0.1f, 0.1f, 0}, {-0.1f, 0.1f, 0}, 0);  // 0.02, rotated
     EXPECT_NEAR(share_left(scene, face), 1 - 0.17, 1e-5);
 }
 
@@ -351,10 +350,9 @@ TEST(Covered, IsAllOfAFaceUnderManyTilesAndNothingOfTheTiles) {
     for (std::uint32_t i = tiles; i < scene.patches.size(); ++i) ASSERT_EQ(faces.uncovered_share(i), 1);
 }
 
-/// Adds a material that emits.
 std::uint32_t add_lamp(Scene& scene) { return add_material(scene, Rgb(0), Rgb(100)); }
 
-// With equal surfaces ranked by their order in the scene alone the ceiling answers, and the lamp is gone.
+// If equal surfaces were ranked only by their order in the scene, the ceiling would hide the lamp.
 TEST(Lamp, InThePlaceOfAnEqualFaceAnswersWhereItEmits) {
     for (const bool lamp_first : {false, true})
         for (const bool lamp_is_two_sided : {false, true}) {

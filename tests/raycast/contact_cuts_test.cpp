@@ -24,7 +24,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Rays between points on a sphere around the scene and points within its box: those miss no part of it.
+/// Creates rays from points on a sphere around the scene to points within its box. They cover every part of it.
 std::vector<Ray> random_rays(const Scene& scene, std::size_t count) {
     Imath::Box3f box;
     for (const V3f& v : scene.vertices) box.extendBy(v);
@@ -46,15 +46,14 @@ std::vector<Hit> hits_of(const Scene& scene, const std::vector<Ray>& rays) {
     return hits;
 }
 
-/// The area of each material [m^2].
 std::map<std::uint32_t, double> material_areas(const Scene& scene) {
     std::map<std::uint32_t, double> areas;
     for (const auto& [material_and_object, area] : face_areas(scene)) areas[material_and_object.first] += area;
     return areas;
 }
 
-/// Areas of materials are the same, and rays meet the same, but for a few in a million that pass within the
-/// rounding of vertices of an edge.
+/// Expects equal areas of materials and equal hits. A few rays in a million may differ, which pass within the rounding
+/// of vertices of an edge.
 void expect_unchanged(const Scene& scene, const ContactOptions& options) {
     const Scene cut = cut_at_contacts(scene, options);
     EXPECT_THAT(scene_faults(cut), testing::IsEmpty());

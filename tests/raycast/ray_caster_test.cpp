@@ -1,6 +1,6 @@
-// What rays meet: closed rooms hold them in, each face answers with the side that is seen.
-// Seen to fail (scripts/mutation-test) when the backs of two-sided faces answer as their fronts, backs of one-sided
-// faces stop rays, rays are not lifted off the surface that they leave.
+// Ray hits: no ray leaves a closed room, and each face reports the visible side. Seen to fail (scripts/mutation-test)
+// when the backs of two-sided faces are reported as fronts, when backs of one-sided faces stop rays, and when rays do
+// not start off their surface.
 
 #include "interflect/ray_caster.h"
 
@@ -49,7 +49,6 @@ std::ptrdiff_t count_escaped(const std::vector<Hit>& hits) {
     return std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.patch == none; });
 }
 
-/// Every quadrilateral as two triangles.
 Scene triangulated(const Scene& scene) {
     Scene result = scene;
     result.patches.clear();
@@ -62,7 +61,6 @@ Scene triangulated(const Scene& scene) {
     return result;
 }
 
-/// Turned about a slanting axis, then moved.
 Scene placed(Scene scene, float angle, const V3f& offset) {
     Imath::M44f matrix;
     matrix.setAxisAngle(V3f(1, 2, 3).normalized(), angle);
@@ -105,7 +103,7 @@ TEST_P(ClosedBox, LetsNoRayOutInAnyDirection) {
     EXPECT_EQ(count_escaped(traced(RayCaster(scene), rays)), 0);
 }
 
-/// Rays from random points in the middle of a box to points that `target` picks from an edge (a, b).
+/// Creates rays from random points in the middle of a box to points that `target` picks from an edge (a, b).
 template <class Target>
 std::vector<Ray> rays_to_edges(const Scene& scene, const Target& target) {
     const V3f centre = centre_of(scene);
@@ -132,8 +130,8 @@ TEST_P(ClosedBox, LetsNoRayOutThroughEdges) {
     EXPECT_EQ(count_escaped(traced(ray_caster, rays_to_edges(scene, anywhere))), 0);
 }
 
-// Embree's robust mode closes edges, not vertices: of rays aimed exactly at one, about one in ten thousand slips
-// through. Of random rays that is none in practice.
+// Embree's robust mode closes edges, not vertices: about one in ten thousand rays aimed exactly at a vertex escapes.
+// For random rays this is negligible.
 TEST_P(ClosedBox, LetsHardlyARayOutThroughVertices) {
     const Scene& scene = GetParam().scene;
     const std::vector<Ray> rays = rays_to_edges(scene, [](const V3f& a, const V3f&, Random&) { return a; });
@@ -156,8 +154,8 @@ TEST_P(ClosedBox, LetsNoRayOutThatStartsOnAWall) {
         }
     }
     const std::vector<Hit> hits = traced(ray_caster, rays);
-    // Of rays that start within `offset` of an edge some begin beyond the next wall: offset / 0.3 m of them at the
-    // worst.
+    // A part of the rays that start within `offset` of an edge begin beyond the next wall: at most offset / 0.3 m of
+    // them.
     const double behind_a_wall = offset / 0.3 * static_cast<double>(rays.size());
     EXPECT_LE(static_cast<double>(count_escaped(hits)), behind_a_wall / 2);
 }
@@ -178,7 +176,7 @@ TEST_P(ClosedBox, HitsLieOnThePatchThatWasHit) {
     }
 }
 
-/// A face in the plane z = height, lit from above (or also from below), as a quadrilateral or as triangle.
+/// Lit from above (or also from below).
 std::uint32_t add_horizontal(Scene& scene, float height, bool up, bool two_sided, bool as_triangle) {
     const V3f x(2, 0, 0), y(0, 2, 0), corner(-1, -1, height);
     const std::uint32_t first = add_rectangle(scene, corner, up ? x : y, up ? y : x, 0, 1, 1, two_sided);
@@ -197,7 +195,7 @@ Scene empty_scene() {
 
 const Ray downwards{{-0.4f, -0.3f, 10}, {0, 0, -1}}, upwards{{-0.4f, -0.3f, -10}, {0, 0, 1}};
 
-class Faces : public testing::TestWithParam<bool> {};  // triangles?
+class Faces : public testing::TestWithParam<bool> {};  // as triangles
 INSTANTIATE_TEST_SUITE_P(Shape, Faces, testing::Bool(),
                          [](const auto& test) { return test.param ? "triangles" : "quadrilaterals"; });
 
@@ -241,7 +239,7 @@ TEST_P(Faces, TwoSidedFaceAnswersWithTheSideThatIsSeen) {
     }
 }
 
-// Real scenes have faces twice. Which one answers may not change from ray to ray, or the two would share the light.
+// Real scenes have duplicate faces. The reported face must not vary between rays, or the two would share the light.
 TEST_P(Faces, OfCoincidentTwoSidedFacesAlwaysTheSameAnswers) {
     Scene scene = empty_scene();
     for (const bool up : {true, true, false}) add_horizontal(scene, 0, up, true, GetParam());
@@ -283,7 +281,7 @@ TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
     }
 }
 
-/// How many of the rays that start on the walls of a closed box get out.
+/// Counts the escaping rays from the walls of a closed box.
 std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
     const RayCaster ray_caster(scene);
     Random random(11);
@@ -299,8 +297,8 @@ std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
     return count_escaped(traced(ray_caster, rays));
 }
 
-// A start point that rounding puts on the next wall, or behind it, is lost: 2^-24 of the coordinates, over the width of
-// a patch, of those near each edge; with coordinates of 8 widths (as origin_for leaves them) 2e-6 of all rays.
+// A start point that rounding puts on or behind the next wall is lost. Near each edge these are 2^-24 of the
+// coordinates over the width of a patch: 2e-6 of all rays for coordinates of 8 widths, the most after origin_for.
 TEST(RayOffset, LetsNoRayOutOfBoxesOfAnySizeAndPlace) {
     for (const float size : {1e-4f, 1e-2f, 1.0f, 1e3f, 1e5f})
         for (const float away : {0.0f, -0.5f, 8.0f}) {
@@ -310,18 +308,18 @@ TEST(RayOffset, LetsNoRayOutOfBoxesOfAnySizeAndPlace) {
         }
 }
 
-// With one offset for the whole scene, of its largest coordinate, the rays start outside the small box.
+// With one offset for the whole scene, from its largest coordinate, the rays would start outside the small box.
 TEST(RayOffset, DependsOnNothingFarAway) {
     const Scene box = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.5f), Rgb(1)}});
     Scene with_stray = box;
     add_rectangle(with_stray, {1e6f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    with_stray.vertices.emplace_back(-1e8f, 0.0f, 0.0f);  // of no face
+    with_stray.vertices.emplace_back(-1e8f, 0.0f, 0.0f);  // used by no face
     EXPECT_EQ(escaped_from(box, 1000), 0);
     const RayCaster alone(box), together(with_stray);
     for (std::uint32_t p = 0; p < box.patches.size(); ++p) EXPECT_EQ(alone.ray_offset(p), together.ray_offset(p));
 }
 
-// The shadow at the foot of a screen: rays from the floor, a tenth of a millimetre beside it, meet it.
+// The shadow at the foot of a screen: rays from the floor, a tenth of a millimetre beside it, hit the screen.
 TEST(RayOffset, KeepsContactShadows) {
     Scene scene = empty_scene();
     const std::uint32_t floor = add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
@@ -333,7 +331,7 @@ TEST(RayOffset, KeepsContactShadows) {
     EXPECT_TRUE(hit.patch == screen || hit.patch == screen + 1) << hit.patch;
 }
 
-// A decal at the origin has small coordinates, and the wall that it is on does not: Embree's rounding is the wall's.
+// A decal at the origin has small coordinates but its wall has large ones; Embree's rounding depends on the wall.
 TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
     for (const V3f& tilt : {V3f(0, 0, 0), V3f(0, 0, 0.3f)}) {
         Scene scene = empty_scene();
@@ -399,7 +397,7 @@ INSTANTIATE_TEST_SUITE_P(All, PreparedRayInterfaces,
 
 TEST_P(PreparedRayInterfaces, HitAsManyAsTrace) {
     Scene scene = triangulated(grey_box());
-    scene.patches.resize(scene.patches.size() - 30);  // open, so that some escape
+    scene.patches.resize(scene.patches.size() - 30);  // open, for escaping rays
     add_rectangle(scene, {0.2f, 0.5f, 1}, {0.5f, 0, 0.2f}, {0, 1, 0}, 0, 2, 2, true);
     const RayCaster ray_caster(scene);
     Random random(7);

@@ -1,4 +1,4 @@
-// Faces with holes (Material::transmittance_texture): in the solver, in paths and in pictures.
+// Faces with holes (Material::transmittance_texture).
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Gives a material the holes of `open`, a texture of the share that is open at each texel: what is there reflects as
-/// the material does.
+/// Cuts holes into a material. `open` is the open share at each texel.
 void cut_out(Scene& scene, std::uint32_t material, Texture open) {
     Texture there = open;
     for (Rgb& texel : there.texels) texel = Rgb(1) - texel;
@@ -36,8 +35,8 @@ void cut_out(Scene& scene, std::uint32_t material, Texture open) {
 
 const Rgb light{60, 50, 40};
 
-/// A room of 2 x 1 x 1 m, divided by two screens with holes at random, some of them coloured glass. Every surface emits
-/// M = (1 - rho) B where it is there, so that light is B everywhere, as if there were no screen.
+/// A room of 2 x 1 x 1 m, divided by two screens with random holes, some of coloured glass. Every surface emits M = (1
+/// - rho) B per opaque share, so the radiosity is B everywhere.
 Scene divided_furnace() {
     constexpr float rho = 0.6f;
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"wall", Rgb(rho), light * (1 - rho)}});
@@ -56,7 +55,7 @@ class FurnaceWithHoles : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Method, FurnaceWithHoles, testing::Values("srr", "wdrs", "hwdrs", "hsrr", "ihsrr", "pr"),
                          [](const auto& tested) { return tested.param; });
 
-/// Seen to fail where rays pass by the mean of the texture, and where elements reflect the whole reflectance.
+/// Seen to fail when rays use the mean of the texture, and when elements reflect the whole reflectance.
 TEST_P(FurnaceWithHoles, IsFilledByEveryMethod) {
     const Scene scene = divided_furnace();
     ASSERT_TRUE(scene_faults(scene).empty());
@@ -86,12 +85,12 @@ TEST(CutOuts, PicturesOfAFurnaceAreEven) {
                 errors += error / expected / (3.0f * static_cast<float>(picture.image.pixels.size()));
                 EXPECT_NEAR(picture.image.pixels[i][c], expected, error);
             }
-        EXPECT_LT(errors, 0.15f);  // or the pixels would say nothing
+        EXPECT_LT(errors, 0.15f);  // noisier pixels would be no test
     }
 }
 
-/// A lamp of 20 cm over a floor of 4 x 4 patches, between them a board of which the half x < 2 m is left: by its
-/// texture, or as a face.
+/// A lamp of 20 cm over a floor of 4 x 4 patches. Between them is a board whose half x > 2 m is removed, by its texture
+/// or as geometry.
 Scene half_board(bool is_cut_out) {
     Scene scene;
     add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, add_material(scene, Rgb(0.5f), Rgb(0)), 4, 4);
@@ -99,7 +98,7 @@ Scene half_board(bool is_cut_out) {
     const std::uint32_t board = add_material(scene, Rgb(0.8f), Rgb(0));
     add_rectangle(scene, {0, 0, 1.5f}, {is_cut_out ? 4.0f : 2.0f, 0, 0}, {0, 4, 0}, board, 1, 1, true);
     if (!is_cut_out) return scene;
-    constexpr std::uint32_t columns = 1024;  // the edge is blurred over one of them, 4 mm
+    constexpr std::uint32_t columns = 1024;  // the edge is blurred over one column, 4 mm
     Texture open{"half", columns, 1, {}};
     for (std::uint32_t i = 0; i < columns; ++i) open.texels.emplace_back(i < columns / 2 ? 0.0f : 1.0f);
     cut_out(scene, board, std::move(open));
@@ -107,7 +106,7 @@ Scene half_board(bool is_cut_out) {
     return scene;
 }
 
-/// Seen to fail with the texture mirrored, and where shadow rays pass by its mean.
+/// Seen to fail with the texture mirrored, and when shadow rays use its mean.
 TEST(CutOuts, AreAsTheFacesThatTheyLeave) {
     const Scene cut = half_board(true), whole = half_board(false);
     const RayCaster of_cut(cut), of_whole(whole);
@@ -117,7 +116,7 @@ TEST(CutOuts, AreAsTheFacesThatTheyLeave) {
     for (std::uint32_t p = 0; p < 16; ++p) brightest = std::max(brightest, by_face.irradiance[p].x);
     for (std::uint32_t p = 0; p < 16; ++p)
         EXPECT_NEAR(by_texture.irradiance[p].x, by_face.irradiance[p].x, 0.02f * brightest) << "patch " << p;
-    EXPECT_LT(by_face.irradiance[0].x, 0.1f * brightest);  // it is dark below the board
+    EXPECT_LT(by_face.irradiance[0].x, 0.1f * brightest);
 
     const std::vector<MeasuringPoint> points{{{0.7, 2, 0}}, {{1.8, 1, 0}}, {{2.3, 2, 0}}, {{3.4, 3, 0}}};
     const auto measured = [&](const Scene& scene, const RayCaster& ray_caster, const Solution* solution) {
@@ -133,7 +132,7 @@ TEST(CutOuts, AreAsTheFacesThatTheyLeave) {
     }
 }
 
-/// From above the board: its left half, and the floor through its right one.
+/// Seen from above: the left half of the board, and the floor through its right half.
 TEST(CutOuts, AreSeenThrough) {
     const Scene cut = half_board(true), whole = half_board(false);
     const RayCaster of_cut(cut), of_whole(whole);

@@ -23,14 +23,14 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 
 const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
-constexpr std::size_t plenty = 1 << 16;  // elements that a forest has room for
+constexpr std::size_t plenty = 1 << 16;  // elements
 
 void expect_near(const Rgb& found, const Rgb& expected, float tolerance = 1e-5f) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance);
 }
 
-/// Patches of every kind in the plane z = 0: 3 x 3 irregular quadrilaterals, every other one cut into two triangles.
-/// Each starts its vertex order elsewhere, so that edges of all numbers meet.
+/// Patches of every kind in the plane z = 0: 3 x 3 irregular quadrilaterals, half of them cut into two triangles. The
+/// first vertex varies, so that edges of all numbers meet.
 Scene mixed_mesh() {
     constexpr std::uint32_t n = 3;
     Scene scene;
@@ -55,7 +55,7 @@ Scene mixed_mesh() {
     return scene;
 }
 
-/// Neighbours may end up at any two levels.
+/// Neighbours can differ in level by any amount.
 void refine_at_random(ElementForest& forest, int deepest, std::uint64_t seed) {
     for (std::uint32_t e = 0; e < forest.size(); ++e)
         if (forest.level(e) < deepest && random_double(seed, e) < 0.5) forest.subdivide(e);
@@ -73,7 +73,6 @@ std::vector<Rgb> random_values(const ElementForest& forest, std::uint64_t seed) 
     return values;
 }
 
-/// A field of values that depend on the element.
 template <class ValueOf>
 std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of) {
     std::vector<Rgb> values;
@@ -81,7 +80,7 @@ std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of)
     return values;
 }
 
-/// Where an element has its corners, as ElementVertices numbers them [m].
+/// Returns corners in the order of ElementVertices [m].
 std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
     const PatchGeometry& patch = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
@@ -91,7 +90,6 @@ std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
             patch.point(cell.at(0, 1))};
 }
 
-/// Of a flat scene: the value at a point, whichever patch holds it; nothing beside the patches.
 std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& field, const V3f& x) {
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
         const Parameters parameters = forest.geometry(p).parameters_of(x);
@@ -100,7 +98,7 @@ std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& fiel
     return std::nullopt;
 }
 
-/// The largest difference between two points on opposite sides of a leaf's edge, both at `distance` [m] from it.
+/// Computes the largest difference across the edges of leaves, between points at `distance` [m] from the edge.
 float largest_jump(const ElementForest& forest, const SmoothField& field, float distance) {
     float largest = 0;
     for (const std::uint32_t leaf : forest.leaves()) {
@@ -118,9 +116,8 @@ float largest_jump(const ElementForest& forest, const SmoothField& field, float 
     return largest;
 }
 
-/// Values are in [0, 1] and the lowest leaf is about 0.4 / 2^5 m high, so that no slope exceeds some 2 / 0.0125 a
-/// metre. Left without the constraint of hanging vertices (the last loop of vertex_values()), the field jumps by
-/// UNKNOWN.
+/// Values are in [0, 1] and the lowest leaf is about 0.4 / 2^5 m high, so slopes stay below about 2 / 0.0125 = 160 per
+/// metre. Continuity depends on the constraint of hanging vertices (the last loop of vertex_values()).
 TEST(SmoothField, IsContinuousWhateverTheLevels) {
     const Scene scene = mixed_mesh();
     for (const std::uint64_t seed : {1, 2, 3}) {
@@ -134,8 +131,8 @@ TEST(SmoothField, IsContinuousWhateverTheLevels) {
     }
 }
 
-/// Two squares; only the right one is cut, and its quarters are bright. Both ends of the edge between them are the mean
-/// of dark and bright, so its middle is too, though all leaves that have it as a corner are bright.
+/// Two squares; only the right one is divided, and its quarters are bright. The values at both ends of their common
+/// edge are the mean of dark and bright. The hanging vertex in the middle must have the same value.
 TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
     Scene scene;
     add_rectangle(scene, V3f(0, 0, 0), V3f(2, 0, 0), V3f(0, 1, 0), add_material(scene, grey, black), 2, 1);
@@ -150,7 +147,7 @@ TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
     }
 }
 
-/// Where the four quarters of an irregular quadrilateral meet, each counts with its angle there.
+/// At the common corner of the quarters of an irregular quadrilateral, each quarter is weighted by its angle.
 TEST(VertexValues, AreWeightedByAngles) {
     Scene scene;
     add_material(scene, grey, black);
@@ -177,7 +174,7 @@ Point rounded(const V3f& x) {  // to 0.1 mm
     return {std::lround(1e4f * x.x), std::lround(1e4f * x.y), std::lround(1e4f * x.z)};
 }
 
-/// In a flat scene of one material every point has one vertex and every vertex is at one point.
+/// In a flat scene of one material, points and vertices correspond one to one.
 TEST(ElementVertices, AreThePointsWhereElementsMeet) {
     const Scene scene = mixed_mesh();
     ElementForest forest(scene, plenty);
@@ -201,10 +198,9 @@ TEST(ElementVertices, AreThePointsWhereElementsMeet) {
     }
 }
 
-/// Linear in space.
 Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(0, 5, 2) * x.y; }
 
-/// The leaves of a square and of its two halves, all cut equally, are like a fine grid of patches.
+/// The leaves of a square and of its two halves, all divided equally, behave like a fine grid of patches.
 TEST(SmoothField, ReproducesALinearFieldInsideAnEvenMesh) {
     Scene square;
     add_rectangle(square, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), add_material(square, grey, black));
@@ -221,7 +217,7 @@ TEST(SmoothField, ReproducesALinearFieldInsideAnEvenMesh) {
                                     const PatchGeometry& patch = forest.geometry(forest.patch(e));
                                     return linear_field(patch.point(forest.cell(e).centre(patch.is_triangle())));
                                 }));
-        for (float x = 0.125f; x < 0.876f; x += 0.05f)  // where no leaf touches the border
+        for (float x = 0.125f; x < 0.876f; x += 0.05f)  // excludes leaves at the border
             for (float y = 0.125f; y < 0.876f; y += 0.07f) {
                 const auto value = value_at(forest, field, V3f(x, y, 0));
                 ASSERT_TRUE(value);
@@ -270,8 +266,8 @@ TEST(SmoothField, EndsAtCreasesAndBordersOfMaterials) {
     }
 }
 
-/// A hipped roof of 20 degrees: its slopes meet in a crease at the ridge, yet go over into each other around both of
-/// the ridge's ends. They share the ends then, but no vertex between them.
+/// A hipped roof of 20 degrees: its slopes form a crease at the ridge but join smoothly around both ends of the ridge.
+/// The slopes share the vertices at the ends, but no vertex in between.
 TEST(SmoothField, ACreaseWhoseEndsAreSmoothIsStillACrease) {
     const float slope = std::tan(20 * std::numbers::pi_v<float> / 180), x = 0.5f * std::numbers::sqrt3_v<float>;
     const float z = -slope * x;

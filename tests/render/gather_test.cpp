@@ -1,4 +1,4 @@
-// Final gathering against path tracing, which shares nothing with the solution; and the filter of its noise.
+// Final gathering against path tracing, which uses no solution; and the denoising filter.
 
 #include "interflect/gather.h"
 
@@ -26,7 +26,7 @@ double mean_of(const Image& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-/// A room of 4 x 3 x 2.5 m with a lamp on its ceiling, a spot light, and a block on the floor that stands in a corner.
+/// A room of 4 x 3 x 2.5 m with a lamp on its ceiling, a spot light, and a block on the floor near a corner.
 Scene furnished_room() {
     Scene scene = closed_box({4, 3, 2.5f}, 2, {Material{"", {0.7f, 0.6f, 0.5f}}});
     const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(3000, 2800, 2000));
@@ -38,8 +38,8 @@ Scene furnished_room() {
 }
 const View into_corner{"corner", {3.6, 2.7, 1.6}, {0.4, 0.3, 0.5}, {0, 0, 1}, 60};
 
-/// In the mean within half a percent, and with as much more where the solution has it: what is gathered is the
-/// solution's. Direct light is none of it.
+/// The mean agrees within 0.5%. A solution that is 10% brighter raises the indirect light accordingly, but not the
+/// direct light.
 TEST(Gather, HasTheMeanOfPathTracing) {
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
@@ -55,11 +55,11 @@ TEST(Gather, HasTheMeanOfPathTracing) {
     const PathTracing brighter = gather(scene, solution, ray_caster, into_corner, options);
     EXPECT_EQ(mean_of(brighter.layers.reflected.direct), mean_of(gathered.layers.reflected.direct));
     EXPECT_GT(mean_of(brighter.layers.reflected.indirect) / mean_of(gathered.layers.reflected.indirect),
-              1.07);  // near light is traced
+              1.07);  // near light is traced, so the ratio is below 1.1
 }
 
-/// A lamp close to a corner of whole walls, each one element: their one value is not what the corner receives, whose
-/// light is found by paths. Seen to fail when every element may be gathered, however near.
+/// A lamp close to a corner of undivided walls. A single value per wall is wrong near the corner, so its light is
+/// traced. Seen to fail when every element may be gathered, at any distance.
 TEST(Gather, TracesPathsInCornersOfACoarseSolution) {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.7f), Rgb(0)}});
     scene.luminaires.push_back({"lamp", 0, PointLight{{0.5f, 0.5f, 0.5f}, Rgb(100)}});
@@ -73,7 +73,7 @@ TEST(Gather, TracesPathsInCornersOfACoarseSolution) {
         EXPECT_NEAR(found.pixels[i].x / expected.pixels[i].x, 1, 0.05);
 }
 
-/// Bits do not depend on threads or tiles: pixels have sequences of their own.
+/// Bits do not depend on threads or tiles, because pixels have their own sequences.
 TEST(Gather, SameSeedSameBits) {
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
@@ -84,8 +84,7 @@ TEST(Gather, SameSeedSameBits) {
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 
-/// The mean of 1 / density over sampled places is the area that they are taken from: here of what lies in front of the
-/// point, all of which is lit.
+/// The mean of 1 / density over sampled points is the sampled area: here the area in front of the point, all of it lit.
 TEST(KnownLight, SamplesWithTheStatedDensity) {
     const Scene scene = closed_box({1, 2, 3}, 2, {Material{"", Rgb(0.5f)}});
     std::vector<PatchGeometry> geometry;
@@ -109,12 +108,12 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
         sum += area, squares += area * area;
     }
     const double mean = sum / samples, error = std::sqrt((squares / samples - mean * mean) / samples);
-    constexpr double in_front = 2 * (1.0 * 3 + 2 * 3) + 2;  // but the floor
+    constexpr double in_front = 2 * (1.0 * 3 + 2 * 3) + 2;  // all walls except the floor
     EXPECT_GT(z_test(mean, in_front, error), false_alarm);
     EXPECT_LT(z_test(mean, 1.02 * in_front, error), false_alarm);
 }
 
-/// A wall, 1 m away and evenly lit: layers without light.
+/// A wall, 1 m away and evenly lit, without noise.
 PictureLayers wall(int side) {
     PictureLayers layers;
     layers.emitted = layers.albedo = layers.normal = layers.position = Image(side, side);
@@ -132,7 +131,7 @@ PictureLayers wall(int side) {
     return layers;
 }
 
-/// The left half in shadow, of a chequered reflectance, with noise of 30% / sqrt(3).
+/// The left half is in shadow. The reflectance is chequered, the noise 30% / sqrt(3).
 PictureLayers noisy_wall(int side) {
     PictureLayers layers = wall(side);
     constexpr float noise = 0.3f;
@@ -142,7 +141,7 @@ PictureLayers noisy_wall(int side) {
             const float albedo = (x / 2 + y / 2) % 2 == 0 ? 0.2f : 0.8f, level = x < side / 2 ? 0.1f : 1.0f;
             layers.albedo.pixels[i] = Rgb(albedo);
             for (std::uint32_t h = 0; h < 2; ++h) {
-                const float even = 2 * unit_float(random_words(1, i)[h]) - 1;  // variance 1/3, of the mean of two 1/6
+                const float even = 2 * unit_float(random_words(1, i)[h]) - 1;  // variance 1/3; mean of two: 1/6
                 const float light = albedo * level * (1 + std::sqrt(2.0f) * noise * even);
                 layers.halves[h].direct.pixels[i] = Rgb(light);
                 layers.halves[h].direct_variance[i] = albedo * albedo * level * level * noise * noise * 2 / 3;
@@ -152,7 +151,7 @@ PictureLayers noisy_wall(int side) {
     return layers;
 }
 
-/// Noise falls to a fifth, textures and the shadow's border stay.
+/// Noise falls to a fifth; textures and the border of the shadow remain.
 TEST(Denoise, RemovesNoiseAlone) {
     constexpr int side = 64;
     const PictureLayers layers = noisy_wall(side);
@@ -169,10 +168,10 @@ TEST(Denoise, RemovesNoiseAlone) {
     EXPECT_LT(std::sqrt(after), std::sqrt(before) / 5);
 }
 
-/// One batch in twenty brings twenty times the light of the others: the mean stays. It would not if the weights of
-/// pixels followed their own values.
+/// One batch in twenty has twenty times the light of the others. The mean stays, which would not hold if the weights of
+/// pixels depended on their own values.
 TEST(Denoise, KeepsTheMeanOfSkewedNoise) {
-    constexpr int side = 192, batches = 4;  // of each half
+    constexpr int side = 192, batches = 4;  // per half
     PictureLayers layers = wall(side);
     for (std::size_t i = 0; i < layers.albedo.pixels.size(); ++i)
         for (std::size_t h = 0; h < 2; ++h) {
@@ -192,7 +191,7 @@ TEST(Denoise, KeepsTheMeanOfSkewedNoise) {
     EXPECT_GT(std::abs(mean_of(denoise(layers)) / mean_of(layers.halves[0].direct) - 1), 0.02);
 }
 
-/// Where nothing is hit there is the sky, and none of it on what is beside it.
+/// Pixels without a hit show the sky, which does not spread to adjacent surfaces.
 TEST(Denoise, LeavesTheSkyAsItIs) {
     constexpr int side = 32;
     PictureLayers layers = noisy_wall(side);
@@ -212,7 +211,7 @@ TEST(Denoise, LeavesTheSkyAsItIs) {
     }
 }
 
-/// Two faces that meet at a right angle, and two parallel ones of which one is nearer, do not shade into each other.
+/// Two faces at a right angle, and two parallel faces at different distances, are not blended.
 TEST(Denoise, StopsAtEdges) {
     constexpr int side = 32;
     for (const bool is_step : {false, true}) {

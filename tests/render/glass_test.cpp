@@ -1,4 +1,4 @@
-// Thin glass, in the solver, in paths and in pictures; mirrors in pictures.
+// Thin glass and mirrors.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::uint32_t add_glass(Scene& scene, const Rgb& transmittance, const Rgb& refle
     return glass;
 }
 
-/// A room of 2 x 1 x 1 m with two parallel panes across its middle. They absorb nothing, so that the irradiance is M /
+/// A room of 2 x 1 x 1 m with two parallel panes across its middle. The panes absorb nothing, so the irradiance is M /
 /// (1 - rho) everywhere. The walls are divided at the panes, because hr samples partial visibility with few lines.
 Scene divided_furnace() {
     Scene scene;
@@ -65,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(Method, EveryMethod, testing::ValuesIn([] {
                              return name;
                          });
 
-/// Seen to fail where rays, lines and links go on unfiltered, and where panes filter twice. Elements of hr that touch
-/// each other exchange too much, the more the smaller they are: it has one a patch.
+/// Seen to fail when rays, lines and links pass unfiltered, and when panes filter twice. hr has one element per patch,
+/// because its smaller adjacent elements exchange too much.
 TEST_P(EveryMethod, FillsAFurnaceThroughGlass) {
     const Scene scene = divided_furnace();
     const RayCaster ray_caster(scene);
@@ -99,14 +99,13 @@ TEST(Glass, PicturesOfAFurnaceAreEven) {
                 errors += error / expected[c] / (3.0 * static_cast<double>(picture.image.pixels.size()));
                 EXPECT_NEAR(picture.image.pixels[i][c], expected[c], error + (is_gathered ? 0.01 : 0) * expected[c]);
             }
-        EXPECT_LT(errors, is_gathered ? 0.05 : 0.15);  // or the pixels would say nothing
+        EXPECT_LT(errors, is_gathered ? 0.05 : 0.15);  // noisier pixels would be no test
     }
     const Rendering drawn = render(scene, solution, ray_caster, along, {.width = 6, .height = 4});
     for (const Rgb& pixel : drawn.image.pixels)
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c] / expected[c], 1, 0.04);
 }
 
-/// A lamp and a floor with a coloured pane between them.
 struct LampBehindGlass {
     Scene scene;
     V3f x{2, 2, 0};
@@ -130,8 +129,8 @@ struct LampBehindGlass {
     }
 };
 
-/// Seen to fail where shadow rays go on unfiltered. Light on the floor is what it would be without the pane times its
-/// transmittance, of lamps, luminaires and the sun, each channel by itself.
+/// The light of lamps, luminaires and the sun on the floor is that without the pane times its transmittance, per
+/// channel. Seen to fail when shadow rays pass unfiltered.
 TEST(Glass, FiltersLightByItsColour) {
     const Luminaire point{"lamp", 0, PointLight{{2, 2, 2.5f}, Rgb(100)}};
     const Luminaire parallel{"sun", 0, DirectionalLight{{0.2f, 0.1f, -1}, Rgb(100)}};
@@ -152,7 +151,7 @@ TEST(Glass, FiltersLightByItsColour) {
     }
 }
 
-/// A mirror that faces the camera shows the wall behind it, darker by what it does not reflect; --no-mirrors does not.
+/// A mirror that faces the camera shows the wall behind it, scaled by its reflectance; with --no-mirrors it does not.
 TEST(Mirror, ShowsWhatIsBehindTheCamera) {
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(0)}});
     const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(7));
@@ -172,13 +171,12 @@ TEST(Mirror, ShowsWhatIsBehindTheCamera) {
     for (const Rgb& pixel : trace_paths(scene, ray_caster, view, options).image.pixels) EXPECT_EQ(pixel, Rgb(0));
 }
 
-/// Two that face each other end.
 TEST(Mirror, FacingAnotherEnds) {
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(1)}});
     scene.materials[0].specular_reflectance = Rgb(0.9f);
     const RayCaster ray_caster(scene);
     const PathTracing traced = trace_paths(scene, ray_caster, along, {.width = 4, .height = 4, .samples = 16});
-    // 1 + s + s^2 + ...: what is below a thousandth, and beyond 32 mirrors, is left out.
+    // 1 + s + s^2 + ..., truncated below a thousandth and after 32 mirrors.
     EXPECT_NEAR(traced.image.pixels[5].x * std::numbers::pi_v<float>, (1 - std::pow(0.9, 33)) / (1 - 0.9), 0.01);
 }
 

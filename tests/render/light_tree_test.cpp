@@ -23,7 +23,8 @@ LightTree tree_of(const Scene& scene) {
     return {patch_lights(scene, geometry, emitted_powers(scene, geometry)), scene.patches.size()};
 }
 
-/// Lamps of different sizes and powers that face down and up, a tilted one and two-sided ones, and what does not emit.
+/// Lamps of different sizes and powers that face down and up, a tilted one, two-sided ones, and a surface without
+/// emission.
 Scene lamps() {
     Scene scene;
     const std::uint32_t dark = add_material(scene, Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0));
@@ -44,7 +45,7 @@ const std::vector<Point> points_of_surfaces = {
     {V3f(0, 0, 0), V3f(0, 0, 1)},          {V3f(-1.5f, -1.6f, 2.9f), V3f(0, 0, 1)}, {V3f(4, 1, 2.499f), V3f(0, 0, 1)},
     {V3f(1.5f, 4.2f, 2.3f), V3f(0, 1, 0)}, {V3f(8, 8, 0.1f), V3f(-0.6f, 0, 0.8f)},  {V3f(-5, 0, 8), V3f(0, 0, -1)}};
 
-/// What choose() does for evenly spaced numbers is what probability() says, but for the numbers at the borders.
+/// choose() for evenly spaced numbers agrees with probability(), except for numbers at the borders.
 TEST(LightTree, ChoosesWithTheStatedProbability) {
     const Scene scene = lamps();
     const LightTree tree = tree_of(scene);
@@ -62,7 +63,7 @@ TEST(LightTree, ChoosesWithTheStatedProbability) {
     }
 }
 
-/// A patch that can light a point is chosen: each corner of it is tried, with nothing in between.
+/// A patch that can light a point is chosen; tried for each corner of the patch, without occlusion.
 TEST(LightTree, MissesNoPatchThatLightsAPoint) {
     const Scene scene = lamps();
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
@@ -111,7 +112,7 @@ TEST(LightTree, PrefersTheNearAndTheBright) {
     EXPECT_LT(tree.probability(2, x, up), 0.01f);
 }
 
-/// 400 lamps that face down, one a room of 5 x 5 m: the one above is most of the light on a floor and on a wall.
+/// 400 lamps that face down, one per room of 5 x 5 m: the lamp above dominates the light on a floor and on a wall.
 TEST(LightTree, PrefersTheLampOfTheRoomAmongHundreds) {
     Scene scene;
     const std::uint32_t light = add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1));

@@ -1,4 +1,4 @@
-// What a choice among luminaires brings in the mean is what all of them bring, and many cost hardly more than a few.
+// The mean light of sampled luminaires equals the sum over all, and many cost hardly more than a few.
 
 #include "interflect/render/luminaire_choice.h"
 
@@ -23,7 +23,7 @@ LightSample sample_of(std::uint64_t seed, std::uint64_t i) {
     return {(a[0] + 0.5) * 0x1p-32, unit_float(a[1]), unit_float(a[2]), unit_float(b[0])};
 }
 
-/// Of a downlight with a narrow beam, and of one that shines upwards from a table whose pole is the horizontal.
+/// The photometry of a downlight with a narrow beam, or of an uplight on a table whose pole is horizontal.
 std::shared_ptr<PhotometricWeb> web(PhotometricWeb::Pole pole, std::vector<float> polar, std::vector<float> azimuth,
                                     std::vector<float> intensities, const V3f& opening) {
     auto result = std::make_shared<PhotometricWeb>();
@@ -34,7 +34,7 @@ std::shared_ptr<PhotometricWeb> web(PhotometricWeb::Pole pole, std::vector<float
     return result;
 }
 
-/// Of every kind, turned and tilted, some of them dark at most points.
+/// Luminaires of every kind, turned and tilted, some of them dark at most points.
 Scene many_luminaires() {
     Scene scene = closed_box({9, 7, 3}, 1, {Material{"", Rgb(0.5f), Rgb(0)}});
     const auto beam = web(PhotometricWeb::Pole::nadir, {0, 10, 30, 180}, {0, 180, 360},
@@ -58,8 +58,8 @@ Scene many_luminaires() {
     return scene;
 }
 
-/// Seen to fail with cones that are too narrow (acos of half the share), without the chance of a candidate, and with
-/// one that always replaces the last.
+/// Seen to fail with cones that are too narrow (acos of half the share), without the probability of a candidate, and
+/// when a candidate always replaces the previous one.
 TEST(LuminaireChoice, BringsWhatAllLuminairesBring) {
     const Scene scene = many_luminaires();
     const LuminaireChoice choice(scene);
@@ -79,13 +79,13 @@ TEST(LuminaireChoice, BringsWhatAllLuminairesBring) {
             const double d = channel_sum(choice.choose(x, n, sample).irradiance) - all;
             sum += all, difference += d, squares += d * d;
         }
-        const double error = std::hypot(std::sqrt(squares) / samples, 1e-6 * sum / samples);  // and of rounding
+        const double error = std::hypot(std::sqrt(squares) / samples, 1e-6 * sum / samples);  // including rounding
         EXPECT_GT(z_test(difference / samples, 0, error), false_alarm) << k;
         EXPECT_LT(error, 0.05 * sum / samples) << k;
     }
 }
 
-/// A few luminaires are all candidates: their light has next to no noise that choosing adds.
+/// A few luminaires are all candidates, so the choice adds almost no noise.
 TEST(LuminaireChoice, AmongAFewIsExact) {
     Scene scene = closed_box({4, 3, 3}, 1, {Material{"", Rgb(0.5f), Rgb(0)}});
     scene.luminaires.push_back({"", 0, PointLight{{1, 1, 2.5f}, Rgb(100)}});

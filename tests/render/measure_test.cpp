@@ -1,4 +1,4 @@
-// Illuminance at points against closed forms, and against the solution that it is gathered from.
+// Illuminance at points against closed forms, and against the solution used for gathering.
 
 #include "interflect/measure.h"
 
@@ -21,7 +21,6 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-/// A black room with a point light of 1000 cd in the middle of its ceiling.
 Scene black_room(const Luminaire& light) {
     Scene scene = closed_box({6, 6, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});
     scene.luminaires.push_back(light);
@@ -34,9 +33,9 @@ MeasuredIrradiance measured(const Scene& scene, const MeasuringPoint& point, int
     return measure_irradiance(scene, nullptr, ray_caster, std::vector{point}, {.samples = samples}).front();
 }
 
-/// Light from one direction at a height angle: I/d^2 on the facing plane, and on cylinders sin(epsilon) times 1/pi and
-/// (1 + cos alpha)/pi (EN 12464-1, CIE 136), with epsilon from the axis and alpha from the way that half a cylinder
-/// faces.
+/// Light from one direction: I/d^2 on the facing plane; on cylinders this times sin(epsilon)/pi, on semicylinders times
+/// sin(epsilon) (1 + cos alpha)/pi (EN 12464-1, CIE 136). epsilon is the angle from the axis, alpha the angle from the
+/// facing direction of the semicylinder.
 TEST(MeasureIrradiance, OfEveryReceiverIsThatOfOneLight) {
     const Scene scene = black_room(lamp);
     const Imath::V3d p{1.5, 2.2, 1.2};
@@ -54,7 +53,7 @@ TEST(MeasureIrradiance, OfEveryReceiverIsThatOfOneLight) {
     for (const float degrees : {0.0f, 50.0f, 110.0f, 180.0f}) {
         const float turn = degrees * static_cast<float>(pi) / 180;
         const V3f towards{to_lamp.x * std::cos(turn) - to_lamp.y * std::sin(turn),
-                          to_lamp.x * std::sin(turn) + to_lamp.y * std::cos(turn), 0.7f};  // its z does not matter
+                          to_lamp.x * std::sin(turn) + to_lamp.y * std::cos(turn), 0.7f};  // its z has no effect
         const MeasuredIrradiance half = measured(scene, {p, towards, Receiver::semicylindrical});
         const double expected = facing * sine * (1 + std::cos(static_cast<double>(turn))) / pi;
         EXPECT_NEAR(half.direct.x, expected, 0.01 * facing) << degrees;
@@ -62,8 +61,8 @@ TEST(MeasureIrradiance, OfEveryReceiverIsThatOfOneLight) {
     }
 }
 
-/// A closed box that emits and reflects everywhere alike has H = M / (1 - rho), on every receiver inside and on it.
-/// The emitted part comes straight, the rest is reflected.
+/// A closed box with uniform emission and reflection has H = M / (1 - rho), on every receiver inside and on it. The
+/// emitted part arrives directly; the rest is reflected.
 TEST(MeasureIrradiance, OfAFurnaceIsTheSameEverywhere) {
     const float rho = 0.6f, exitance = 100;
     Scene scene = closed_box({2, 3, 2.5f}, 1, {Material{"", Rgb(rho), Rgb(exitance)}});
@@ -89,7 +88,7 @@ TEST(MeasureIrradiance, OfAFurnaceIsTheSameEverywhere) {
     }
 }
 
-/// A picture of irradiance has on each surface what a measuring point there has: of lit black walls too, and no lamps.
+/// A picture of irradiance shows the value of a measuring point at each surface, including black walls, and no lamps.
 TEST(PathTracer, DrawsIrradianceOfWhatIsSeen) {
     const Scene scene = black_room(lamp);
     const RayCaster ray_caster(scene);

@@ -15,7 +15,7 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 
 const Rgb grey(0.2f, 0.2f, 0.2f), red(1, 0, 0);
-constexpr int size = 32;  // of the picture [pixels]
+constexpr int size = 32;  // [pixels]
 
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
 const View view{"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90};
@@ -36,7 +36,7 @@ TEST(Outlines, LeaveAPictureOfOneLeafAsItIs) {
     EXPECT_EQ(outlined(scene, ElementForest(scene, 1)).pixels, Image(size, size, grey).pixels);
 }
 
-/// The square's middle is the picture's: a line two pixels wide covers the two pixels beside each border of leaves.
+/// The square and the picture share their centre. A line two pixels wide covers the two pixels beside each leaf border.
 TEST(Outlines, LieOnTheBordersOfLeavesAsWideAsAsked) {
     const Scene scene = square(9);
     ElementForest forest(scene, 5);
@@ -58,7 +58,7 @@ TEST(Outlines, ThatAreThinnerThanAPixelCoverAShareOfIt) {
     EXPECT_EQ(image.at(size / 2 + 1, 3), grey);
 }
 
-/// A square from -0.5 to 0.5 before nothing: its borders are at pixels 8 and 24.
+/// A square from -0.5 to 0.5 without a background: its borders are at pixels 8 and 24.
 TEST(Outlines, FollowSilhouettes) {
     const Scene scene = square(0.5f);
     const Image image = outlined(scene, ElementForest(scene, 1), {.width = 2, .opacity = 1, .colour = red});

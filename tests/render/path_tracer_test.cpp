@@ -1,11 +1,14 @@
 // The path tracer against exact answers: closed boxes of one exitance and reflectance, and form factors between
-// parallel rectangles. Seen to fail with each of these mutations: rho wrong or dropped; pi dropped from the emission
-// that a ray hits, from that of a chosen lamp, from the density of directions, or from the weight of chance hits alone;
-// a patch's probability, a lamp's area or its cosine dropped; distances dropped from the light tree's estimate, its
-// probabilities exchanged, its number not rescaled, its boxes culled by their centres; chance hits counted in full;
-// survivors of roulette not raised; 30 bounces at most; directions uniform over the hemisphere; points near the middle
-// of a lamp; shadow rays that count whatever they hit; the same random numbers for all batches, or for all vertices; no
-// ray offset; standard errors 15% too large.
+// parallel rectangles. Seen to fail with each of these mutations:
+// - rho wrong or missing;
+// - pi missing in the emission of a hit lamp, of a chosen lamp, in the density of directions, or in the weight of
+//   chance hits;
+// - the probability of a patch, the area of a lamp or its cosine missing;
+// - in the light tree: estimate without distances, probabilities exchanged, number not rescaled, boxes culled by their
+//   centres;
+// - chance hits with full weight; survivors of roulette not scaled up; at most 30 bounces;
+// - directions uniform over the hemisphere; only points near the middle of a lamp; shadow rays that ignore blockers;
+// - the same random numbers for all batches, or for all vertices; no ray offset; standard errors 15% too large.
 #include "interflect/path_tracer.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +38,6 @@ using testing_support::V3d;
 
 constexpr double pi = std::numbers::pi;
 
-/// Pictures of one view with different seeds.
 struct Pictures {
     std::vector<PathTracing> runs;
 
@@ -53,7 +55,6 @@ struct Pictures {
         for (const PathTracing& run : runs) result.push_back(run.image.pixels[pixel][channel]);
         return result;
     }
-    /// Of each picture's mean, the mean over the channels.
     std::vector<double> means() const {
         std::vector<double> result;
         for (const PathTracing& run : runs) {
@@ -64,7 +65,7 @@ struct Pictures {
         return result;
     }
 
-    /// The p-value of every pixel and channel having its expected value, and of their mean having its.
+    /// Computes the p-value for all pixels and channels, and their mean, having the expected values.
     double p_value(const std::vector<RgbD>& expected, double factor = 1) const {
         std::vector<double> p;
         double mean = 0;
@@ -77,8 +78,8 @@ struct Pictures {
     }
 };
 
-// A closed box with exitance M and reflectance rho everywhere has radiosity B = M + rho B, B = M / (1 - rho), whatever
-// its shape; it is 1 x 2 x 3 m, so that no two walls are alike.
+// A closed box of any shape with exitance M and reflectance rho everywhere has radiosity B = M + rho B = M / (1 - rho).
+// It is 1 x 2 x 3 m, so that all pairs of walls differ.
 
 class PathFurnace : public testing::TestWithParam<std::tuple<float, EmitterSampling>> {
   protected:
@@ -106,7 +107,7 @@ TEST_P(PathFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     for (const PathTracing& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
 }
 
-/// The box two-sided, askew and 50 m away from the origin: a ray that started on its surface or below would leave it.
+/// The two-sided box, rotated and 50 m from the origin. A ray that starts on or below its surface would leave it.
 TEST(PathTracer, NoRayLeavesAClosedBox) {
     const Scene box = closed_box(V3f(1, 2, 3), 2, {{"wall", Rgb(0.7f, 0.7f, 0.7f), Rgb(1, 1, 1)}});
     const V3f x = V3f(2, 1, 2) / 3.0f, y = V3f(-2, 2, 1) / 3.0f, z = V3f(-1, -2, 2) / 3.0f;  // orthonormal
@@ -130,7 +131,7 @@ TEST(PathTracer, NoRayLeavesAClosedBox) {
     EXPECT_GT(seen.p_value(expected), false_alarm);
 }
 
-/// Paths of a hundred bounces: a limit of their number, or roulette that forgets to raise the others, shows here.
+/// Paths of a hundred bounces: a limit on bounces, or roulette without scaling of the survivors, fails here.
 TEST(PathTracer, IsUnbiasedInAnAlmostWhiteBox) {
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.99f, 0.99f, 0.99f), Rgb(1, 1, 1)}});
     const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
@@ -141,14 +142,14 @@ TEST(PathTracer, IsUnbiasedInAnAlmostWhiteBox) {
 }
 
 // A lamp above an otherwise empty floor: H at the floor is M times the form factor to the lamp. The camera looks
-// straight down, so that each pixel is the mean over a rectangle of the floor: rho M F / pi exactly.
+// straight down, so each pixel is the mean over a rectangle of the floor: rho M F / pi exactly.
 
-constexpr int across = 4;  // pixels of the picture, and rectangles of the floor
+constexpr int across = 4;  // pixels of the picture, and rectangles of the floor, per side
 const Rgb floor_reflectance(0.8f, 0.4f, 0.2f);
 /// The floor from (-1, -1) to (1, 1), seen from below the lamps.
 const View view_of_floor{"floor", V3f(0, 0, 1), V3f(0, 0, 0), V3f(0, 1, 0), 90};
 
-/// A rectangle in a plane z = height that faces down.
+/// Faces down in the plane z = height.
 struct Lamp {
     double left, front, width, depth, height;
     Rectangle rectangle() const { return {V3d(left, front, height), V3d(0, depth, 0), V3d(width, 0, 0)}; }
@@ -167,7 +168,7 @@ struct LampAndFloor {
                       add_material(scene, floor_reflectance, Rgb(0, 0, 0)));
         light = add_material(scene, Rgb(0, 0, 0), Rgb(exitance, exitance, exitance));
     }
-    /// What the pixels show if lamps of this exitance have these form factors from a rectangle.
+    /// Computes the expected pixels for lamps with these form factors from a rectangle.
     std::vector<RgbD> expected(const std::function<double(const Rectangle&)>& form_factor) const {
         const double exitance = scene.materials[light].exitance.x;
         std::vector<RgbD> result;
@@ -202,7 +203,7 @@ TEST_P(LampAboveFloor, LightsItByFormFactors) {
     EXPECT_LT(seen.p_value(expected, 1.04), false_alarm);
 }
 
-/// A millimetre across: no ray hits it by chance.
+/// A lamp of 1 mm, which no ray hits by chance.
 TEST(PathTracer, TinyBrightLampLightsByFormFactors) {
     const Lamp lamp{0.2, -0.3, 1e-3, 1e-3, 2};
     LampAndFloor setup(1e8f);
@@ -214,7 +215,7 @@ TEST(PathTracer, TinyBrightLampLightsByFormFactors) {
     for (const PathTracing& run : seen.runs) EXPECT_LT(run.relative_error, 0.05);
 }
 
-/// A thousand lamps, of which all but one are under the floor or face away from it.
+/// A thousand lamps; all but one are under the floor or face away from it.
 TEST(PathTracer, LampsThatCannotLightCostLittlePrecision) {
     const Lamp lamp{0.2, -0.3, 0.1, 0.1, 2};
     LampAndFloor setup(1e4f);
@@ -232,8 +233,8 @@ TEST(PathTracer, LampsThatCannotLightCostLittlePrecision) {
     EXPECT_LT(seen.runs[0].relative_error, 0.1) << "choosing by power alone makes it 2";
 }
 
-/// Part of the lamp is covered by a black rectangle in its plane: the ray caster answers with the smaller one, and both
-/// ways to find a lamp must agree with it. Then the lamp is there twice: it lights once.
+/// A black rectangle covers part of the lamp in its plane. The ray caster reports the smaller rectangle; both sampling
+/// methods must agree with it. A duplicated lamp then lights only once.
 TEST_P(LampAboveFloor, CoveredInItsPlaneAndDuplicated) {
     const Lamp lamp{-0.8, -0.8, 1.6, 1.6, 2}, cover{-0.3, -0.5, 0.8, 1, 2};
     LampAndFloor setup(100);
@@ -247,7 +248,7 @@ TEST_P(LampAboveFloor, CoveredInItsPlaneAndDuplicated) {
     EXPECT_LT(seen.p_value(expected, 1.05), false_alarm);
 }
 
-/// The back of a two-sided lamp lights and is seen like the front; that of a one-sided lamp does neither.
+/// The back of a two-sided lamp lights and is visible like the front; that of a one-sided lamp is neither.
 TEST_P(LampAboveFloor, TwoSidedLampFacingUp) {
     const Lamp lamp{0.2, -0.6, 1.5, 1, 2};
     for (const bool two_sided : {true, false}) {
@@ -263,7 +264,7 @@ TEST_P(LampAboveFloor, TwoSidedLampFacingUp) {
 }
 
 TEST(PathTracer, ShowsLampsAsTheyEmit) {
-    for (const float height : {0.5f, -0.5f})  // of the camera: before the lamp and behind it
+    for (const float height : {0.5f, -0.5f})  // height of the camera: in front of the lamp and behind it
         for (const bool two_sided : {false, true}) {
             Scene scene;
             add_rectangle(scene, V3f(-9, -9, 0), V3f(18, 0, 0), V3f(0, 18, 0),
@@ -290,7 +291,7 @@ TEST(PathTracer, WithoutLightIsBlack) {
     EXPECT_EQ(seen.shadow_rays, 0);
 }
 
-/// A room with two lamps of which one is tiny, a two-sided table and colours: everything happens in it.
+/// A room that exercises everything: two lamps, one of them tiny, a two-sided table and colours.
 struct Room {
     Scene scene = closed_box(V3f(3, 4, 2.5f), 1,
                              {{"red", Rgb(0.7f, 0.2f, 0.1f), Rgb(0, 0, 0)},
@@ -325,8 +326,8 @@ TEST(PathTracer, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-/// The spread of the pictures is what each picture says of itself. In each run the mean over the pixels of the squared
-/// difference from the mean picture less the squared standard error has the expected value 0.
+/// The spread of the pictures matches their reported standard errors. In each run, the mean over the pixels of the
+/// squared deviation from the mean picture, less the squared standard error, has expectation 0.
 TEST(PathTracer, StandardErrorIsHonest) {
     const Room room;
     const Pictures seen(room.scene, room.view, {.width = 16, .height = 9, .samples = 64}, 48);
@@ -340,7 +341,7 @@ TEST(PathTracer, StandardErrorIsHonest) {
                 for (const double v : values) mean += v / runs;
                 for (std::size_t r = 0; r < values.size(); ++r) {
                     const double error = factor * static_cast<double>(seen.runs[r].standard_error.pixels[i][c]);
-                    // Relative to the pixel, so that bright ones do not count for all.
+                    // Relative to the pixel, so bright pixels do not dominate.
                     excess[r] +=
                         ((values[r] - mean) * (values[r] - mean) * runs / (runs - 1) - error * error) / (mean * mean);
                 }
@@ -378,21 +379,21 @@ TEST(PathTracer, CountsRaysAndStopsAtMaxSamples) {
     const Room room;
     const PathTracing seen = trace_paths(room.scene, RayCaster(room.scene), room.view,
                                          {.width = 4, .height = 3, .samples = 20, .max_samples = 50, .until = 1e-6});
-    // Batches are of 2: the largest power of two that gives at least 8 of them.
+    // Batches are of 2 paths: the largest power of two that gives at least 8 batches.
     EXPECT_EQ(seen.paths, 4 * 3 * 50);
     EXPECT_GT(seen.rays, seen.paths + seen.shadow_rays);
     EXPECT_EQ(seen.escaped_rays, 0);
     EXPECT_FALSE(seen.interrupted);
 }
 
-/// Seen to fail when it is 0 as long as pixels have one batch, which has no spread.
+/// Seen to fail when the error is 0 while pixels have a single batch and hence no spread.
 TEST(PathTracer, ErrorIsUnknownUntilEveryPixelHasASpread) {
     Scene scene;
     add_rectangle(scene, V3f(-9, -9, 0), V3f(18, 0, 0), V3f(0, 18, 0), add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1)));
     const View view{"lamp", V3f(0, 0, 1), V3f(0, 0, 0), V3f(0, 1, 0), 60};
     std::vector<double> errors;
     const PathMonitor monitor{[&](const PathProgress& progress) { errors.push_back(progress.relative_error); }};
-    // Two batches of one path: 320,000, more than there are between two reports.
+    // Two batches of one path: 320,000 paths, more than the interval between two reports.
     const PathTracing seen =
         trace_paths(scene, RayCaster(scene), view, {.width = 400, .height = 400, .samples = 2}, monitor);
     ASSERT_EQ(errors.size(), 2u);

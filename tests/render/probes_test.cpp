@@ -1,7 +1,7 @@
-// Irradiance probes against light whose harmonics are known exactly.
+// Irradiance probes against light with known harmonics.
 //
-// Seen to fail without the factors of the convolution, with unweighted quadrature, with x and y swapped, and when lamps
-// behind walls are not hidden.
+// Seen to fail without the factors of the convolution, with unweighted quadrature, with x and y swapped, and when walls
+// do not hide lamps.
 #include "interflect/probes.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,6 @@ ProbeGrid probes(const Scene& scene, const ProbeOptions& options = {}) {
     return irradiance_probes(scene, solve(scene, ray_caster, solve_options), ray_caster, options);
 }
 
-/// Nothing but a small black square, far below.
 Scene open_space() {
     Scene scene;
     scene.objects = {""};
@@ -47,7 +46,7 @@ TEST(SphereQuadrature, IntegratesProductsOfHarmonicsExactly) {
         }
 }
 
-/// In a closed box of exitance M and reflectance 0 radiance is M / pi everywhere: E(n) = M, and all but Y00 vanish.
+/// In a closed box of exitance M and reflectance 0, radiance is M / pi: E(n) = M, and all coefficients but Y00 vanish.
 TEST(Probes, OfAFurnaceAreUniform) {
     const Scene scene = closed_box({1, 2, 3}, 1, {{"wall", Rgb(0), Rgb(1, 2, 4)}});
     const ProbeGrid grid = probes(scene, {.spacing = 1, .rays = 128});
@@ -66,8 +65,8 @@ TEST(Probes, OfAFurnaceAreUniform) {
     }
 }
 
-/// Parallel light of irradiance E from direction w: E_lm = A_l Y_lm(w) E, so facing it the nine terms give
-/// E (1/4 + 1/2 + 5/16) = 17/16 E, and away from it E (1/4 - 1/2 + 5/16) = E / 16 (Ramamoorthi and Hanrahan 2001).
+/// Parallel light of irradiance E from direction w: E_lm = A_l Y_lm(w) E. The nine terms give E (1/4 + 1/2 + 5/16) =
+/// 17/16 E facing it, and E (1/4 - 1/2 + 5/16) = E / 16 away from it (Ramamoorthi and Hanrahan 2001).
 TEST(Probes, OfParallelLightHaveItsHarmonics) {
     Scene scene = open_space();
     const V3f towards = V3f(1, 2, 2) / 3;
@@ -82,8 +81,8 @@ TEST(Probes, OfParallelLightHaveItsHarmonics) {
     EXPECT_FALSE(probe.is_inside);
 }
 
-/// A hemisphere of radiance L above the horizon, 0 below: E(up) = pi L, E(down) = 0 and E(sideways) = pi L / 2; degrees
-/// 0 to 2 have all of the light but for odd degrees of no weight, since the next even one of a hemisphere vanishes.
+/// A hemisphere of radiance L above the horizon, 0 below: E(up) = pi L, E(down) = 0 and E(sideways) = pi L / 2. Degrees
+/// 0 to 2 are exact: higher odd degrees have no weight, and the next even degree of a hemisphere vanishes.
 TEST(Probes, OfASkyOverBlackGroundTellUpFromDown) {
     Scene scene = closed_box({1e3f, 1e3f, 1}, 1, {{"wall", Rgb(0), Rgb(0)}});
     scene.patches.resize(5);  // without the ceiling

@@ -22,7 +22,7 @@ const Rgb black(0, 0, 0);
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
 const View view{"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90};
 
-/// A square that fills the left half of a picture twice as wide as high, in 2 x 2 leaves; the other half shows nothing.
+/// A square of 2 x 2 leaves that fills the left half of a picture twice as wide as high; the other half is empty.
 struct HalfPicture {
     Scene scene;
     ElementForest forest;
@@ -68,7 +68,7 @@ TEST(QuantityPicture, LogarithmicScalesShowRatios) {
     EXPECT_EQ(picture.shown.at(1, 0), false_colour(0)) << "nothing looks like the least";
 }
 
-/// Each pixel is now half upper leaf, half lower one; the columns' edges stay those of pixels.
+/// Each pixel is half upper leaf, half lower leaf; column edges coincide with pixel edges.
 TEST(QuantityPicture, AveragesWithinAPixel) {
     const Image means = HalfPicture().picture(values, Spacing::linear, {.width = 2, .height = 1}).values;
     EXPECT_EQ(means.at(0, 0), Rgb(2.5f));

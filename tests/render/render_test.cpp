@@ -30,12 +30,12 @@ const Rgb luminance_of_quad = (exitance + reflectance * irradiance) / pi;
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
 View view_of_plane() { return {"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90}; }
 
-/// A rectangle in the plane y = 0 that faces the eye.
+/// In the plane y = 0, facing the camera.
 void add_facing(Scene& scene, float left, float right, float bottom, float top, std::uint32_t material) {
     add_rectangle(scene, V3f(left, 0, bottom), V3f(right - left, 0, 0), V3f(0, 0, top - bottom), material);
 }
 
-/// Of patches that are whole: element i is patch i.
+/// Undivided patches: element i is patch i.
 Rendering rendering(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
                     const View& view = view_of_plane()) {
     return render(scene, ElementForest(scene, scene.patches.size()), RayCaster(scene), view, h, options);
@@ -56,7 +56,7 @@ TEST_P(FlatAndSmooth, LuminanceIsRadiosityOverPi) {
         for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(pixel[c], luminance_of_quad[c]);
 }
 
-/// Left half of the picture; nothing is seen in the right one, nor is the sky.
+/// Surfaces fill the left half; the right half is empty.
 TEST_P(FlatAndSmooth, IrradianceIsThatOfTheElements) {
     Scene scene;
     add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
@@ -67,7 +67,7 @@ TEST_P(FlatAndSmooth, IrradianceIsThatOfTheElements) {
     EXPECT_EQ(image.at(2, 1), Rgb(0));
 }
 
-/// Rays start at y = -0.5: what hangs before is cut away, and a square of 2 m fills half of 4 m, at any distance.
+/// Rays start at y = -0.5, so nearer geometry is cut away. A square of 2 m fills half of 4 m at any distance.
 TEST_P(FlatAndSmooth, OrthographicPicturesAreToScaleAndCutOpen) {
     Scene scene;
     add_facing(scene, -1, 1, -1, 1, add_material(scene, reflectance, exitance));
@@ -109,7 +109,7 @@ TEST(Render, FlatShadingShowsTheLeafThatWasHit) {
         }
 }
 
-/// Red is up and to the left, green down and to the right: upside down or mirrored pictures differ.
+/// Red is at the upper left, green at the lower right, so flipped or mirrored pictures differ.
 TEST(Render, UpIsUpAndLeftIsLeft) {
     Scene scene;
     add_facing(scene, -9, 0, 0, 9, add_material(scene, Rgb(0, 0, 0), Rgb(pi, 0, 0)));
@@ -121,7 +121,7 @@ TEST(Render, UpIsUpAndLeftIsLeft) {
     EXPECT_EQ(image.at(0, 1), Rgb(0, 0, 0));
 }
 
-/// Pixel 2 of a picture from -1 to 1 that is 4 pixels wide reaches from 0 to 0.5: an edge at 0.3 covers 60% of it.
+/// Pixel 2 of a picture from -1 to 1 with a width of 4 pixels covers 0 to 0.5: an edge at 0.3 covers 60% of it.
 TEST(Render, EdgesAreSmoothedByCoverage) {
     Scene left, top;
     add_facing(left, -9, 0.3f, -9, 9, add_material(left, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
@@ -160,7 +160,7 @@ TEST(Render, CountsWhatIsNotANumberAndDoesNotHideIt) {
     EXPECT_TRUE(is_finite(result.image.at(0, 0)));
 }
 
-/// A box lit unevenly, seen from inside, so that every kind of edge is in the picture.
+/// A box lit unevenly, seen from inside, with every kind of edge.
 struct UnevenBox {
     Scene scene = testing_support::closed_box(V3f(1, 2, 3), 3, {{"grey", Rgb(0.5f, 0.5f, 0.5f), Rgb(0, 0, 0)}});
     std::vector<Rgb> irradiance;
@@ -220,7 +220,7 @@ TEST(Render, RefusesWhatDoesNotFitTogether) {
     EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}), InputError);
 }
 
-/// As many patches, but elsewhere.
+/// The same number of patches at other positions.
 struct OtherScene {
     Scene scene, other;
     OtherScene() {
@@ -247,7 +247,7 @@ TEST(Render, RefusesAForestOrARayCasterOfAnotherScene) {
     EXPECT_THROW(ElementVertices(made.scene, other_forest), InputError);
 }
 
-/// Seen to fail when only the end is reported, when a report is of the rays before its batch, and when it counts pixels
+/// Seen to fail when only the end is reported, when a report excludes the rays of its batch, and when it counts pixels
 /// instead of rays.
 TEST(Render, ReportsItsProgress) {
     const OtherScene made;

@@ -18,11 +18,11 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 
 const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f);
-constexpr std::size_t plenty = 1 << 18;  // elements that a forest has room for
+constexpr std::size_t plenty = 1 << 18;  // elements
 
-/// A floor of 2 x 2 m about the origin, material 0, with walls of material 1 on it: along x = 0 over y in
-/// [-1, `wall_end`] and, if asked for, along y = `second_wall` over x in [0.5, 1]. Cut: the first divides the floor,
-/// the second then its right half, so that the corner of two pieces is in the middle of the left one's edge.
+/// A floor of 2 x 2 m about the origin, material 0, with walls of material 1 on it. The first is along x = 0 over y in
+/// [-1, `wall_end`], the optional one along y = `second_wall` over x in [0.5, 1]. The first divides the floor, the
+/// second its right half, so a corner of two pieces lies in the middle of the left piece's edge.
 Scene cut_floor(float wall_end, std::optional<float> second_wall = std::nullopt) {
     Scene scene;
     add_material(scene, grey, black);
@@ -45,7 +45,7 @@ std::vector<Rgb> values_at_centres(const ElementForest& forest, const Function& 
     return values;
 }
 
-/// The value at a point of the floor, of the piece on the side of `towards`.
+/// Returns the value at a point of the floor, of the piece on the side of `towards`.
 float value_at(const Scene& scene, const ElementForest& forest, const SmoothField& field, const V3f& x,
                const V3f& towards) {
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
@@ -58,7 +58,6 @@ float value_at(const Scene& scene, const ElementForest& forest, const SmoothFiel
     return 0;
 }
 
-/// The largest difference between both sides of x = 0, over y in [from, to].
 float largest_jump(const Scene& scene, const ElementForest& forest, const SmoothField& field, float from, float to) {
     float largest = 0;
     for (int i = 0; i <= 500; ++i) {
@@ -69,8 +68,8 @@ float largest_jump(const Scene& scene, const ElementForest& forest, const Smooth
     return largest;
 }
 
-/// Pieces of the floor: the left one's leaves as wide as the right ones' and, where those are two, half as fine along
-/// the cut. Both times the field is linear beside the walls and the border.
+/// The left piece's leaves have the width of the right piece's; if the right half is divided, they are half as fine
+/// along the cut. In both cases the field is linear away from the walls and the border.
 TEST(Seams, ALinearFieldGoesOn) {
     const auto linear = [](const V3f& x) { return 3 + 2 * x.x - x.y; };
     for (const std::optional<float> second_wall : {std::optional<float>(), std::optional(0.0f)}) {
@@ -95,7 +94,7 @@ TEST(Seams, ALinearFieldGoesOn) {
     }
 }
 
-/// Where the wall stands each side keeps its own value; beyond it the sides agree, but for leaves at its end.
+/// Along the wall each side keeps its own value. Beyond it the sides agree, except for leaves at its end.
 TEST(Seams, LightEndsAtAContact) {
     const Scene scene = cut_floor(0.25f, 0.0f);
     ElementForest forest(scene, plenty);
@@ -128,8 +127,8 @@ TEST(Seams, NothingGoesThroughAWallFromEndToEnd) {
     }
 }
 
-/// On leaves of random levels whose vertices on the two sides lie apart, sides agree but for the curvature of the
-/// field. Where nothing is joined they differ by the slope across times the leaves' size: 0.4.
+/// With leaves of random levels, the vertices of the two sides differ. The sides still agree up to the curvature of the
+/// field. Without joining they differ by the slope times the leaf size: 0.4.
 TEST(Seams, SidesAgreeWhateverTheLevels) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         const Scene scene = cut_floor(-0.5f, 0.13f);

@@ -1,9 +1,9 @@
-// Skies, environment maps and the sun in path tracing, gathering and pictures, against integrals of the same radiance
-// by other code.
+// Skies, environment maps and the sun in path tracing, gathering and pictures, against independent integrals of the
+// same radiance.
 //
-// Seen to fail when the density of a direction lacks its cell's solid angle, when rays that escape count in full beside
-// the samples of a sky, when a sky's samples lack the cosine or 1/pi, when rows of a map are weighed without the sine
-// of their angle, when a dome is not normalised, when the sun's samples lack the ratio of its two solid angles.
+// Seen to fail in each of these cases: the density of a direction lacks its cell's solid angle; escaped rays have full
+// weight besides the samples of a sky; a sky's samples lack the cosine or 1/pi; rows of a map are weighted without the
+// sine of their angle; a dome is not normalised; the sun's samples lack the ratio of its two solid angles.
 #include "interflect/luminaires/skies.h"
 
 #include <gtest/gtest.h>
@@ -57,8 +57,8 @@ class EverySky : public testing::TestWithParam<KnownSky> {};
 INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
                          [](const auto& test) { return test.param.name; });
 
-/// Planes that look up, sideways, aslant and down, by all ways of finding the sky. Five standard errors: one test in a
-/// million would fail by chance.
+/// Planes that face up, sideways, aslant and down, with all ways of sampling the sky. Five standard errors: one test in
+/// a million would fail by chance.
 TEST_P(EverySky, CausesItsIrradiance) {
     const KnownSky& sky = GetParam();
     const Scene scene = under({sky.luminaire});
@@ -103,7 +103,7 @@ TEST_P(EverySky, IsSeenAsItIs) {
     EXPECT_NEAR(drawn.pixels[0].x, expected, 1e-3 * expected);
 }
 
-/// The frame of a sky, and a grid in it that has its horizon and the edges of its texels between cells.
+/// Returns the frame of a sky, and a grid in it whose cells do not straddle the horizon or the edges of texels.
 std::pair<SkyFrame, SkyGrid> frame_and_grid(const Luminaire& sky) {
     constexpr SkyGrid coarse{24, 12};
     const auto* map = std::get_if<EnvironmentMap>(&sky.kind);
@@ -113,7 +113,7 @@ std::pair<SkyFrame, SkyGrid> frame_and_grid(const Luminaire& sky) {
             image.width > coarse.columns ? SkyGrid{image.width, image.height} : coarse};
 }
 
-/// Samples fall into cells of a grid as often as the density, integrated, says; and it integrates to 1.
+/// The frequency of samples in each cell of a grid matches the integral of the density, which integrates to 1.
 TEST_P(EverySky, IsSampledByItsDensity) {
     const Skies skies(under({GetParam().luminaire}));
     ASSERT_TRUE(skies.can_sample());
@@ -155,7 +155,6 @@ TEST_P(EverySky, IsSampledByItsDensity) {
     EXPECT_GT(chi_square_test(often_observed, often_expected), false_alarm);
 }
 
-/// A map of one radiance is a uniform sky.
 TEST(EnvironmentMap, OfOneRadianceIsAUniformSky) {
     const auto image = image_of(7, 5, std::vector<Rgb>(35, Rgb(3, 2, 1)));
     const auto of_map = measured(under({{"", 0, EnvironmentMap{image}}}), EmitterSampling::combined, 1 << 12);
@@ -165,7 +164,7 @@ TEST(EnvironmentMap, OfOneRadianceIsAUniformSky) {
     }
 }
 
-/// One bright texel is parallel light of its solid angle times its radiance.
+/// One bright texel is parallel light of irradiance solid angle times radiance.
 TEST(EnvironmentMap, WithOneBrightTexelIsParallelLight) {
     constexpr std::uint32_t width = 720, height = 360, row = 100, column = 500;
     std::vector<Rgb> texels(width * height, Rgb(0));
@@ -189,7 +188,7 @@ TEST(Sun, CausesItsIrradianceAndIsSeenAsADisc) {
     const Scene scene = under({sun});
     const auto found = measured(scene, EmitterSampling::combined, 1 << 12);
     const V3f towards = V3f(1, 0.5f, 1.5f).normalized();
-    for (std::size_t i = 0; i < 3; ++i) {  // all of its disc is above these planes
+    for (std::size_t i = 0; i < 3; ++i) {  // the entire disc is above these planes
         EXPECT_NEAR(found[i].direct.x, 90 * normals[i].normalized().dot(towards),
                     5 * static_cast<double>(found[i].standard_error.x) + 1e-3)
             << i;
@@ -218,7 +217,7 @@ TEST(Sun, HasAPenumbra) {
     for (const double offset : offsets) points.push_back({{offset * radius, 0, 0}});
     const auto found = measure_irradiance(scene, nullptr, ray_caster, points, {.samples = 1 << 14});
     for (std::size_t i = 0; i < offsets.size(); ++i) {
-        // The disc's part beyond a chord: those directions pass the edge that lead to x > 0 at the edge's height.
+        // The disc's part beyond a chord: directions that lead to x > 0 at the edge's height pass the edge.
         const double t = std::clamp(offsets[i], -1.0, 1.0),
                      visible = 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / pi;
         EXPECT_NEAR(found[i].direct.x, 80'000 * visible, 5 * static_cast<double>(found[i].standard_error.x) + 80)
@@ -227,7 +226,7 @@ TEST(Sun, HasAPenumbra) {
     }
 }
 
-/// What a sky brings through an opening is the integral over what is seen of it: three metres below a skylight.
+/// The irradiance three metres below a skylight is the integral over the visible part of the sky.
 TEST(SkyThroughAnOpening, IsTheIntegralOverIt) {
     for (const KnownSky& sky : known_skies()) {
         Scene scene = under({sky.luminaire});
@@ -255,7 +254,7 @@ TEST(SkyThroughAnOpening, IsTheIntegralOverIt) {
         const double error = static_cast<double>(found[0].standard_error.x);
         EXPECT_NEAR(found[0].direct.x, expected, 5 * error + 2e-3 * expected + 0.05) << sky.name;
         EXPECT_LT(error, 0.02 * expected + 0.05) << sky.name;
-        // All else is black: by hand, from all directions that the opening leaves.
+        // All other surfaces are black: integral over the directions of the opening.
         const double by_hand = irradiance_of([&](const V3d& d) { return through(d) * sky.radiance(d); }, {0, 0, 1});
         EXPECT_NEAR(by_hand, expected, 0.01 * expected + 0.05) << sky.name;
     }

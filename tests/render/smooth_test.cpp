@@ -18,7 +18,6 @@ using testing_support::add_rectangle;
 
 const Rgb black(0, 0, 0), white(1, 1, 1), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
 
-/// A field that is linear in space.
 Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(0, 5, 2) * x.y; }
 
 std::vector<Rgb> at_centres(const Scene& scene) {
@@ -39,7 +38,7 @@ Scene grid(int n, bool two_sided = false) {
     return scene;
 }
 
-/// Every square of grid(n) cut along a diagonal, first one way, then the other.
+/// Alternates the direction of the diagonal.
 Scene triangle_grid(int n) {
     Scene scene = grid(n);
     const std::vector<Patch> squares = std::move(scene.patches);
@@ -55,7 +54,6 @@ Scene triangle_grid(int n) {
     return scene;
 }
 
-/// Gives every patch vertices of its own, as many files do.
 Scene unwelded(const Scene& scene) {
     Scene copy = scene;
     copy.vertices.clear();
@@ -78,7 +76,7 @@ Scene hinge(float degrees, bool same_material = true) {
     return scene;
 }
 
-/// A smooth field of patches that are whole: element i is patch i.
+/// Undivided patches: element i is patch i.
 class SmoothPatches {
   public:
     SmoothPatches(const Scene& scene, const std::vector<Rgb>& values, const SmoothingOptions& options = {})
@@ -94,7 +92,7 @@ class SmoothPatches {
     SmoothField field_;
 };
 
-/// Irradiance of hinge()'s dark first square where it touches the bright second one.
+/// Returns the irradiance of hinge()'s dark first square at the edge to the bright second one.
 Rgb at_hinge(const Scene& scene, const SmoothingOptions& options = {}) {
     return SmoothPatches(scene, std::vector{dark, bright}, options).at(0, {1, 0.5f});
 }
@@ -102,7 +100,7 @@ Rgb at_hinge(const Scene& scene, const SmoothingOptions& options = {}) {
 TEST(SmoothPatches, ReproducesALinearFieldInsideAGrid) {
     for (const Scene& scene : {grid(4), unwelded(grid(4))}) {
         const SmoothPatches smooth(scene, at_centres(scene));
-        for (const std::uint32_t patch : {5u, 6u, 9u, 10u})  // those that do not touch the border
+        for (const std::uint32_t patch : {5u, 6u, 9u, 10u})  // inner patches
             for (const Parameters p : {Parameters{0, 0}, {1, 1}, {0.3f, 0.8f}, {0.5f, 0.1f}}) {
                 const V3f x = PatchGeometry(scene, scene.patches[patch]).point(p);
                 expect_near(smooth.at(patch, p), linear_field(x));
@@ -110,7 +108,7 @@ TEST(SmoothPatches, ReproducesALinearFieldInsideAGrid) {
     }
 }
 
-/// Where neighbours compute a shared point each from its own corners, the last bits differ.
+/// If neighbours compute a shared point from their own corners, the last bits differ.
 TEST(SmoothSurfaces, VerticesThatDifferByRoundingAreOne) {
     Scene scene = unwelded(grid(8));
     for (std::size_t i = 0; i < scene.vertices.size(); ++i)
@@ -127,7 +125,7 @@ TEST(SmoothPatches, IsContinuousAcrossPatchesEverywhere) {
         std::vector<Rgb> values;
         for (std::size_t i = 0; i < scene.patches.size(); ++i) values.push_back(white * static_cast<float>(i * i % 11));
         const SmoothPatches smooth(scene, values);
-        // Every patch that has the point answers the same; the points lie on vertical grid lines.
+        // Every patch with the point returns the same value; the points lie on vertical grid lines.
         for (const float y : {0.1f, 0.25f, 0.4f, 0.9f})
             for (const float x : {0.25f, 0.5f, 0.75f}) {
                 std::set<int> answers;  // to 1e-4
@@ -145,7 +143,7 @@ TEST(SmoothPatches, IsContinuousAcrossPatchesEverywhere) {
     }
 }
 
-/// Four quarters of a square around one vertex; one of them is cut in two there, which must not make it count twice.
+/// Four quarters of a square around one vertex. One is cut in two there, which must not double its weight.
 TEST(SmoothPatches, CuttingAPatchInTwoDoesNotChangeItsWeight) {
     const std::vector<Rgb> whole{bright, dark, dark, dark};
     Scene cut = grid(2);
@@ -173,14 +171,14 @@ TEST(SmoothPatches, StopsAtCreases) {
 
 TEST(SmoothPatches, StopsAtBordersOfMaterials) { expect_near(at_hinge(hinge(0, false)), dark); }
 
-/// Squares that touch at one corner only share no edge there: light of one does not show on the other.
+/// Squares that touch at one corner only share no edge, so light of one does not spread to the other.
 TEST(SmoothPatches, DoesNotPassThroughASharedCorner) {
     Scene scene = grid(2);
     scene.patches = {scene.patches[0], scene.patches[3]};
     expect_near(SmoothPatches(scene, std::vector{dark, bright}).at(0, {1, 1}), dark);
 }
 
-/// Faces that lie on each other share edges, but run along them the same way: one does not continue the other.
+/// Coincident faces share edges, but run along them in the same direction, so one does not continue the other.
 TEST(SmoothPatches, CoincidentPatchesDoNotShadeIntoEachOther) {
     Scene scene = grid(1);
     scene.patches.push_back(scene.patches[0]);
@@ -197,11 +195,11 @@ TEST(SmoothPatches, KeepsTheSidesOfAFaceApart) {
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) expect_near(smooth.at(i, {0.2f, 0.9f}), values[i]);
 }
 
-/// A front shades into the neighbour's front also where the neighbour's vertices run the other way round: then it is
-/// the patch that the file gives second.
+/// A front joins the neighbour's front even if the neighbour's vertices have the opposite order, so that its front is
+/// the second patch in the file.
 TEST(SmoothPatches, FollowsTheOrientationOfSidesNotTheirOrder) {
     Scene scene = grid(2, true);
-    std::swap(scene.patches[2].vertices, scene.patches[3].vertices);  // of face 1 the back comes first
+    std::swap(scene.patches[2].vertices, scene.patches[3].vertices);  // the back of face 1 comes first
     std::vector<Rgb> values(8, dark);
     values[3] = bright;  // its front
     const SmoothPatches smooth(scene, values);
@@ -223,7 +221,7 @@ TEST(SmoothSurfaces, AnEdgeOfVeryManyPatchesIsACrease) {
     EXPECT_EQ(find_smooth_surfaces(scene).corners.count, 4 * 2002u);
 }
 
-/// n (n + 1) edges along each axis; a square cut in two has its diagonal besides.
+/// n (n + 1) edges along each axis; a divided square also has its diagonal.
 TEST(SmoothSurfaces, HaveOneEdgeForBothNeighbours) {
     EXPECT_EQ(find_smooth_surfaces(grid(4)).edges.count, 2 * 4 * 5u);
     EXPECT_EQ(find_smooth_surfaces(triangle_grid(4)).edges.count, 2 * 4 * 5 + 4 * 4u);

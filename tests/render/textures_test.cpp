@@ -1,7 +1,7 @@
-// Textures in pictures: texels where they belong, and light that is unbiased.
+// Textures in pictures: texels at the right positions, and unbiased light.
 //
-// Seen to fail when shading or the path tracer takes the texel in the middle of the patch, and when a lamp's texel is
-// that of another point than the one that is sampled.
+// Seen to fail when shading or the path tracer uses the texel in the middle of the patch, and when a lamp's texel does
+// not belong to the sampled point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,6 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-/// A picture's mean over pixels and channels, for several seeds.
 std::vector<double> means(const Scene& scene, const View& view, PathOptions options, int runs) {
     const RayCaster ray_caster(scene);
     std::vector<double> result;
@@ -52,7 +51,7 @@ TEST_P(PathTracedTextures, FurnaceIsAsBrightEverywhere) {
     EXPECT_LT(t_test(seen, 2.02 / pi), false_alarm);
 }
 
-/// A ramp over a wall of 1 x 1 m, in all of which the texture is linear: brighter to the right and, more so, upwards.
+/// A wall of 1 x 1 m with a texture that is a linear ramp: brighter to the right and, more steeply, upwards.
 Scene ramp(bool emits) {
     Scene scene;
     scene.objects = {""};
@@ -68,7 +67,6 @@ Scene ramp(bool emits) {
     return scene;
 }
 
-/// A pixel's mean is the value at its middle.
 double ramp_at(int column, int row, int side) { return 1 + 3 * (column + 0.5) / side + 30 * (side - row - 0.5) / side; }
 
 const View in_front{"front", V3f(0.5f, -10, 0.5f), V3f(0.5f, 0, 0.5f), V3f(0, 0, 1),
@@ -102,7 +100,7 @@ TEST(PathTracedRamp, TexelsAreWhereTheyBelong) {
             EXPECT_NEAR(pi * static_cast<double>(picture.image.at(column, row).x), ramp_at(column, row, side), 0.05);
 }
 
-/// A bright and a dark half of one lamp, close to the floor: which half a sampled point is on matters.
+/// A lamp with a bright and a dark half, close to the floor, so the half of a sampled point matters.
 TEST(PathTracedLamp, HasOneAnswerHoweverItIsSampled) {
     const Scene scene = half_dark_floor(Halves::emit);
     const View view{"ceiling", V3f(3, 1, 0.5f), V3f(3.5f, 1, 2), V3f(1, 0, 0), 40};
@@ -120,7 +118,7 @@ TEST(PathTracedLamp, HasOneAnswerHoweverItIsSampled) {
     }
 }
 
-/// Blocks of 8 x 8 pixels of two pictures: the root mean square of their differences, relative to the mean.
+/// Computes the root mean square difference in blocks of 8 x 8 pixels, relative to the mean.
 double block_difference(const Image& a, const Image& b) {
     const Image blocks_a = box_downsample(a, 8), blocks_b = box_downsample(b, 8);
     double squares = 0, sum = 0;
@@ -133,7 +131,7 @@ double block_difference(const Image& a, const Image& b) {
     return std::sqrt(squares / count) / (sum / count);
 }
 
-/// In a room that neither was made for. The difference is noise and the mesh's; other texels would make more of it.
+/// A random room. The difference is noise and the error of the mesh; wrong texels would exceed it.
 TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
     Scene scene = make_boxes({.boxes = 6, .seed = 3, .texture = true});
     const RayCaster ray_caster(scene);

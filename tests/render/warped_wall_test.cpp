@@ -1,5 +1,5 @@
-// Two closed rooms that one wall divides, a lamp in the first. A corner of the wall is displaced by 1 mm. Rays start on
-// the bilinear surface of a patch and hit two triangles: no light may leak where the two differ. Before the fix, the
+// Two closed rooms divided by one wall, with a lamp in the first. A corner of the wall is displaced by 1 mm. Rays start
+// on the bilinear surface of a patch and hit two triangles: no light may leak where the two differ. Before the fix, the
 // second room had 16% of the light of the first in a solution and 21% by path tracing.
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Made, WarpedWall, testing::Values(Wall::polygon, Wall::
     return std::string(made.param == Wall::polygon ? "AsPolygon" : "AsPatch");
 });
 
-/// Traces rays from both sides of the wall. They start on its bilinear surface and must not hit the wall.
+/// Rays from both sides start on the bilinear surface of the wall and must not hit it.
 TEST_P(WarpedWall, IsLeftByRaysThatStartOnIt) {
     const Scene scene = two_rooms(GetParam());
     const RayCaster ray_caster(scene);
@@ -75,14 +75,14 @@ TEST_P(WarpedWall, IsLeftByRaysThatStartOnIt) {
     EXPECT_EQ(met, 0);
 }
 
-/// The wall reaches 1 mm into the ceiling of the second room, which is not cut there: elements spread that light.
+/// The wall extends 1 mm into the ceiling of the second room, which is not cut there; elements spread that light.
 TEST_P(WarpedWall, LeavesTheOtherRoomDark) {
-    constexpr float spread = 1e-3f;  // of the light in the first room
+    constexpr float spread = 1e-3f;  // relative to the light in the first room
     const Scene scene = two_rooms(GetParam());
     const RayCaster ray_caster(scene);
     Solution solution;
     for (const char* method : {"srr", "random-walk", "global-lines", "hsrr"}) {
-        // One global line through that strip brings much light: there must be several.
+        // One global line through that strip has a large contribution, so several are needed.
         const std::int64_t rays = std::string(method) == "global-lines" ? 400'000 : 100'000;
         solution = solve(scene, ray_caster, {.method = find_method(method), .limits = {.rays = rays}});
         const float lit = solution.irradiance[0].x;  // wall at x = 0

@@ -1,4 +1,4 @@
-"""One run of the command: what it is given, what may come of it, and what is wrong with what came."""
+"""One run of the command: its inputs, the accepted ends, and the faults found."""
 
 import os
 import shlex
@@ -8,17 +8,17 @@ from pathlib import Path
 from typing import Callable
 
 DONE, FAILED, WRONG_USAGE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3, 130
-PATIENCE = 5.0  # [s] that a run may take beyond the limits that it was given
+PATIENCE = 5.0  # [s] allowed beyond the limits that the run was given
 
-# Sorts of faults, in the order of the report.
+# Kinds of faults, in the order of the report.
 CRASH, HANG, EXIT_CODE, LEFTOVER, RESULT, UNNOTICED, MESSAGE = SORTS = (
-    "crash",  # ended by a signal that nobody sent, or a sanitizer's report
+    "crash",  # ended by a signal that the case did not send, or a sanitizer's report
     "hang",
     "exit code",
-    "leftover",  # a file that should not be there, or an input or an earlier output that has changed
-    "result",  # lost, changed in silence, not finite or not readable
-    "unnoticed",  # damage that was not found, though it changed nothing that was drawn
-    "message",  # none where one is due, text of a library, control characters
+    "leftover",  # an unexpected file, or a changed input or earlier output
+    "result",  # lost, silently changed, not finite or not readable
+    "unnoticed",  # undetected damage, even if the picture is unchanged
+    "message",  # missing message, text of a library, control characters
 )
 
 
@@ -30,7 +30,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Signal:
-    """Sent `delay` seconds after the start, or after `follows` was first read on stderr."""
+    """Sent `delay` seconds after the start, or after `follows` first appeared on stderr."""
 
     number: int
     delay: float
@@ -39,13 +39,13 @@ class Signal:
 
 @dataclass
 class Case:
-    """@param shell      What the shell does first, such as `ulimit -f 8`; `redirections` come after the command.
-    @param outputs       Files that an exit with 0 or 130 has to leave; any other has to leave none that is new.
-    @param may_leave     Files that may be there after any end.
-    @param memory        Whether it may fail with a message that says that memory ran out.
-    @param seconds       Limit on time that the run was asked to keep.
-    @param prepare       Makes in the case's folder what `files` cannot say: links, devices, file systems.
-    @param clean_up      Undoes what `prepare` did outside of the folder.
+    """@param shell      Shell code to run first, such as `ulimit -f 8`; `redirections` come after the command.
+    @param outputs       Files that must exist after exit code 0 or 130. After any other end, no new ones may exist.
+    @param may_leave     Files that may exist after any end.
+    @param memory        Whether the run may fail with a message about lack of memory.
+    @param seconds       Time limit that was passed to the run.
+    @param prepare       Creates links, devices and file systems in the case's folder, which `files` cannot express.
+    @param clean_up      Undoes the work of `prepare` outside the folder.
     @param checks        Further checks, called with the Run; each yields faults.
     """
 
@@ -65,18 +65,17 @@ class Case:
     checks: tuple[Callable[["Run"], object], ...] = ()
 
     def command_line(self, program, quote=shlex.quote):
-        """@param quote  How the shell is to read a word that may hold anything."""
+        """@param quote  Quotes an arbitrary word for the shell."""
         command = " ".join(["exec", quote(program), *map(quote, self.arguments)])
         return f"{self.shell + '; ' if self.shell else ''}{command} {self.redirections}".rstrip()
 
     def says_why(self):
-        """Whether stderr can be read."""
         return "2>" not in self.redirections
 
 
 @dataclass
 class Run:
-    """A case that has run. @param program  Runs the command once more in the same folder, undisturbed."""
+    """The result of a case. @param program  Runs the command once more in the same folder, undisturbed."""
 
     case: Case
     folder: Path
@@ -96,7 +95,7 @@ class Run:
         return self.exit_code in (DONE, INTERRUPTED) and not self.timed_out
 
     def has_file(self, name):
-        """Whether it is there, and a file rather than a device, which may have no end."""
+        """Returns whether `name` is a regular file. A device might have no end."""
         return self.after.get(name, "").startswith("file ")
 
     def bytes(self, name):

@@ -1,4 +1,4 @@
-"""What must hold of every run, whatever it was given; and checks that single cases ask for."""
+"""Checks of every run, and checks that single cases add."""
 
 import json
 import re
@@ -27,12 +27,12 @@ LIBRARY_TEXT = re.compile(
 CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
 REASON = re.compile(rb"^(?:error: .|stopping)", re.MULTILINE)
 NOT_FINITE = re.compile(rb"^ .*[ :(]-?(?:nan|inf)\b", re.MULTILINE)  # in the indented lines of figures
-SOLVING = re.compile(rb"rays|stopping")  # on stderr, once the solver has begun
+SOLVING = re.compile(rb"rays|stopping")  # on stderr once the solver has started
 DRAW = ("--eye", "1,1,1", "--look-at", "2,2,1", "--size", "4x4", "--samples", "2")
 
 
 def faults_of(run):
-    """Everything that is wrong with a run. Where it has crashed or hung, the rest is not asked."""
+    """Returns all faults of a run. After a crash or a hang, only the files left over are checked."""
     grave = [*crashes(run), *hangs(run)]
     if grave:
         return [*grave, *leftovers(run)]
@@ -48,7 +48,7 @@ def last_line(text):
     return lines[-1][:200] if lines else ""
 
 
-# ---- of every run
+# ---- checks of every run
 
 
 def sent(run):
@@ -81,7 +81,7 @@ def exit_codes(run):
 
 def leftovers(run):
     if run.exit_code == -signal.SIGKILL and signal.SIGKILL in sent(run):
-        return  # what it leaves is for a later run to remove
+        return  # its temporary files are for a later run to remove
     may_be_new = set(run.case.may_leave)
     may_change = set(run.case.may_leave)
     if run.kept_result():
@@ -106,7 +106,7 @@ def messages(run):
 
 
 def results(run):
-    """Outputs are there, and no number in them is other than finite."""
+    """All outputs exist, and all numbers in them are finite."""
     if run.kept_result():
         for name in run.case.outputs:
             if name not in run.after:
@@ -128,11 +128,11 @@ def faults_of_json(name, text):
         yield Fault(RESULT, f"{name}: {error}")
 
 
-# ---- that cases ask for
+# ---- checks that cases add
 
 
 def succeeds(run, *arguments):
-    """Runs the command once more. @return a fault, where it does anything but what it should."""
+    """Runs the command once more. @return a fault unless it succeeds."""
     try:
         again = run.program(*arguments)
     except subprocess.TimeoutExpired:
@@ -143,7 +143,7 @@ def succeeds(run, *arguments):
 
 
 def can_be_drawn(name):
-    """What `solve` has written, `render` reads."""
+    """`render` reads the output of `solve`."""
 
     def check(run):
         return succeeds(run, "render", name, "-o", "drawn.exr", *DRAW) if run.has_file(name) else []
@@ -152,7 +152,7 @@ def can_be_drawn(name):
 
 
 def can_be_resumed(name):
-    """What `--checkpoint` has written, `resume` goes on with."""
+    """`resume` continues from the output of `--checkpoint`."""
 
     def check(run):
         return succeeds(run, "resume", name, "-o", "resumed.h5", "--time", "0.01") if run.has_file(name) else []
@@ -168,7 +168,7 @@ def scene_can_be_read(name):
 
 
 def picture_is_finite(name):
-    """Of .exr and .hdr: the others have no way to say that a number is not finite."""
+    """For .exr and .hdr: the other formats cannot represent non-finite numbers."""
 
     def check(run):
         if not run.has_file(name) or not run.kept_result():
@@ -191,7 +191,7 @@ def stats_are_finite(name):
 
 
 def same_bytes(expected):
-    """Outputs that are there equal those of an undisturbed run. @param expected  Name to bytes."""
+    """Existing outputs equal those of an undisturbed run. @param expected  Name to bytes."""
 
     def check(run):
         for name, content in expected.items():
@@ -202,7 +202,7 @@ def same_bytes(expected):
 
 
 def damage_is_refused(output, expected):
-    """A damaged solution is refused; that the same comes of it is no excuse."""
+    """A damaged solution is refused, even if the same picture would result."""
 
     def check(run):
         if run.exit_code == DONE and run.has_file(output):
@@ -213,7 +213,8 @@ def damage_is_refused(output, expected):
 
 
 def interruption(output):
-    """After one signal, what was solved is kept; before the solve it may end as any program does, leaving nothing."""
+    """After one signal, the result so far is kept. Before the solve, the signal may end the program as any other,
+    without output."""
 
     def check(run):
         if run.exit_code == DONE or (run.exit_code == INTERRUPTED and run.has_file(output)):
@@ -225,7 +226,7 @@ def interruption(output):
 
 
 def later_run_tidies_up(output, *arguments):
-    """A killed run can remove nothing; the next one to the same output does."""
+    """A killed run cannot clean up; the next run to the same output does."""
 
     def check(run):
         yield from succeeds(run, *arguments)

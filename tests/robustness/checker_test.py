@@ -1,4 +1,4 @@
-"""The campaign notices each sort of fault: shown with programs that have it, and with one that has none."""
+"""Tests that the campaign finds each kind of fault, with programs that have the fault and one without faults."""
 
 import signal
 import tempfile

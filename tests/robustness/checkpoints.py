@@ -1,4 +1,4 @@
-"""Kinds of runs that are saved as they go, and that go on with what was saved."""
+"""Runs with checkpoints, and runs that resume from one."""
 
 import signal
 
@@ -18,7 +18,6 @@ def solve(*options):
 
 
 def damaged(rng, seeds):
-    """A damaged run is never resumed."""
     content, how = mutated(rng, seeds.files["run.h5"], BINARY, 1)
     return Case(
         description=f"resume of run.h5: {how}",
@@ -32,14 +31,14 @@ def damaged(rng, seeds):
 
 
 def sound(_, seeds):
-    """What was saved goes on as often as it is asked to, with the same end."""
+    """A saved run can be resumed any number of times, with the same result."""
     checks = (check.same_bytes({"out.h5": seeds.resumed}),)
     arguments = [*RESUME, *RESUMED]
     return Case("resume", arguments, seeds.some(*RUN), outputs=("out.h5",), may_leave=SAVED, checks=checks)
 
 
 def ended_by_signal(rng, seeds):
-    """Whatever ends a run, and whenever: it can go on from its last checkpoint, if there was time for one."""
+    """After any signal at any time, the run can resume from its last checkpoint if one was written."""
     sent = Signal(rng.choice((signal.SIGKILL, signal.SIGKILL, signal.SIGINT, signal.SIGTERM)), rng.uniform(0, 0.8))
     goes_on = rng.random() < 0.5
     arguments = [*RESUME, "--every", "0.1s", "--rays", "1e18"] if goes_on else solve(*ENDLESS)
@@ -56,8 +55,8 @@ def ended_by_signal(rng, seeds):
 
 
 def too_large_for_disk(rng, seeds):
-    """Where a checkpoint finds no room, the one before it stays, and the run goes on."""
-    block = 512  # of `ulimit -f` [bytes]
+    """If a checkpoint does not fit on the disk, the previous one stays and the run continues."""
+    block = 512  # unit of `ulimit -f` [bytes]
     blocks = rng.randrange(1 + 2 * len(seeds.files["run.h5"]) // block)
     return Case(
         description=f"files of at most {blocks} blocks",

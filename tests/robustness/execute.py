@@ -1,4 +1,4 @@
-"""Runs one case in a folder of its own and watches it until it has ended."""
+"""Runs one case in its own folder and watches it until it ends."""
 
 import contextlib
 import hashlib
@@ -13,11 +13,11 @@ from case import PATIENCE, Run, write_files
 
 LONGEST_READ = 1 << 16
 A_DAY = 86400.0  # [s]
-SECOND_CHANCE = 20.0  # [s] for runs that only look at what another left
+SECOND_CHANCE = 20.0  # [s] for runs that only check the files of an earlier run
 
 
 def state_of(path):
-    """What tells whether a file has changed: its kind and its content."""
+    """Returns the kind and content of a file, to detect changes."""
     mode = os.lstat(path).st_mode
     if stat.S_ISLNK(mode):
         return "link to " + os.readlink(path)
@@ -28,8 +28,8 @@ def state_of(path):
 
 
 def snapshot(folder):
-    """Everything in the folders of a case, hidden files and subfolders included: name to state. Names are relative to
-    `work`; those in the folder of temporary files begin with `../temporary`."""
+    """Returns the state of every file by name, including hidden files and subfolders. Names are relative to `work`;
+    those in the folder of temporary files begin with `../temporary`."""
     found = {}
     for parent, folders, files in os.walk(folder):
         for name in folders + files if parent != str(folder) else ():
@@ -39,7 +39,8 @@ def snapshot(folder):
 
 
 class Watch:
-    """Reads both streams of a process, sends it the case's signals when they are due, and kills it when it takes too long."""
+    """Reads both streams of a process, sends the case's signals when they are due, and kills the process at the time
+    limit."""
 
     def __init__(self, process, signals, seconds):
         self.process, self.signals = process, list(signals)
@@ -60,7 +61,7 @@ class Watch:
         return time.monotonic() - self.started
 
     def wait(self):
-        """The streams end before the process where it has closed them."""
+        """The streams end before the process if it has closed them."""
         while self.process.poll() is None:
             self.send_what_is_due()
             time.sleep(0.002)
@@ -74,7 +75,6 @@ class Watch:
         self.arm_followers()
 
     def arm_followers(self):
-        """A signal that follows a message is due some time after it."""
         elapsed = time.monotonic() - self.started
         for k, s in enumerate(self.signals):
             if s.follows and s.follows in self.read[self.process.stderr]:
@@ -103,10 +103,10 @@ def environment(temporary):
 
 @contextlib.contextmanager
 def executed(program, case, folder, patience):
-    """Runs the case and yields what came of it, for as long as its file systems are there.
+    """Runs the case and yields the Run while the case's file systems are mounted.
 
     @param folder    Empty; the command works in its subfolder `work` and has `temporary` for temporary files.
-    @param patience  Factor on how long anything may take, for programs with sanitizers."""
+    @param patience  Factor on all time limits, for programs with sanitizers."""
     work = folder / "run"
     work.mkdir()
     (folder / "temporary").mkdir()

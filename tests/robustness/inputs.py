@@ -1,4 +1,4 @@
-"""Kinds of runs on inputs that are damaged or mutated."""
+"""Runs on damaged or mutated inputs."""
 
 import check
 from case import BAD_INPUT, DONE, Case
@@ -48,12 +48,11 @@ def path_trace(scene, *options):
 
 
 def case_of(use, description, files, **more):
-    """A case that reads mutated files: they are refused, or all goes well."""
+    """A case with mutated files, which are either refused or read without faults."""
     return Case(description=description, files=files, allowed=READ, memory=True, **use, **more)
 
 
 def scene(rng, seeds, _):
-    """A scene, or a file that it includes."""
     names = rng.choice((SCENE, ENTITIES))
     files = seeds.some(*names)
     target = rng.choice((names[0], names[0], names[0], "part.mgf")) if names is ENTITIES else names[0]
@@ -64,7 +63,6 @@ def scene(rng, seeds, _):
 
 
 def named_views(rng, seeds, _):
-    """The list of views beside a scene."""
     files = seeds.some(*SCENE)
     files["room.views.json"], how = mutated(rng, files["room.views.json"], JSON, 3)
     use = rng.choice((info, info_json, solve, render, path_trace))
@@ -73,7 +71,6 @@ def named_views(rng, seeds, _):
 
 
 def view_file(rng, seeds, _):
-    """Radiance's view file."""
     files = seeds.some(*SCENE, "corner.vf")
     files["corner.vf"], how = mutated(rng, files["corner.vf"], TEXT, 3)
     use = rng.choice((solve, render, path_trace))
@@ -81,7 +78,6 @@ def view_file(rng, seeds, _):
 
 
 def picture(rng, seeds, _):
-    """What `compare` reads."""
     files = seeds.some(*PICTURES)
     target = rng.choice(PICTURES)
     mutators = (*BINARY, substitute_number) if target == "a.hdr" else BINARY
@@ -94,7 +90,7 @@ def picture(rng, seeds, _):
 
 
 def solution(rng, seeds, _):
-    """A damaged solution, which is always refused."""
+    """Damages a solution, which is always refused."""
     damaged, how = mutated(rng, seeds.files["room.h5"], BINARY, 1)
     return Case(
         description=f"room.h5: {how}",

@@ -1,8 +1,7 @@
-"""Damage to the bytes of a file. Everything is decided by the random generator that is passed in."""
+"""Damages the bytes of a file. All choices come from the random generator that is passed in."""
 
 import re
 
-# What a number may become, one word each.
 NUMBERS = b"""0 -1 1 -0 .5 2 -3.7 0.999999 90 180 1000 1e5 1e9 1e14 1e-6 0.0000001 1e38 -1e38 1e39 1e400 -1e400 1e-45 1e-400
     nan inf -inf 2147483648 4294967296 18446744073709551616 0x10 1e .""".split()
 NUMBERS += [b"9" * 400]
@@ -14,7 +13,7 @@ WORD = re.compile(rb"[^\s,]+")
 
 
 def place(rng, data):
-    """Half of the time in the header, which is small and says most."""
+    """Returns a position, half of the time in the header, which is short but has the most structure."""
     return rng.randrange(rng.choice((min(len(data), HEADER), len(data))))
 
 
@@ -27,7 +26,7 @@ def splice(data, start, end, content):
     return data[:start] + content + data[end:]
 
 
-# ---- of any file
+# ---- any file
 
 
 def flip_bits(rng, data):
@@ -84,7 +83,7 @@ def append(rng, data):
     return data + rng.choice((b"\0", b"\n", bytes(4096), rng.randbytes(100), data))
 
 
-# ---- of text
+# ---- text
 
 
 def substitute_number(rng, data):
@@ -125,7 +124,7 @@ def insert_control(rng, data):
 
 
 def nest(rng, data):
-    """Brackets in brackets, deeper than any stack of a parser that calls itself."""
+    """Inserts brackets nested deeper than the stack of any recursive parser."""
     opening, closing = rng.choice(((b"[", b"]"), (b'{"a":', b"}")))
     depth = rng.choice((100, 100_000))
     at = rng.randrange(len(data) + 1)
@@ -140,7 +139,7 @@ JSON = (*TEXT, nest)
 
 
 def mutated(rng, data, mutators, most):
-    """@return what is left of `data`, always different from it, and the names of the mutators."""
+    """@return the mutated `data`, always different from it, and the names of the mutators."""
     changed = data
     while changed == data:
         chosen = rng.choices(mutators, k=rng.choice((1, 1, rng.randint(1, most))))

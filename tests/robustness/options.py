@@ -1,4 +1,4 @@
-"""Options at the limits of their types, and beyond. Which options there are is read from the help of the command."""
+"""Option values at and beyond the limits of their types. The options are read from the command's help."""
 
 import re
 import signal
@@ -10,17 +10,17 @@ from seeds import PICTURES, SCENE, SOLUTION
 
 OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+)(?:,(--[\w-]+))?(?:\{false\})?(?: (\S+)(?: in \[(\S+) - (\S+)\])?)?", re.MULTILINE)
 NOT_VARIED = {"--help", "--version", "--output", "--stats", "--view", "--view-file", "--difference", "--error-image", "--json"}
-LIMITS = {"--rays", "--time"}  # one of which every solve keeps
-TIME = 0.3  # [s] that solves are given
-TOO_LONG = 1.5  # [s] after which what has no limit on its time is ended
+LIMITS = {"--rays", "--time"}  # every solve has one of these
+TIME = 0.3  # [s] limit for solves
+TOO_LONG = 1.5  # [s] after which a run without a time limit is ended
 LARGEST_PICTURE = "16384x16384"
-SECONDS_TO_GET_ITS_MEMORY = 10  # 3 GiB, page by page
+SECONDS_TO_GET_ITS_MEMORY = 10  # for 3 GiB, page by page
 
 NO_NUMBERS = ("", " ", "nan", "-nan", "inf", "-inf", "1e400", "x", "1 2", "1e", "--1", "1\x1b[31m", "\u0663", "1,5,", "0x")
 NUMBERS = ("0", "-1", "1", "2", "0.5", "-0", "+1", "007", "1e-45", "1e-400", "1e18", "1e19", "1e38", "1e39", "1e300", "-1e300")
 NUMBERS += ("127", "128", "65535", "65536", "2147483647", "2147483648", "4294967295", "4294967296", "9223372036854775807")
 NUMBERS += ("9223372036854775808", "18446744073709551615", "18446744073709551616", "9" * 400, "0x10", "50%", "100%", "1T", "1k")
-# Of each type in the help, some values at the ends of what makes sense.
+# Plausible extreme values for each type in the help.
 TYPICAL = {
     "AZIMUTH,ALTITUDE[,LUX]": ("200,35", "0,90", "-720,1e-6", "90,45,0", "90,45,1e10"),
     "AREA": ("0", "1e-12", "1e-300", "1e11", "1"),
@@ -42,15 +42,15 @@ TYPICAL = {
 MUCH_WORK = ("--rays-per-iteration=1e11", "--rays-per-iteration=1e9", "--camera-rays=4194304")
 MUCH_WORK += ("--warm-up=1000000", "--min-area=1e-12")
 COORDINATES = ("0", "1", "-1", "1.3", "0.3", "1e-45", "1e-30", "1e-6", "1e3", "1e7", "-1e10", "1e14", "1e15")
-BEYOND = ("1e16", "1e18", "1e30", "1e38", "-3.4e38", "1e39", "1e300")  # for the eye of a camera
+BEYOND = ("1e16", "1e18", "1e30", "1e38", "-3.4e38", "1e39", "1e300")  # for the camera position
 ACCEPTED_OR_REFUSED = frozenset({DONE, WRONG_USAGE, BAD_INPUT})
 REFUSED = frozenset({WRONG_USAGE, BAD_INPUT})
 
 
 @dataclass(frozen=True)
 class Option:
-    """@param type  As the help has it: INT, COUNT, X,Y,Z, a|b|c; empty for a switch.
-    @param ends      Of its range, where the help tells it."""
+    """@param type  As in the help: INT, COUNT, X,Y,Z, a|b|c; empty for a switch.
+    @param ends  Ends of its range, if the help states them."""
 
     name: str
     type: str
@@ -71,7 +71,6 @@ def number(rng):
 
 
 def typical(rng, option):
-    """A value that may well be accepted."""
     if option.type == "X,Y,Z":
         return ",".join(rng.choice(COORDINATES) for _ in range(3))
     if "|" in option.type and option.type not in TYPICAL:
@@ -80,7 +79,6 @@ def typical(rng, option):
 
 
 def odd(rng, option):
-    """A value that may well be refused."""
     if option.type == "X,Y,Z":
         return ",".join(number(rng) for _ in range(rng.choice((3, 3, 2, 4))))
     return "x".join(number(rng) for _ in range(2)) if option.type == "WxH" else number(rng)
@@ -91,7 +89,7 @@ def value_of(rng, option):
 
 
 def some_choices(rng, seeds, subcommand, most, without=LIMITS, value=value_of):
-    """Up to `most` options of a subcommand, each with a value of its own."""
+    """Returns up to `most` options of a subcommand, each with its own value."""
     known = [option for option in options_in(seeds.helps[subcommand]) if option.name not in without]
     chosen = rng.sample(known, rng.randint(1, most))
     return [f"{option.name}={value(rng, option)}" if option.type else option.name for option in chosen]
@@ -102,11 +100,11 @@ def names(words):
 
 
 def is_refused(words):
-    """Whether one of the options has a value that no number has."""
+    """Returns whether one of the options has a value that is not a number."""
     return any(word.partition("=")[2] in NO_NUMBERS for word in words if "=" in word)
 
 
-# ---- solves that have to keep their limit on time
+# ---- solves that must keep their time limit
 
 
 def solve_with(arguments, seeds):
@@ -125,14 +123,14 @@ def solve_with(arguments, seeds):
 
 
 def time_limits(rng, seeds, _):
-    """However much work the other options ask for."""
+    """A time limit combined with options that ask for a lot of work."""
     chosen = some_choices(rng, seeds, ("solve",), most=3, value=typical)
     work = rng.choice(MUCH_WORK)
     chosen += [work] if not names([work]) & names(chosen) else []
     return solve_with([*looking(chosen), "--time", str(TIME), *chosen], seeds)
 
 
-# ---- one of each subcommand, with the limits that the options leave
+# ---- one function per subcommand, with the limits that the options leave open
 
 
 def limits_besides(chosen, **limits):
@@ -146,7 +144,7 @@ def looking(chosen):
 
 
 def solve(rng, seeds):
-    varied = rng.choice(tuple(LIMITS))  # the other one holds
+    varied = rng.choice(tuple(LIMITS))  # the other limit stays fixed
     chosen = some_choices(rng, seeds, ("solve",), most=3, without=LIMITS - {varied})
     limit = limits_besides(chosen, rays="2k") if "--time" in names(chosen) else limits_besides(chosen, time=str(TIME))
     more = rng.choice(([], ["--rays", "2k"])) if not {"--rays", "--time"} & names(chosen) else []
@@ -208,7 +206,7 @@ def make_scene(rng, seeds):
 
 
 def ended_when_too_long(case):
-    """What is asked to do much may take long, but a signal ends it, and then it leaves what is whole or nothing."""
+    """A large task may take long. A signal ends it, and its outputs are then complete or missing."""
     case.signals = (Signal(signal.SIGTERM, TOO_LONG),)
     case.seconds += TOO_LONG
     if any(LARGEST_PICTURE in argument for argument in case.arguments):
@@ -218,7 +216,6 @@ def ended_when_too_long(case):
 
 
 def options(rng, seeds, _):
-    """Of every subcommand."""
     make = rng.choice((solve, solve, solve, render_scene, render_solution, probe, report, compare, info, bench, make_scene))
     case = make(rng, seeds)
     case.description = " ".join(case.arguments)
@@ -258,7 +255,7 @@ def picture_of(chosen, rng, seeds):
 
 
 def cameras(rng, seeds, _):
-    """Views from and to places that numbers can hardly name."""
+    """Cameras at and aimed at extreme coordinates."""
     chosen = camera(rng)
     case = solve_for(chosen, seeds) if rng.random() < 0.3 else picture_of(chosen, rng, seeds)
     case.allowed, case.description = ACCEPTED_OR_REFUSED, " ".join(case.arguments)

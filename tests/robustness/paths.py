@@ -1,4 +1,4 @@
-"""Kinds of runs with odd names of files."""
+"""Runs with unusual file names."""
 
 import os
 
@@ -7,8 +7,8 @@ from case import BAD_INPUT, DONE, WRONG_USAGE, Case
 from seeds import ENTITIES, PICTURES, ROOM_RAYS, SCENE, TINY, WRITERS
 
 REFUSED = frozenset({BAD_INPUT})
-SECONDS_TO_READ = 45  # a pipe: with a sanitizer, on a busy machine, a report takes over 15 until it is written
-LONGEST_NAME = 255  # bytes, of most file systems
+SECONDS_TO_READ = 45  # through a pipe: with a sanitizer on a busy machine, a report takes over 15 s
+LONGEST_NAME = 255  # bytes, in most file systems
 ODD = ("with space", " ", "new\nline", "\x1b[31mred", "tab\tand\rreturn", "caf\u00e9", "\udcff\udcfe")
 ODD += ("\udcc3(", "'\"$(id)`", "*?[a]")
 ODD += ("a" * 200, "%s%n{}", "..", "...", "sub/../sub/deep", "./././x", "a:b", "\u202eabc", "{0}", "#", "~", "nan", "\\")
@@ -19,8 +19,6 @@ def as_bytes(text):
 
 
 def folder_of(name):
-    """Makes the folders that lead to a file."""
-
     def prepare(folder):
         for parent in (os.path.dirname(name), os.path.dirname(os.path.normpath(name))):
             os.makedirs(folder / parent, exist_ok=True)
@@ -29,7 +27,7 @@ def folder_of(name):
 
 
 def shows_no_controls(odd):
-    """A message shows a name in such a way that no terminal obeys it."""
+    """Messages escape control characters in names."""
 
     def check_messages(run):
         if "\n" in odd and as_bytes(odd) in run.stderr + run.stdout:
@@ -63,7 +61,7 @@ def missing_input(rng, seeds):
 
 
 def odd_text_inside(rng, seeds):
-    """Names within a scene, which messages and descriptions repeat."""
+    """Unusual names within a scene, which messages and descriptions repeat."""
     odd = rng.choice([name for name in ODD if not set(name) & set(" \n\r\t")])
     word = rng.choice((b"shelf", b"wall", b"lamp", b"part.mgf", b"lamp.ies"))
     files = seeds.some(*ENTITIES)
@@ -127,7 +125,7 @@ def over_a_folder(rng, seeds):
 
 
 def through_link(rng, seeds):
-    """The file that a link leads to is written; the link stays. It may lead to nothing as yet, or to a missing folder."""
+    """The target of a link is written and the link stays. The target or its folder may be missing."""
     target, allowed = rng.choice((("target", DONE), ("missing", DONE), ("nowhere/target", BAD_INPUT), ("out", BAD_INPUT)))
     key = rng.choice([key for key in WRITERS if len(WRITERS[key].outputs) == 1])
     command = WRITERS[key]
@@ -145,7 +143,6 @@ def through_link(rng, seeds):
 
 
 def into_pipe(rng, seeds):
-    """A pipe gets all bytes."""
     key = rng.choice([key for key in WRITERS if len(WRITERS[key].outputs) == 1])
     command = WRITERS[key]
     name = command.output()
@@ -154,7 +151,7 @@ def into_pipe(rng, seeds):
         os.mkfifo(folder / name)
 
     case = Case(f"{key}: into a pipe", list(command.arguments), seeds.some(*command.inputs), prepare=prepare)
-    case.seconds = 5.0  # a report takes its time
+    case.seconds = 5.0  # a report is slow
     case.shell = f"timeout {SECONDS_TO_READ} cat {name} >copy & true"
     case.outputs = ("copy",)
     case.checks = (check.same_bytes({"copy": seeds.written[key][name]}),)
@@ -162,7 +159,7 @@ def into_pipe(rng, seeds):
 
 
 def scene_through_link(rng, seeds):
-    """To the scene, to itself, or a folder with the name of a scene."""
+    """A link to the scene or to itself, or a folder named like a scene."""
     kind = rng.choice(("file", "loop", "folder", "empty", "pipe that nobody writes"))
 
     def prepare(folder):
@@ -182,7 +179,7 @@ def scene_through_link(rng, seeds):
 
 
 def same_file_twice(rng, seeds):
-    """No output replaces an input, or another output, under any name."""
+    """No output replaces an input or another output, under any name."""
     other = rng.choice(("", "./", "../run/"))
     uses = (
         ["solve", "room.mgf", "-o", "out.h5", "--stats", other + "out.h5", *ROOM_RAYS],
@@ -199,7 +196,7 @@ def same_file_twice(rng, seeds):
 
 
 def read_only_folder(rng, seeds):
-    """Root may write anywhere: for it there is nothing to see."""
+    """An output in a read-only folder is refused, except for root, who may write anywhere."""
 
     def prepare(folder):
         (folder / "locked").mkdir(mode=0o555)

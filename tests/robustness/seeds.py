@@ -1,4 +1,4 @@
-"""What the campaign starts from: sound files, and what undisturbed runs of the usual commands write."""
+"""Sound input files, and the outputs of undisturbed runs of the usual commands."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ SCENES = Path(__file__).parent / "scenes"
 SCENE = ("room.mgf", "room.views.json")
 ENTITIES = ("entities.mgf", "part.mgf", "lamp.ies")
 SOLUTION = ("room.h5",)
-RUN = ("run.h5",)  # that can go on
+RUN = ("run.h5",)  # can be resumed
 PICTURES = ("a.exr", "b.exr", "a.hdr", "a.png")
 
 ROOM_RAYS = ("--rays", "2k", "--seed", "3")
@@ -22,7 +22,7 @@ TINY = ("--size", "16x12", "--samples", "2")
 
 @dataclass(frozen=True)
 class Command:
-    """One usual use of the command, small enough to take well below a second."""
+    """A typical use of the command, which takes well below a second."""
 
     arguments: tuple[str, ...]
     inputs: tuple[str, ...]
@@ -39,7 +39,6 @@ def render_to(name, *options):
 PATH_TRACING = ("--shading", "path", "--view", "room-0", "--size", "4x3", "--samples", "4")
 PATH = ("render", "room.mgf", "-o", "out.exr", "--error-image", "error.exr", *PATH_TRACING)
 
-# Those that write files.
 WRITERS = {
     "solve": Command(("solve", "room.mgf", "-o", "out.h5", "--view", "room-0", *ROOM_RAYS), SCENE, ("out.h5",)),
     "render .png": render_to("out.png"),
@@ -54,7 +53,7 @@ WRITERS = {
     "make-scene": Command(("make-scene", "maze", "--rooms", "1", "-o", "out.mgf"), (), ("out.mgf", "out.views.json")),
 }
 
-# Those that write to stdout, and no files.
+# Commands that write only to stdout.
 TELLERS = {
     "info": Command(("info", "room.mgf"), SCENE),
     "info --json": Command(("info", "room.mgf", "--json"), SCENE),
@@ -68,16 +67,17 @@ TELLERS = {
 
 
 class SeedError(Exception):
-    """The command fails even where nothing disturbs it."""
+    """The command fails even without a disturbance."""
 
 
 @dataclass
 class Seeds:
     """@param files     Sound inputs: name to bytes.
-    @param written      Of each of WRITERS, what an undisturbed run writes: name to bytes.
-    @param resumed      What becomes of run.h5.
-    @param helps        Of each subcommand, its help.
-    @param sanitized    Whether the command was built with a sanitizer: slower, and in need of all addresses.
+    @param written      For each of WRITERS, the output of an undisturbed run: name to bytes.
+    @param resumed      Result of resuming run.h5.
+    @param helps        Help of each subcommand.
+    @param sanitized    Whether the command was built with a sanitizer, which is slower and needs an unlimited address
+    space.
     """
 
     program: str

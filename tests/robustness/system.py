@@ -1,4 +1,4 @@
-"""Kinds of runs that the system disturbs: signals, full disks, limits, closed descriptors."""
+"""Runs that the system disturbs: signals, full disks, limits, closed descriptors."""
 
 import os
 import signal
@@ -10,12 +10,12 @@ from options import some_choices, typical
 from seeds import ROOM_RAYS, SCENE, TELLERS, WRITERS
 
 HEEDED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-LAST_PROGRESS = b"100%"  # the solve is over, its solution is written now
+LAST_PROGRESS = b"100%"  # the solve has finished and its solution is being written
 ENDLESS = ("--rays", "1e18")
-SLOW_TO_WRITE = ("--mesh-size", "0.07", "--rays", "2k", "--one-bounce")  # megabytes, of which every moment is of interest
-SLOW_SECONDS = 3  # that it may take beside other work
+SLOW_TO_WRITE = ("--mesh-size", "0.07", "--rays", "2k", "--one-bounce")  # megabytes: signals arrive during the write
+SLOW_SECONDS = 3  # allowance beside other work
 FEW_DESCRIPTORS = (4, 5, 6, 8, 16)
-FEW_DESCRIPTORS_SANITIZED = (16, 24)  # the sanitizer needs some for itself, and takes their lack for a fault
+FEW_DESCRIPTORS_SANITIZED = (16, 24)  # the sanitizer needs some itself and reports their lack as a fault
 
 
 # ---- signals
@@ -32,14 +32,14 @@ def signalled(seeds, description, arguments, signals, allowed, checks, **more):
 
 
 def one_signal(seeds, description, arguments, sent, **more):
-    """Kept: what is solved so far. Before the solve, a program may end as the signal would have it end."""
+    """The result so far is kept. Before the solve, the signal may end the program in its default way."""
     allowed = {DONE, INTERRUPTED, -sent.number}
     checks = [check.interruption("out.h5"), check.can_be_drawn("out.h5")]
     return interrupted_early(signalled(seeds, description, arguments, [sent], allowed, checks, **more))
 
 
 def interrupted_early(case):
-    """Before the solve there is nothing to keep: no output is due then, and check.interruption says when it is."""
+    """Before the solve no output is required; check.interruption covers the later case."""
     case.outputs, case.may_leave = (), case.outputs
     return case
 
@@ -48,7 +48,7 @@ def during_endless_solve(rng, seeds):
     options = some_choices(rng, seeds, ("solve",), most=2, value=typical)
     sent = Signal(rng.choice(HEEDED), rng.uniform(0, 0.8))
     case = one_signal(seeds, "endless solve", solve_room(*ENDLESS, *options), sent, seconds=sent.delay)
-    case.allowed |= {WRONG_USAGE, BAD_INPUT}  # of the options
+    case.allowed |= {WRONG_USAGE, BAD_INPUT}  # errors in the options
     return case
 
 
@@ -81,14 +81,14 @@ def killed(rng, seeds):
 
 
 def ignored(rng, seeds):
-    """SIGPIPE means nothing here: writing tells of a reader that has gone."""
+    """SIGPIPE is ignored; a failed write reports the closed pipe."""
     sent = Signal(signal.SIGPIPE, rng.uniform(0, 0.04), follows=LAST_PROGRESS)
     checks = [check.can_be_drawn("out.h5")]
     return signalled(seeds, "write", solve_room(*SLOW_TO_WRITE), [sent], {DONE}, checks, seconds=SLOW_SECONDS)
 
 
 def while_drawing(rng, seeds):
-    """A picture is kept, or nothing at all is left."""
+    """The picture is either complete or missing."""
     key = rng.choice([key for key in WRITERS if key.startswith(("render", "make-scene", "compare"))])
     command = WRITERS[key]
     sent = Signal(rng.choice(HEEDED), rng.uniform(0, 0.08))
@@ -109,8 +109,8 @@ def signals(rng, seeds, number):
 
 
 def written_case(seeds, key, description, **more):
-    """One of WRITERS, disturbed: where it says that it is done, it has written what it always writes. Where it fails,
-    it leaves nothing; of several outputs, those that are there are whole."""
+    """One of WRITERS, disturbed. On success it has written its usual output. On failure it leaves no output; if it has
+    several, those that exist are complete."""
     command = WRITERS[key]
     more.setdefault("may_leave", command.outputs if len(command.outputs) > 1 else ())
     return Case(
@@ -128,12 +128,12 @@ def largest_output(seeds, key):
 
 
 def outcome_of_limit(limit, size):
-    """Of a limit on the size of files: temporary ones may be larger than what comes of them."""
+    """Returns outcomes under a file size limit. Temporary files may be larger than the output."""
     return frozenset({FAILED}) if limit < size else frozenset({DONE, FAILED})
 
 
 def limited_file_size(rng, seeds, key):
-    block = 512  # of `ulimit -f` [bytes]
+    block = 512  # unit of `ulimit -f` [bytes]
     size = largest_output(seeds, key)
     blocks = rng.choice((0, 1, rng.randrange(1 + size // block), size // block, 1 + size // block))
     allowed = outcome_of_limit(blocks * block, size)
@@ -141,7 +141,7 @@ def limited_file_size(rng, seeds, key):
 
 
 def on_full_disk(rng, seeds, key):
-    """A file system with room for only a part of the output, which lies in the folder `disk`."""
+    """A file system, mounted at `disk`, with room for only a part of the output."""
     page = 4096  # [bytes]
     pages = 1 + rng.randrange(1 + largest_output(seeds, key) // page)
     mount = ["mount", "-t", "tmpfs", "-o", f"size={pages * page}", "none", "disk"]
@@ -166,7 +166,7 @@ def on_full_disk(rng, seeds, key):
 
 
 def into_full_device(_, seeds, key):
-    """The output is a device that takes nothing; it must still be one afterwards."""
+    """The output is a device that accepts no bytes; it must still be a device afterwards."""
     name = WRITERS[key].output()
 
     def prepare(folder):
@@ -215,7 +215,7 @@ def some_disturbance(rng, seeds):
 
 
 def descriptors(rng, seeds, number):
-    """Stdout that takes nothing is a failure for what writes there; stderr that takes nothing loses no results."""
+    """A failure on stdout is an error for commands that write there. A failure on stderr loses no results."""
     disturbed = some_disturbance(rng, seeds)
 
     def prepare(folder):
@@ -228,7 +228,7 @@ def descriptors(rng, seeds, number):
         key = rng.choice(list(WRITERS))
         tells = key.startswith("compare") and 1 in disturbed
         allowed = frozenset({FAILED} if tells else {DONE})
-        outputs = WRITERS[key].outputs  # whole, even if the failure is to tell of them
+        outputs = WRITERS[key].outputs  # complete, even if only the report of them failed
         return written_case(seeds, key, "disturbed descriptors", allowed=allowed, may_leave=outputs, **common)
     key = rng.choice(list(TELLERS))
     allowed = frozenset({FAILED} if 1 in disturbed else {DONE})

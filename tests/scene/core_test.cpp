@@ -1,4 +1,4 @@
-// Where most of a scene lies: seen to matter in tests/solver/position_test.cpp; here the rules one by one.
+// The region with most of a scene. tests/solver/position_test.cpp shows its effect; this file tests the rules.
 
 #include "interflect/scene/core.h"
 

@@ -16,7 +16,6 @@ namespace {
 using testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 
-/// A table of a function of polar angle and azimuth [degrees].
 PhotometricWeb web_of(const std::vector<float>& polar, const std::vector<float>& azimuth,
                       const std::function<float(float, float)>& intensity) {
     PhotometricWeb web;
@@ -73,7 +72,7 @@ TEST(PhotometricWeb, FluxOfTheSameIntensityEverywhereIsFourPi) {
     EXPECT_NEAR(web_of({0, 1, 70, 180}, all_around, [](float, float) { return 3; }).flux(), 4 * pi * 3, 1e-9);
 }
 
-/// Of the hat 1 - t / 90: 2 pi times the integral of (1 - t / T) sin t from 0 to T = pi / 2, which is 1 - 1 / T.
+/// For the hat 1 - t / 90: 2 pi times the integral of (1 - t / T) sin t from 0 to T = pi / 2, which is 1 - 1 / T.
 TEST(PhotometricWeb, FluxIntegratesTheInterpolationExactly) {
     const double hat = 2 * pi * (1 - 2 / pi);
     EXPECT_NEAR(web_of({0, 90}, {0, 360}, [](float t, float) { return 1 - t / 90; }).flux(), hat, 1e-7);

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Two two-sided faces, one material, one view: nothing wrong with it.
+/// Two two-sided faces, one material, one view, without faults.
 Scene valid_scene() {
     Scene scene;
     testing_support::add_material(scene, Rgb(0.5f), Rgb(1));
@@ -42,7 +42,7 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << 
 
 class SceneFaults : public testing::TestWithParam<Fault> {};
 
-/// Those of the origin seen to fail when it is not checked.
+/// The faults of the origin were seen to fail when it is not checked.
 TEST_P(SceneFaults, AreFoundAndNamed) {
     Scene scene = valid_scene();
     GetParam().make(scene);

@@ -1,6 +1,6 @@
 // Luminance distributions of skies, against published and independently computed numbers.
 //
-// Seen to fail when the indicatrix lacks exp(d pi / 2), and when it is not subtracted from Perez's; when the integral
+// Seen to fail when the indicatrix lacks exp(d pi / 2), when it is not subtracted from Perez's, and when the integral
 // lacks the cosine.
 #include "interflect/sky.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// By the trapezoidal rule in both angles; the library's is another.
+/// By the trapezoidal rule in both angles; the library uses another rule.
 double integral(const SkyModel& model, double sun_zenith) {
     constexpr int steps = 600;
     double sum = 0;
@@ -31,7 +31,7 @@ double integral(const SkyModel& model, double sun_zenith) {
     return 2 * sum * (pi / 2 / steps) * (pi / steps);
 }
 
-/// Moon and Spencer 1942: three times as bright at the zenith as at the horizon, and 7/9 pi L of the zenith below it.
+/// Moon and Spencer 1942: the zenith has 3 times the horizon's luminance; the illuminance is 7/9 pi times the zenith's.
 TEST(CieSky, OfTheTraditionalOvercastTypeHasItsRatios) {
     const SkyModel sky = cie_standard_sky(16);
     const double zenith = sky.relative_luminance(1, 0);
@@ -41,8 +41,8 @@ TEST(CieSky, OfTheTraditionalOvercastTypeHasItsRatios) {
     EXPECT_FALSE(sky.depends_on_sun());
 }
 
-/// ISO 15469 in its own words: L / L of the zenith = f(chi) phi(Z) / (f(Zs) phi(0)). Numbers by hand, at 40 degrees
-/// from the zenith, 25 from a sun that stands 60 from it.
+/// ISO 15469: L / L of the zenith = f(chi) phi(Z) / (f(Zs) phi(0)). Numbers by hand, at 40 degrees from the zenith, 25
+/// from a sun that stands 60 from it.
 TEST(CieSky, HasTheStandardsLuminances) {
     struct Case {
         int type;
@@ -91,8 +91,8 @@ TEST(SkyFault, NamesWhatCannotBe) {
     EXPECT_NE(sky_fault({.a = -3, .b = 0}), "") << "dark everywhere";
 }
 
-/// What Radiance's gendaylit (of 2021) computes at the mean distance of the Sun, one case for each bin of the clearness
-/// and one more for the fourth: its coefficients a to e, of (1 + a exp(b / cos Z)) (1 + c exp(d chi) + e cos^2 chi).
+/// Results of Radiance's gendaylit (of 2021) at the mean distance of the Sun, one case for each bin of the clearness
+/// and another for the fourth: its coefficients a to e, of (1 + a exp(b / cos Z)) (1 + c exp(d chi) + e cos^2 chi).
 struct PerezCase {
     double direct, diffuse, altitude;
     double a, b, c, d, e;
@@ -107,7 +107,7 @@ class Perez : public testing::TestWithParam<PerezCase> {};
 TEST_P(Perez, AgreesWithRadiance) {
     const PerezCase& c = GetParam();
     const ModelledDaylight found = perez_daylight(c.direct, c.diffuse, c.altitude);
-    constexpr double other_air_mass = 2e-4;  // gendaylit has that of Kasten 1965
+    constexpr double other_air_mass = 2e-4;  // gendaylit uses that of Kasten 1965
     EXPECT_NEAR(found.sky_illuminance, c.sky_illuminance, other_air_mass * c.sky_illuminance);
     EXPECT_NEAR(found.sun_illuminance, c.sun_illuminance, other_air_mass * c.sun_illuminance);
     const double sun_zenith = (90 - c.altitude) * pi / 180;

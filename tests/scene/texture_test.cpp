@@ -1,6 +1,6 @@
-// Textures: where texels lie, and what a scene must not have.
+// Textures: positions of texels, and faults of scenes.
 //
-// Seen to fail when rows are taken from below, and when centres are shifted by half a texel.
+// Seen to fail when rows are counted from below, and when centres are shifted by half a texel.
 #include "interflect/texture.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-/// Three columns and two rows, the upper one 1 2 3, the lower 4 5 6.
+/// Three columns and two rows: the upper row is 1 2 3, the lower 4 5 6.
 Texture numbered() {
     Texture texture{"numbers.png", 3, 2, {}};
     for (int i = 1; i <= 6; ++i) texture.texels.emplace_back(static_cast<float>(i));
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
               "patch 0 has lightmap coordinates at some of its vertices only"}),
     testing::PrintToStringParamName());
 
-/// What is reflected and what goes through are added texel by texel where the textures have one size.
+/// Reflectance and transmittance are added texel by texel if the textures have the same size.
 TEST(TexturedScene, MayReflectWhereNothingGoesThrough) {
     Scene scene = textured_scene();
     Texture checks{"checks", 3, 2, {Rgb(0), Rgb(1), Rgb(0), Rgb(1), Rgb(0), Rgb(1)}}, others = checks;
@@ -145,7 +145,7 @@ TEST(TexturedScene, MayReflectWhereNothingGoesThrough) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
     scene.materials[0].transmittance_texture = 0;
     EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
-    scene.textures[0].width = 6, scene.textures[0].height = 1;  // sizes differ: the largest count
+    scene.textures[0].width = 6, scene.textures[0].height = 1;  // sizes differ: the largest values count
     scene.materials[0].transmittance_texture = 1;
     EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
 }

@@ -12,7 +12,6 @@ namespace {
 
 using Random = std::mt19937_64;
 
-/// A rectangle made ready for many rays.
 struct Target {
     V3d corner, normal, to_u, to_v;  // to_u . (x - corner) is the coordinate along u, in [0, 1] inside
     explicit Target(const Rectangle& r)
@@ -21,7 +20,7 @@ struct Target {
 
 double uniform(Random& random) { return std::uniform_real_distribution<double>()(random); }
 
-/// A point of the unit sphere on top of the unit normal: its direction is cosine-distributed.
+/// Returns a point of the unit sphere on top of the unit normal: its direction is cosine-distributed.
 V3d cosine_direction(const V3d& normal, Random& random) {
     for (;;) {
         const V3d p(2 * uniform(random) - 1, 2 * uniform(random) - 1, 2 * uniform(random) - 1);
@@ -31,10 +30,10 @@ V3d cosine_direction(const V3d& normal, Random& random) {
     }
 }
 
-/// Index of the nearest rectangle whose lit side the ray meets; targets.size() if there is none.
+/// Returns the index of the nearest rectangle whose lit side the ray hits, or targets.size().
 std::size_t nearest(const std::vector<Target>& targets, const V3d& origin, const V3d& direction) {
-    constexpr double start = 1e-9;   // [m], so that a ray does not meet the rectangle it leaves
-    constexpr double slack = 1e-12;  // so that none slips through between two rectangles
+    constexpr double start = 1e-9;   // [m], prevents hits on the starting rectangle
+    constexpr double slack = 1e-12;  // closes gaps between rectangles
     double distance = std::numeric_limits<double>::infinity();
     std::size_t hit = targets.size();
     for (std::size_t i = 0; i < targets.size(); ++i) {

@@ -28,7 +28,7 @@ int normal_axis(const Rectangle& r) {
     throw std::logic_error("the rectangle is not perpendicular to an axis");
 }
 
-/// How far `interval` lies in front of the plane coordinate = `plane` that faces towards `sign`.
+/// Returns the distance range of `interval` in front of the plane coordinate = `plane` that faces towards `sign`.
 Interval in_front(const Interval& interval, double plane, double sign) {
     const double a = sign * (interval.low - plane), b = sign * (interval.high - plane);
     const Interval distance{std::min(a, b), std::max(a, b)};
@@ -36,7 +36,7 @@ Interval in_front(const Interval& interval, double plane, double sign) {
     return distance;
 }
 
-/// The sum over all choices of an end of each interval, with alternating signs.
+/// Computes the sum over all choices of an end of each interval, with alternating signs.
 template <class Function>
 double corner_sum(const Interval& x, const Interval& y, const Interval& eta, const Interval& xi, const Function& g) {
     double sum = 0;
@@ -47,7 +47,7 @@ double corner_sum(const Interval& x, const Interval& y, const Interval& eta, con
     return sum / (2 * std::numbers::pi);
 }
 
-double log_or_zero(double x) { return x > 0 ? std::log(x) : 0; }  // its factor is 0 where x is
+double log_or_zero(double x) { return x > 0 ? std::log(x) : 0; }  // its factor is 0 if x is 0
 
 /// Howell C-13: planes at distance z.
 double parallel_corner(double x, double y, double eta, double xi, double z) {
@@ -56,7 +56,7 @@ double parallel_corner(double x, double y, double eta, double xi, double z) {
            0.5 * z * z * std::log(dx * dx + dy * dy + z * z);
 }
 
-/// Howell C-15: x and xi are distances from the line in which the planes meet.
+/// Howell C-15: x and xi are distances from the intersection line of the planes.
 double perpendicular_corner(double x, double y, double eta, double xi) {
     const double dy = y - eta, r2 = x * x + xi * xi, r = std::sqrt(r2);
     return dy * r * std::atan2(dy, r) - 0.25 * (r2 - dy * dy) * log_or_zero(r2 + dy * dy);

@@ -7,7 +7,7 @@
 
 namespace interflect::testing_support {
 
-/// The text of a file of measured light, in parts that a test can change.
+/// The text of an IES file, in parts that a test can change.
 struct IesText {
     std::string version = "IESNA:LM-63-2002\n[TEST] made here\n";
     std::string tilt = "TILT=NONE\n";
@@ -16,26 +16,25 @@ struct IesText {
     std::string opening = "0 0 0";
     double ballast_factor = 1, last_factor = 1;
     std::vector<double> vertical{0, 90}, horizontal{0};
-    std::function<double(double, double)> intensity = [](double, double) { return 100; };  ///< Of vertical, horizontal.
+    std::function<double(double, double)> intensity = [](double, double) { return 100; };  ///< (vertical, horizontal).
     std::string line_break = "\n", separator = " ";
 
     std::string str() const;
 };
 
-/// EULUMDAT.
 struct LdtText {
     int symmetry = 0;
     std::vector<double> c{0}, gamma{0, 90};  ///< [degrees]
-    double length = 0, width = 0;            ///< Of the opening [mm].
+    double length = 0, width = 0;            ///< Opening [mm].
     double conversion = 1, tilt = 0, lumens = 1000;
     int lamps = 1, lamp_sets = 1;
-    std::function<double(double, double)> intensity = [](double, double) { return 100; };  ///< Of gamma, C; cd/klm.
+    std::function<double(double, double)> intensity = [](double, double) { return 100; };  ///< (gamma, C) [cd/klm].
     std::string line_break = "\r\n";
 
-    std::string str() const;  ///< With the planes that its symmetry asks for.
+    std::string str() const;  ///< With the planes required by its symmetry.
 };
 
-/// What is wrong with a file, and words of the error that says so.
+/// A malformed file, and words of the error message.
 struct MalformedText {
     std::string name, text, message;
 };

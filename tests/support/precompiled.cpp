@@ -1,1 +1,1 @@
-// Nothing of its own: the header that the tests share is compiled with this file.
+// Empty: compiles the precompiled header of the tests.

@@ -20,8 +20,8 @@ SkyDome dome(int type, const V3f& zenith = {0, 0, 1}, const V3f& towards_sun = V
     return {cie_standard_sky(type), {illuminance, 8000, 7000}, zenith, towards_sun, ground};
 }
 
-/// Scaled so that it causes `illuminance` on a horizontal surface; `ground` below the horizon. The factor, a long sum,
-/// is found when the sky is first looked at: each test of a program makes all skies, and hardly one looks at them.
+/// Scales a sky to cause `illuminance` on a horizontal surface; `ground` below the horizon. The factor, a long sum, is
+/// computed on first use, because each test makes all skies but few use them.
 std::function<double(const V3d&)> scaled(const std::function<double(const V3d&)>& relative, const V3d& zenith,
                                          double ground = 0) {
     const auto of_sky = [=](const V3d& d) { return d.dot(zenith) > 0 ? relative(d) : 0; };
@@ -45,8 +45,8 @@ std::function<double(const V3d&)> overcast(const V3d& zenith) {
     return [zenith](const V3d& d) { return (1 + 2 * d.dot(zenith)) / 3; };
 }
 
-/// The texel that is seen in a direction, by the definition of EnvironmentMap, with north turned by an angle from y
-/// towards x.
+/// Returns the texel in a direction, by the definition of EnvironmentMap, with north turned by an angle from y towards
+/// x.
 std::function<double(const V3d&)> texel_seen(const std::shared_ptr<const Texture>& image, double turn, double factor) {
     return [=](const V3d& d) {
         const double azimuth = std::atan2(d.x, d.y) - turn, turns = azimuth / (2 * pi) + 0.5 + 2;
@@ -57,10 +57,10 @@ std::function<double(const V3d&)> texel_seen(const std::shared_ptr<const Texture
     };
 }
 
-/// Of an open plane under such a map: by the midpoint rule within each texel.
+/// Computes the irradiance of an unobstructed plane under such a map, by the midpoint rule within each texel.
 std::function<double(const V3d&)> under_map(const std::shared_ptr<const Texture>& image, double turn, double factor) {
     return [=](const V3d& normal) {
-        const std::uint32_t parts = 1 + 400 / image->width;  // of a texel, each way
+        const std::uint32_t parts = 1 + 400 / image->width;  // per texel and direction
         double sum = 0;
         for (std::uint32_t row = 0; row < image->height * parts; ++row) {
             const double step = pi / (image->height * parts), upper = std::cos(row * step),

@@ -10,23 +10,23 @@
 
 namespace interflect::testing_support {
 
-/// A sky and its radiance by a formula that is written here again, of the red channel, in a direction towards the sky.
+/// A sky and its radiance towards it, red channel, from an independent formula.
 struct KnownSky {
     std::string name;
     Luminaire luminaire;
     std::function<double(const V3d&)> radiance;
-    std::function<double(const V3d&)> irradiance;  ///< That it causes on an open plane with this normal.
+    std::function<double(const V3d&)> irradiance;  ///< On an unobstructed plane with this normal.
 };
 
-/// CIE skies of several types, with and without a ground, one of them with its zenith along y; maps of few and of
-/// many texels, some of them turned.
+/// Returns CIE skies of several types, with and without a ground, including a sky with its zenith along y; maps of few
+/// and many texels, some of them turned.
 std::vector<KnownSky> known_skies();
 
 /// A texture of these texels.
 std::shared_ptr<const Texture> image_of(std::uint32_t width, std::uint32_t height, std::vector<Rgb> texels);
 
-/// The integral of radiance times cosine over the hemisphere of a normal, by the midpoint rule: to about 1e-4 for what
-/// is smooth, to a few percent for maps.
+/// Computes the integral of radiance times cosine over the hemisphere of a normal, by the midpoint rule. The error is
+/// about 1e-4 for smooth skies and a few percent for maps.
 double irradiance_of(const std::function<double(const V3d&)>& radiance, const V3d& normal);
 
 }  // namespace interflect::testing_support

@@ -4,17 +4,17 @@
 
 namespace interflect::testing_support {
 
-/// A closed box of 1 x 2 x 3 m, 3 x 3 patches a wall, with images laid askew. Reflectance varies, and exitance with it:
-/// M(x) = (1 - rho(x)) B, so that the radiosity is B everywhere, B = M + rho B, and so is the irradiance.
+/// Makes a closed box of 1 x 2 x 3 m, 3 x 3 patches a wall, with images laid askew. Reflectance varies, and exitance
+/// M(x) = (1 - rho(x)) B with it, so that radiosity and irradiance are B everywhere.
 Scene textured_furnace(const Rgb& radiosity);
 
-/// Where a texture has two halves: reflectance 0 and 0.8, or exitance 0 and 100 lm/m^2.
+/// Meaning of the two halves of a texture: reflectance 0 and 0.8, or exitance 0 and 100 lm/m^2.
 enum class Halves { reflect, emit };
 
-/// A room of 4 x 2 x 2 m. Its floor, one patch, is dark for x < 2 m, by a texture; a ceiling lamp hangs over the other
-/// half, or there is none where the floor emits.
+/// Makes a room of 4 x 2 x 2 m. Its floor, one patch, is dark for x < 2 m, by a texture. A ceiling lamp hangs over the
+/// other half, unless the floor emits.
 Scene half_dark_floor(Halves halves);
-/// The same without a texture: the floor is two patches of two materials, the dark one first.
+/// Makes the same without a texture: the floor is two patches of two materials, the dark one first.
 Scene half_dark_floor_of_two_patches(Halves halves);
 
 }  // namespace interflect::testing_support

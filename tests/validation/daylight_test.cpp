@@ -1,5 +1,5 @@
-// Daylight through openings: sky component and what the ground reflects, with and without glass. The rooms are black:
-// nothing is reflected inside.
+// Daylight through openings: sky component and light from the ground, with and without glass. The rooms are black, so
+// no light is reflected inside.
 //
 // Seen to fail when glass does not filter shadow rays, the ground is black, an overcast sky is 1 + 1.8 sin of the
 // elevation, a sky is not scaled to its illuminance.
@@ -24,9 +24,9 @@ using namespace testing_support;
 constexpr double pi = std::numbers::pi;
 constexpr double outside = 10'000;  // horizontal illuminance of the sky [lx]
 constexpr float transmittance = 0.7f, ground_reflectance = 0.3f;
-const V3d sun(-1, 0.3, 0.8);  // shines at the window from the side; the sun itself does not shine
+const V3d sun(-1, 0.3, 0.8);  // beside the window; only scattered light of the sky
 
-/// A sky and its luminance by formulas of the test's own.
+/// A sky and its luminance by independent formulas.
 struct TestSky {
     std::string name;
     Luminaire luminaire;
@@ -52,7 +52,7 @@ struct Room {
     Room() { black = add_material(scene, Rgb(0), Rgb(0)); }
 
     void add(const V3f& corner, const V3f& u, const V3f& v) { add_rectangle(scene, corner, u, v, black, 1, 1, true); }
-    /// The rectangle with a hole from a to b, shares of u and v.
+    /// Adds the rectangle with a hole from a to b, shares of u and v.
     void add_with_hole(const V3f& corner, const V3f& u, const V3f& v, const V2f& a, const V2f& b) {
         add(corner, u, v * a.y);
         add(corner + v * b.y, u, v * (1 - b.y));
@@ -64,7 +64,7 @@ struct Room {
         scene.materials[glass].transmittance = Rgb(transmittance);
         add_rectangle(scene, V3f(opening.corner), V3f(opening.u), V3f(opening.v), glass, 1, 1, true);
     }
-    /// Floor, and the walls but x = 0.
+    /// Adds the floor, and all walls except x = 0.
     void add_rest() {
         add({0, 0, 0}, {5, 0, 0}, {0, 4, 0});
         add({0, 0, 0}, {0, 0, 3}, {5, 0, 0});
@@ -97,7 +97,7 @@ struct Place {
     V3d position, normal;
 };
 
-/// @param factor  Of all expected values: the glass.
+/// @param factor  Factor on all expected values, for glass.
 void check_room(const std::string& name, Scene scene, const Rectangle& opening, const std::vector<TestSky>& tested,
                 const std::vector<Place>& places, double factor, double bias_bound,
                 const std::function<bool(const V3d& from, const V3d& place)>& is_visible = {}) {
@@ -149,15 +149,15 @@ TEST(Window, IsShadedByALedge) {
     Room room = room_with_window();
     room.add({-1, -20, static_cast<float>(height)}, {1, 0, 0}, {0, 40, 0});
     const auto is_visible = [](const V3d& from, const V3d& x) {
-        const double at_edge = x.z + (x.z - from.z) / from.x;  // where the line through x is 1 m outside
+        const double at_edge = x.z + (x.z - from.z) / from.x;  // height of the line through x at 1 m outside
         return at_edge < height;
     };
     check_room("the same under a ledge of 1 m", room.scene, window, {skies(ground_reflectance)[1]},
                {behind_window[0], behind_window[1]}, 1, 2e-3, is_visible);
 }
 
-/// Under a uniform sky the floor has pi L F, with F in closed form; and what comes in is the window's illuminance from
-/// outside times its area.
+/// Under a uniform sky the floor has pi L F, with F in closed form. The flux through the window is its outside
+/// illuminance times its area.
 TEST(Window, KeepsItsFlux) {
     for (const auto& [sky, luminaire, luminance] : skies(ground_reflectance)) {
         Room room = room_with_window();

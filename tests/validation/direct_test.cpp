@@ -20,9 +20,9 @@ namespace {
 using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
-constexpr double float_rounding = 2e-5;  // relative, of what is computed in single precision
+constexpr double float_rounding = 2e-5;  // relative, for single precision
 
-/// A black plate that takes no part: the scene has faces all the same.
+/// A black plate without influence, because a scene needs faces.
 constexpr float depth = 10;  // [m]
 Scene plate_below() {
     Scene scene;
@@ -30,7 +30,7 @@ Scene plate_below() {
     return scene;
 }
 
-/// Measuring points are this far above where they are asked for [m]: so large is the ray offset of this scene.
+/// Measuring points are this far above the requested positions [m], which is the ray offset of this scene.
 constexpr double offset = 0x1p-17 * static_cast<double>(depth);
 
 TEST(PointSource, FollowsTheInverseSquareLaw) {
@@ -62,7 +62,7 @@ TEST(PointSource, FollowsTheCosineLaw) {
     }
 }
 
-/// A floor of 4 x 3 m, a point light 2.5 m over it, off its middle.
+/// A floor of 4 x 3 m, and an off-centre point light at a height of 2.5 m.
 struct LitFloor {
     static constexpr double intensity = 1000, height = 2.5, x = 1, y = 1.2;
 
@@ -104,12 +104,12 @@ TEST(PointSource, LightsAFloor) {
     check_floor(placements[3], 1, {below, in_the_corner});
 }
 
-/// scenes/pendant.ies as the file has it: intensities at C (a multiple of 45 degrees) and gamma.
+/// scenes/pendant.ies as in the file: intensities at C (a multiple of 45 degrees) and gamma.
 struct TabulatedIntensity {
     double gamma, c, intensity;
 };
 
-/// So far away that its opening, 1.2 m long, is a point.
+/// At this distance its opening, 1.2 m long, acts as a point.
 TEST(MeasuredLuminaire, HasTheIntensitiesOfItsFile) {
     const std::vector<TabulatedIntensity> table{{0, 0, 800},   {30, 0, 640},   {30, 45, 680},  {30, -45, 680},
                                                 {30, 90, 740}, {50, 180, 250}, {130, 45, 260}, {140, 90, 390},
@@ -138,7 +138,7 @@ TEST(MeasuredLuminaire, HasTheIntensitiesOfItsFile) {
     }
 }
 
-/// All that it emits arrives on the walls of a black room: the integral of its table, by the midpoint rule.
+/// The walls of a black room receive the whole emission: the integral of its table, by the midpoint rule.
 TEST(MeasuredLuminaire, EmitsTheLumensOfItsFile) {
     Warnings warnings;
     const auto web = std::make_shared<PhotometricWeb>(
@@ -161,7 +161,7 @@ TEST(MeasuredLuminaire, EmitsTheLumensOfItsFile) {
 
 // ---- Area sources
 
-/// A lamp of 1 x 1.5 m, 2 m over a floor and beside a wall, each of 6 m; all else is dark.
+/// A lamp of 1 x 1.5 m, 2 m over a floor and beside a wall, each of 6 m; all other surfaces are black.
 struct LampOverFloor {
     static constexpr double exitance = 5000;
     static Rectangle lamp() { return {{1, 2, 2}, {0, 1.5, 0}, {1, 0, 0}}; }
@@ -177,7 +177,7 @@ struct LampOverFloor {
                       n, n);
         return s;
     }
-    /// From the floor's and the wall's side.
+    /// Computes the illuminance on the side of the floor and the wall.
     static double illuminance(const V3d& p, const V3d& normal) {
         return exitance * std::abs(configuration_factor(p, normal, corners(lamp())));
     }
@@ -266,7 +266,7 @@ TEST(AreaSource, DiscOverAFloor) {
     }
 }
 
-/// The closed form itself, where catalogues have a figure: a unit square seen from 1 m under a corner.
+/// Checks the closed form against a catalogue's figure: a unit square seen from 1 m under a corner.
 TEST(ConfigurationFactor, IsTheCataloguesFigure) {
     EXPECT_NEAR(configuration_factor({0, 0, 0}, {0, 0, 1}, {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}),
                 std::atan(std::sqrt(0.5)) / (pi * std::sqrt(2)), 1e-12);

@@ -1,4 +1,4 @@
-// Light between surfaces: form factors, and light that a lit floor reflects.
+// Light between surfaces: form factors, and reflection from a lit floor.
 //
 // Seen to fail when radiosity lacks rho, directions of rays lack the cosine, 0.5% of the power is lost.
 
@@ -31,7 +31,7 @@ const std::vector<Pair> pairs{
      {{1, 0, 0}, {1, 0, 0}, {0, 1, 0}},
      {{0, -2, 0.5}, {0, 3, 0}, {0, 0, 2}}}};
 
-/// F of the first to the second: the share of the light that the first emits which the second receives.
+/// Form factor F from the first to the second: the share of the first one's emission that the second receives.
 TEST(FormFactor, IsTheLightThatIsExchanged) {
     for (const auto& [name, from, to] : pairs)
         for (const Placement& place : placements) {
@@ -47,8 +47,8 @@ TEST(FormFactor, IsTheLightThatIsExchanged) {
         }
 }
 
-/// A floor of 2 x 2 m that reflects 0.8 of 1000 lx from a vertical sun, a wall beside it and a ceiling over it, both
-/// black; the ceiling has no back, so that the sun shines through it.
+/// A floor of 2 x 2 m that reflects 0.8 of 1000 lx from a vertical sun, with a black wall beside it and a black ceiling
+/// over it. The ceiling has no back, so the sun shines through it.
 struct LitFloor {
     static constexpr double radiosity = 800;
     static Rectangle floor() { return {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}; }
@@ -70,7 +70,7 @@ struct LitFloor {
         s.luminaires = {{"sun", 0, DirectionalLight{{0, 0, -1}, Rgb(1000)}}};
         return s;
     }
-    /// E at a place that sees the floor from x = a to b.
+    /// Computes the illuminance at a place from which the floor is visible between x = a and b.
     static double illuminance(const V3d& p, const V3d& normal, double a, double b) {
         return radiosity * std::abs(configuration_factor(p, normal, corners({{a, 0, 0}, {b - a, 0, 0}, {0, 2, 0}})));
     }

@@ -1,4 +1,4 @@
-// Unified Glare Rating: published position indices, and a room whose background luminance is known.
+// Unified Glare Rating: published position indices, and a room with known background luminance.
 //
 // Seen to fail when the position index is not squared and when the background luminance lacks 1/pi.
 
@@ -21,8 +21,8 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-/// CIE 117:1995, position indices of T/R = 0, straight above the line of sight. The library has the fit of Levin 1975,
-/// which is up to a few per cent off the table there.
+/// CIE 117:1995, position indices of T/R = 0, straight above the line of sight. The library uses the fit of Levin 1975,
+/// which deviates there by up to a few per cent from the table.
 TEST(Glare, PositionIndicesAreThoseOfTheTable) {
     struct {
         double height, p;
@@ -33,7 +33,7 @@ TEST(Glare, PositionIndicesAreThoseOfTheTable) {
                          position_index({1, 0, static_cast<float>(height)}, {1, 0, 0}), 0.035 * p);
 }
 
-/// Levin's p of a place ahead, above and to the side, written here again [m].
+/// Recomputes Levin's p of a place ahead, above and to the side [m].
 double levin(double ahead, double above, double aside) {
     const double across = std::hypot(above, aside), sigma = std::atan2(across, ahead) * 180 / pi,
                  tau = std::atan2(std::abs(aside), std::abs(above)) * 180 / pi;
@@ -69,9 +69,9 @@ Scene sphere(double radius, double rho) {
     return scene;
 }
 
-/// An integrating sphere: its wall has the same illuminance everywhere, E = Phi / ((1 - rho) A), and so has a plane
-/// inside, rho E, wherever it is: Lb = rho E / pi. A small bare lamp lights it; panels that face down dazzle, and add
-/// some per cent to the light.
+/// An integrating sphere: its wall has the illuminance E = Phi / ((1 - rho) A) everywhere. Any plane inside has rho E,
+/// so Lb = rho E / pi. A small bare lamp lights it; panels that face down cause the glare and add some per cent to the
+/// light.
 TEST(Glare, OfPanelsInAnIntegratingSphere) {
     constexpr double radius = 4, rho = 0.6, lumens = 20'000, exitance = 20'000, side = 0.1;
     const std::vector<V3d> panels{{2, 0, 1}, {2.5, -1, 1.2}, {1.5, 1, 0.8}};

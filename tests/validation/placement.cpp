@@ -49,7 +49,7 @@ std::vector<Estimate> measured(const Scene& scene, const std::vector<MeasuringPo
     });
 }
 
-/// The runs are points of one measurement, each with random numbers of its own: the tables of skies are made once.
+/// Runs are repeated points of one measurement with separate random numbers, so the tables of skies are made once.
 std::vector<Estimate> traced(const Scene& scene, const std::vector<MeasuringPoint>& points, int samples) {
     std::vector<MeasuringPoint> repeated;
     for (int run = 0; run < runs; ++run) repeated.insert(repeated.end(), points.begin(), points.end());

@@ -10,7 +10,7 @@
 
 namespace interflect::testing_support {
 
-/// How a case lies in the world: turned about (1, 2, 3), scaled, and moved.
+/// Placement of a case in the world: rotated about (1, 2, 3), scaled, and translated.
 struct Placement {
     std::string name;
     double turn = 0;  ///< [degrees]
@@ -19,22 +19,23 @@ struct Placement {
 
     V3d direction(const V3d& d) const;
     V3d point(const V3d& p) const { return origin + direction(p) * scale; }
-    /// Of a scene with its origin at 0 and no lights but points.
+    /// Transforms a scene with its origin at 0 and no lights except point lights.
     Scene scene(Scene original) const;
     MeasuringPoint measuring_point(const V3d& position, const V3d& normal) const;
 };
 
-/// As it is, aslant, at map coordinates of a thousand kilometres, and a thousandth of the size.
+/// Unchanged, rotated, at map coordinates of a thousand kilometres, and scaled to a thousandth.
 extern const std::vector<Placement> placements;
 
-/// Illuminance at points, gathered from a solution of so many rays (hsrr) with so many samples a point [lx].
+/// Computes the illuminance at points, gathered from a solution of `rays` rays (hsrr) with `samples` samples a point
+/// [lx].
 std::vector<Estimate> measured(const Scene& scene, const std::vector<MeasuringPoint>& points,
                                std::int64_t rays = 10'000, int samples = 1024);
 
-/// The same by path tracing alone.
+/// Computes the same by path tracing alone.
 std::vector<Estimate> traced(const Scene& scene, const std::vector<MeasuringPoint>& points, int samples);
 
-/// Mean illuminance of patches, area-weighted, as solved (hsrr) [lx].
+/// Computes the mean illuminance of patches, area-weighted, from the solution (hsrr) [lx].
 Estimate solved(const Scene& scene, std::uint32_t first_patch, std::uint32_t patches, std::int64_t rays = 100'000);
 
 }  // namespace interflect::testing_support

@@ -16,7 +16,7 @@ namespace interflect::testing_support {
 
 namespace {
 
-/// Chance that one row of a correct program exceeds its tolerance.
+/// Probability that a row of a correct program exceeds its tolerance.
 constexpr double false_alarm_of_row = 1e-5;
 
 struct Row {
@@ -30,7 +30,7 @@ std::map<std::string, std::vector<Row>>& tables() {
     return all;
 }
 
-/// Standard errors that chance exceeds with false_alarm_of_row.
+/// Returns the number of standard errors that is exceeded with probability false_alarm_of_row.
 double quantile() {
     return boost::math::quantile(boost::math::complement(boost::math::students_t(runs - 1), false_alarm_of_row / 2));
 }
@@ -47,7 +47,7 @@ std::string text_of(const std::vector<Row>& rows) {
     return text;
 }
 
-/// Writes page.md with its `{{table}}` lines replaced to the file that INTERFLECT_VALIDATION_PAGE names.
+/// Writes page.md, with its `{{table}}` lines replaced, to the file named by INTERFLECT_VALIDATION_PAGE.
 class Page : public testing::Environment {
   public:
     void TearDown() override {
@@ -97,7 +97,7 @@ void check(const std::string& table, const std::string& case_name, const std::st
            const Estimate& result, double bias_bound) {
     const double tolerance = bias_bound * std::abs(expected) + quantile() * result.standard_error;
     EXPECT_NEAR(result.mean, expected, tolerance) << table << ", " << case_name << ", " << quantity;
-    // A check that could not notice a lost factor is none.
+    // A wider tolerance would not detect a lost factor.
     EXPECT_LT(tolerance, 0.03 * std::abs(expected)) << table << ", " << case_name << ", " << quantity;
     tables()[table].push_back({case_name, quantity, expected, result.mean,
                                fmt::format("{:+.3f}%", 100 * (result.mean - expected) / expected),

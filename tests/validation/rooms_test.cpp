@@ -1,7 +1,7 @@
-// Interreflection in closed rooms, and what becomes of all power.
+// Interreflection in closed rooms, and the balance of power.
 //
-// Seen to fail when rho is 1% too small, 0.5% of the power is lost, what escapes is that of the last pass, what glass
-// transmits counts as absorbed.
+// Seen to fail when rho is 1% too small, 0.5% of the power is lost, the escaped power is that of the last pass, light
+// transmitted by glass counts as absorbed.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
-/// Of the light that a pass begins with, so much it leaves unshot at most.
+/// Upper limit of the share of its initial light that a pass leaves unshot.
 constexpr double unshot = 1e-3;
 
 class ClosedRoom : public testing::TestWithParam<double> {};  // rho
@@ -40,8 +40,8 @@ TEST_P(ClosedRoom, ThatShinesAllAround) {
           unshot);
 }
 
-/// A cube of 4 m with a lamp of 10 klm in its middle: what is reflected arrives on S = 96 m^2, in the mean
-/// E = rho / (1 - rho) Phi / S.
+/// A cube of 4 m with a lamp of 10 klm in its middle. The mean reflected illuminance on S = 96 m^2 is E = rho / (1 -
+/// rho) Phi / S.
 TEST_P(ClosedRoom, WithALamp) {
     constexpr double lumens = 10'000, surface = 96;
     const double rho = GetParam(), expected = rho / (1 - rho) * lumens / surface;
@@ -52,7 +52,7 @@ TEST_P(ClosedRoom, WithALamp) {
           {all.mean - lumens / surface, all.standard_error}, 2 * unshot);
 }
 
-/// The same with a table, two-sided, that reflects as the walls do: S is larger by both of its sides.
+/// The same with a two-sided table of the walls' reflectance: S is larger by both of its sides.
 TEST(ClosedRoom, WithAnObstacle) {
     constexpr double lumens = 10'000, surface = 96 + 2 * 3, rho = 0.7;
     Scene scene = closed_box({4, 4, 4}, 1, {{"", Rgb(static_cast<float>(rho)), Rgb(0)}});

@@ -1,4 +1,4 @@
-"""What others make of exported glTF: the Khronos validator, three.js in headless Chromium, and Blender."""
+"""Reads exported glTF with other programs: the Khronos validator, three.js in headless Chromium, and Blender."""
 
 import json
 import math
@@ -21,7 +21,7 @@ LARGEST_DIFFERENCE = {"vertices": 0.06, "irradiance": 0.06, "radiance": 0.15}  #
 
 
 def srgb(linear):
-    """What a display is sent, 0 to 255."""
+    """Returns the display value, 0 to 255."""
     return 255 * (12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
@@ -54,7 +54,7 @@ class GltfTest(CommandTest):
         return result.stdout
 
     def draw(self, file, camera, width, height, *picture):
-        """As three.js draws it; run `npm ci --prefix tests/web` where this finds no modules."""
+        """Draws with three.js; if modules are missing, run `npm ci --prefix tests/web`."""
         return json.loads(self.run_tool("node", WEB / "draw.mjs", file, camera, width, height, *picture))
 
     def import_to_blender(self, file):
@@ -91,7 +91,7 @@ class ValidatorTest(GltfTest):
 
 
 class ThreeTest(GltfTest):
-    # A plate under the open sky: its illuminance is that of the sky by definition, 10,000 lx, and all of it is seen.
+    # A plate under an unobstructed sky: its illuminance is the sky's, 10,000 lx.
     SKY_ILLUMINANCE, REFLECTANCE, EXPOSURE = 10_000, 0.5, -12
 
     def plate(self, view, *options):
@@ -128,7 +128,7 @@ class ThreeTest(GltfTest):
 
 
 class EdgesTest(GltfTest):
-    """A closed white room of slabs: parts of the floor and of the ceiling lie below and above walls, where it is dark."""
+    """A closed white room of slabs: parts of the floor and of the ceiling are dark, below and above walls."""
 
     VIEW = {"name": "camera", "eye": [0.3, 1.6, 1.3], "look_at": [3, 6, 1.4], "up": [0, 0, 1], "fov": 70}
     SIZE = WIDTH, HEIGHT = 480, 270
@@ -148,7 +148,7 @@ class EdgesTest(GltfTest):
         return paint + "".join(self.box(*slab) for slab in walls + floor_and_ceiling) + lamp
 
     def dips(self, pixels):
-        """Pixels darker than 0.8 of both of two opposite neighbours one or two pixels away: lines, not creases."""
+        """Counts pixels darker than 0.8 of both opposite neighbours at distance one or two: lines, not creases."""
         light = [sum(map(linear, pixel)) for pixel in pixels]
         at = lambda x, y: light[y * self.WIDTH + x]  # noqa: E731
         steps = [(k * dx, k * dy) for k in (1, 2) for dx, dy in ((1, 0), (0, 1), (1, 1), (1, -1))]
@@ -164,7 +164,7 @@ class EdgesTest(GltfTest):
             drawn = self.draw(self.export(name, "--exposure", "-9"), "camera", *self.SIZE, f"{name}.png")
             self.assertEqual(self.dips(drawn["pixels"]), 0, name)
 
-    # Before encased patches were left out, 155 and 430 pixels of the picture of the vertices were dark.
+    # Before encased patches were omitted, 155 and 430 pixels of the picture of the vertices were dark.
     def test_no_dark_lines_along_the_edges_of_one_sided_walls(self):
         self.check_edges(1)
 

@@ -1,6 +1,6 @@
 """Run by Blender: blender -b --factory-startup --python load_in_blender.py -- FILE [CAMERA OUT.png]
 
-Imports a glTF file, prints what came of it as a line of JSON, and draws it if asked to.
+Imports a glTF file, prints the result as a line of JSON, and renders it on request.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Blender add-on: finds the diffuse light of the scene with Interflect and puts it onto its surfaces."""
+"""Blender add-on: computes the diffuse light of the scene with Interflect and shows it on the surfaces."""
 
 import os
 import shutil
@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from . import exchange, pipeline, result, world
-from .lit_materials import glTF2ImportUserExtension  # found here by the importer
+from .lit_materials import glTF2ImportUserExtension  # the importer looks for it here
 
 bl_info = {
     "name": "Interflect",
@@ -22,7 +22,7 @@ bl_info = {
 }
 
 POLL = 0.2  # [s]
-LETTER = 7  # width of a letter in panels, about [pixels]
+LETTER = 7  # approximate width of a letter in panels [pixels]
 
 
 class Preferences(bpy.types.AddonPreferences):
@@ -72,7 +72,7 @@ class Bake(bpy.types.Operator):
         return Bake.running is None
 
     def execute(self, context):
-        """Without a user interface: waits until it is done."""
+        """Without a user interface: waits for the end of the bake."""
         if not self._start(context):
             return {"CANCELLED"}
         Bake.running.wait()
@@ -104,13 +104,12 @@ class Bake(bpy.types.Operator):
         return self._finish()
 
     def cancel(self, context):
-        """Called by Blender where it closes or opens another file."""
+        """Called by Blender when it closes or opens another file."""
         context.window_manager.event_timer_remove(self._timer)
         Bake.stop(context)
 
     @classmethod
     def stop(cls, context):
-        """Ends a running bake at once."""
         cls.running.cancel()
         cls.running.wait()
         _end_progress(context)

@@ -1,4 +1,4 @@
-"""Area lamps, which glTF does not have, as faces that emit."""
+"""Area lamps, which glTF lacks, as faces that emit."""
 
 import math
 from contextlib import contextmanager
@@ -8,12 +8,12 @@ import bpy
 from .result import is_result
 
 DISC_CORNERS = 32
-WIDEST_SPREAD = math.pi  # [rad]; of a lamp without an angle limit
+WIDEST_SPREAD = math.pi  # [rad]; the spread of a lamp without an angle limit
 
 
 @contextmanager
 def as_panels(scene):
-    """Adds a face of equal light for each visible area lamp, including instances. Yields warnings."""
+    """Adds a face with the same light for each visible area lamp, including instances. Yields warnings."""
     shown = [
         (instance.object.original, instance.matrix_world.copy())
         for instance in bpy.context.evaluated_depsgraph_get().object_instances
@@ -44,7 +44,8 @@ def as_panels(scene):
 
 
 def _reserve_names(names):
-    """Renames data of an earlier result that begins with these names, so that all bakes have the same. Returns the former."""
+    """Renames earlier results whose names begin so, to keep the names the same in all bakes. Returns the former names.
+    """
     former = []
     for data in (*bpy.data.objects, *bpy.data.meshes, *bpy.data.materials):
         if is_result(data) and not data.library and data.name.startswith(names):
@@ -65,7 +66,6 @@ def _left_out(lamp, area):
 
 
 def _outline(light):
-    """Corners of its face, and their area."""
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     if light.shape in ("RECTANGLE", "SQUARE"):
@@ -77,7 +77,7 @@ def _outline(light):
 
 
 def _emission(light):
-    """Colour of a lamp's nodes, [r, g, b], a factor of its own colour. None if it varies."""
+    """Returns the colour of a lamp's nodes, [r, g, b], a factor of its own colour. None if it varies."""
     output = light.node_tree.get_output_node("CYCLES")
     if output is None or not output.inputs["Surface"].is_linked:
         return [0, 0, 0]
@@ -91,7 +91,7 @@ def _emission(light):
 def _panel(lamp, matrix, corners, area):
     light = lamp.data
     mesh = bpy.data.meshes.new(lamp.name)
-    # A lamp shines along its -z axis: the face is seen, counter-clockwise, from there.
+    # A lamp shines along its -z axis, so the face is counter-clockwise from there.
     mesh.from_pydata([(x, y, 0) for x, y in corners], [], [list(reversed(range(len(corners))))])
     material = bpy.data.materials.new(lamp.name)
     material.use_nodes = True

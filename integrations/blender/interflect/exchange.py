@@ -1,4 +1,4 @@
-"""Between Blender's scene and files: what is exported to be lit, and how lit meshes come back."""
+"""Exchange between Blender's scene and files: export for the solver, and import of lit meshes."""
 
 import json
 import struct
@@ -11,7 +11,7 @@ from . import area_lamps, result
 from .visibility import only_rendered
 
 if bpy.app.version < (3, 5):
-    numpy.bool = bool  # its importer asks for it by the name that later versions of NumPy have dropped
+    numpy.bool = bool  # the importer uses this name, which later versions of NumPy have dropped
 
 LIT_COLLECTION = "Interflect"
 EXPORTED_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "LIGHT")
@@ -19,15 +19,13 @@ LEFT_OUT_TYPES = ("META", "CURVES", "VOLUME", "POINTCLOUD", "GPENCIL")
 
 
 class Exported:
-    """A written scene: names of the objects that it has, and warnings."""
-
     def __init__(self, objects: list[str], warnings: list[str]):
         self.objects, self.warnings = objects, warnings
 
 
 def export_scene(scene, path: Path) -> Exported:
-    """Writes the rendered objects of the current scene at its frame, without an earlier result and with panels for area lamps.
-    Watts in Blender are lumens in the file."""
+    """Writes the rendered objects of the current scene at its frame, without an earlier result and with panels for area
+    lamps. Watts in Blender are lumens in the file."""
     with only_rendered(scene) as rendered, area_lamps.as_panels(scene) as warnings:
         objects = [o for o in rendered if o.type in EXPORTED_TYPES or o.instance_type == "COLLECTION"]
         warnings += _left_out(rendered)
@@ -56,19 +54,18 @@ def _left_out(rendered):
 
 
 def camera_names(path: Path) -> list[str]:
-    """Names of the cameras in an exported scene."""
     content = path.read_bytes()
-    (length,) = struct.unpack_from("<I", content, 12)  # of the JSON, which follows the headers of the file and of the chunk
+    (length,) = struct.unpack_from("<I", content, 12)  # length of the JSON, after the headers of the file and the chunk
     nodes = json.loads(content[20 : 20 + length]).get("nodes", [])
     return [node["name"] for node in nodes if "camera" in node]
 
 
 def import_lit(scene, path: Path, replaced: list[str], warnings: list[str]) -> None:
-    """Puts the lit meshes of a file into a collection of their own, in place of an earlier one, and hides the objects that
-    they stand for."""
+    """Puts the lit meshes of a file into their own collection, which replaces an earlier one. Hides the objects that
+    they represent."""
     result.remove(scene)
     with result.marking():
-        # A scene of its own keeps the importer from the user's units, renderer, selection and active collection.
+        # A temporary scene shields the user's units, renderer, selection and active collection from the importer.
         temporary = bpy.data.scenes.new(LIT_COLLECTION)
         lit = bpy.data.collections.new(LIT_COLLECTION)
         try:
@@ -81,6 +78,6 @@ def import_lit(scene, path: Path, replaced: list[str], warnings: list[str]) -> N
             scene.collection.children.link(lit)
         finally:
             bpy.data.scenes.remove(temporary)
-    result.purge()  # of the file's cameras and lights
+    result.purge()  # removes the file's cameras and lights
     lit[result.WARNINGS] = "\n".join(warnings)
     result.hide(scene, replaced)

@@ -1,4 +1,4 @@
-"""What Blender's glTF importer does not know of Interflect's files: lightmaps, and the exposure of vertex colours."""
+"""Features of Interflect's files that Blender's glTF importer lacks: lightmaps, and the exposure of vertex colours."""
 
 from math import pi
 from pathlib import Path
@@ -9,7 +9,7 @@ LIGHTMAP = "MOZ_lightmap"
 
 
 class glTF2ImportUserExtension:
-    """Called by Blender's importer for each material that it has made. Leaves the materials of other programs' files alone."""
+    """Called by Blender's importer for each new material. Ignores the materials of other programs' files."""
 
     def __init__(self):
         self.images = {}
@@ -25,7 +25,8 @@ class glTF2ImportUserExtension:
             _undo_exposure(material, notes)
 
     def _light_by_image(self, material, lightmap, notes, importer):
-        """Emits reflectance / pi times the irradiance that the unclamped image has, beside what emits by itself."""
+        """Emits reflectance / pi times the irradiance of the unclamped image, in addition to the material's emission.
+        """
         nodes, links = material.node_tree.nodes, material.node_tree.links
         surface = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
         coordinates, texture = nodes.new("ShaderNodeUVMap"), nodes.new("ShaderNodeTexImage")
@@ -47,14 +48,14 @@ class glTF2ImportUserExtension:
             to.default_value = surface.inputs[name].default_value
             for link in surface.inputs[name].links:
                 links.new(link.from_socket, to)
-        # What emits was brightened by the exposure, as the 8-bit images are.
+        # The exposure brightened the emission, like the 8-bit images.
         emitted.inputs["Strength"].default_value *= 2 ** -notes["exposure"]
         links.new(reflected.outputs[0], both.inputs[0])
         links.new(emitted.outputs[0], both.inputs[1])
         _output(nodes, links, both)
 
     def _image(self, index, notes, importer):
-        """The unclamped image of a texture, packed into the blend file."""
+        """Returns the unclamped image of a texture, packed into the blend file."""
         name = importer.data.images[importer.data.textures[index].source].name
         if name not in self.images:
             file = next(file for file in notes["lightmap"]["unclamped"] if Path(file).stem == name)
@@ -65,7 +66,8 @@ class glTF2ImportUserExtension:
 
 
 def _undo_exposure(material, notes):
-    """Of vertex colours: the importer shows them, times the texture if there is one, as they are in the file."""
+    """Undoes the exposure of vertex colours, which the importer shows as in the file, times the texture if there is
+    one."""
     nodes = material.node_tree.nodes
     emission = next(node for node in nodes if node.type == "EMISSION")
     emission.inputs["Strength"].default_value = 2 ** -notes["exposure"]
@@ -73,7 +75,7 @@ def _undo_exposure(material, notes):
 
 
 def _output(nodes, links, shader):
-    """Shows it on front sides alone: both sides of a face are in the file, each with its own light, at the same place."""
+    """Shows front sides only: the file has both sides of a face at the same place, each with its own light."""
     side, through, shown = (nodes.new(f"ShaderNode{kind}") for kind in ("NewGeometry", "BsdfTransparent", "MixShader"))
     links.new(side.outputs["Backfacing"], shown.inputs["Fac"])
     links.new(shader.outputs[0], shown.inputs[1])

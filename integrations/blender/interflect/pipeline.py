@@ -7,17 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 PERCENT = re.compile(rb"^\s*(\d+)%")
-WARNING = re.compile(rb"^warning: (.*(?:\n  .*)*)", re.MULTILINE)  # indented lines go on with it
+WARNING = re.compile(rb"^warning: (.*(?:\n  .*)*)", re.MULTILINE)  # indented lines belong to it
 KEPT_LINES = 20  # of the command's last output, in error messages
 
 
 class BakeError(Exception):
-    """The command failed; the message is what it said."""
+    """The command failed; the message is its output."""
 
 
 @dataclass
 class Stage:
-    name: str  # as shown beside the progress
+    name: str  # shown beside the progress
     command: list[str]
 
 
@@ -25,11 +25,11 @@ class Stage:
 class Settings:
     command: str = "interflect"
     rays: int = 20_000_000
-    views: list[str] = field(default_factory=list)  # cameras that steer the solver; none: everywhere alike
+    views: list[str] = field(default_factory=list)  # cameras that steer the solver; empty: equal importance everywhere
     kind: str = "LIGHTMAP"  # or "VERTEX"
     texels_per_metre: float = 16
     gather: bool = False  # texels by final gathering, slower and cleaner
-    options: list[str] = field(default_factory=list)  # more of `interflect solve`
+    options: list[str] = field(default_factory=list)  # further options of `interflect solve`
 
 
 def stages(scene: Path, solution: Path, lit: Path, settings: Settings) -> list[Stage]:
@@ -48,7 +48,7 @@ def stages(scene: Path, solution: Path, lit: Path, settings: Settings) -> list[S
 
 
 class Bake:
-    """The stages one after the other, in a thread of its own, so that a user interface can look at it now and then."""
+    """Runs the stages in sequence in a separate thread, whose state a user interface can poll."""
 
     def __init__(self, stages: list[Stage]):
         self.stage, self.fraction = stages[0].name, 0.0
@@ -56,7 +56,7 @@ class Bake:
         self.error: BakeError | None = None
         self.is_cancelled = False
         self._process: subprocess.Popen | None = None
-        self._lock = threading.Lock()  # of the two members above
+        self._lock = threading.Lock()  # guards the two members above
         self._thread = threading.Thread(target=self._run, args=(stages,), daemon=True)
         self._thread.start()
 

@@ -1,5 +1,5 @@
-"""Renders the light of a world on diffuse surfaces as an image of longitudes and latitudes. North (y) is in its middle.
-A script for `blender --background --python`, with the arguments: WORLD.blend NAME FRAME PICTURE.exr"""
+"""Renders the light of a world on diffuse surfaces as a latitude-longitude image with north (y) in its middle. A script
+for `blender --background --python`, with the arguments: WORLD.blend NAME FRAME PICTURE.exr"""
 
 import math
 import sys
@@ -15,7 +15,7 @@ with bpy.data.libraries.load(file) as (_, loaded):
     loaded.worlds = [name]
 world = loaded.worlds[0]
 
-SEEN_BY_DIFFUSE = {"Is Diffuse Ray": 1, "Is Reflection Ray": 1, "Ray Depth": 1, "Diffuse Depth": 1}  # else 0
+SEEN_BY_DIFFUSE = {"Is Diffuse Ray": 1, "Is Reflection Ray": 1, "Ray Depth": 1, "Diffuse Depth": 1}  # others: 0
 
 
 def trees(tree):

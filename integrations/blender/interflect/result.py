@@ -1,6 +1,6 @@
 """The result of a bake in Blender's file: its data, and the hidden objects that it represents.
 
-Custom properties mark both. They survive renaming, deletion by hand, undo and saving."""
+Custom properties mark both. They survive renaming, manual deletion, undo and saving."""
 
 from contextlib import contextmanager
 
@@ -15,7 +15,7 @@ KINDS = ("collections", "objects", "meshes", "cameras", "lights", "materials", "
 
 @contextmanager
 def marking():
-    """Marks the data made meanwhile as a result."""
+    """Marks the data created in the `with` block as a result."""
     before = {kind: set(getattr(bpy.data, kind)) for kind in KINDS}
     try:
         yield
@@ -34,12 +34,11 @@ def collections(scene) -> list:
 
 
 def warnings(scene) -> list[str]:
-    """Of the bake that the result is from."""
     return [warning for collection in collections(scene) for warning in collection.get(WARNINGS, "").splitlines()]
 
 
 def hide(scene, names) -> None:
-    """Hides the objects of these names from pictures and from all view layers."""
+    """Hides the objects with these names from pictures and from all view layers."""
     names, members = set(names), [(layer, set(layer.objects)) for layer in scene.view_layers]
     for original in [each for each in scene.objects if each.name in names]:
         layers = [layer for layer, objects in members if original in objects]

@@ -9,8 +9,8 @@ from .result import HIDDEN, is_result
 
 @contextmanager
 def only_rendered(scene):
-    """Shows exactly the rendered objects, in pictures for the exporter and in the viewport for their modifiers. The objects
-    below a result replace it. Yields the objects; restores everything afterwards."""
+    """Shows exactly the rendered objects: in pictures for the exporter, in the viewport for their modifiers. The
+    objects below a result replace it. Yields the objects; restores everything afterwards."""
     layer = bpy.context.view_layer
     rendered, parts = {}, []
     _collect(layer.layer_collection, rendered, parts)

@@ -1,4 +1,4 @@
-"""The world's light, as the image that `interflect solve --environment` takes."""
+"""The world's light, as an image for `interflect solve --environment`."""
 
 import math
 from pathlib import Path
@@ -9,7 +9,7 @@ RENDER_WORLD = Path(__file__).with_name("render_world.py")
 
 
 def plain_radiance(world):
-    """Radiance of a world of one colour, [r, g, b]. None if it varies."""
+    """Returns the radiance of a world of one colour, [r, g, b]. None if it varies."""
     if world is None:
         return [0.0, 0.0, 0.0]
     if not world.use_nodes:
@@ -25,7 +25,7 @@ def plain_radiance(world):
 
 
 def write_plain(path: Path, radiance) -> None:
-    """Writes an image of one colour as Radiance has them (.hdr). Negative channels become 0."""
+    """Writes an image of one colour in Radiance's format (.hdr). Negative channels become 0."""
     width, height = 8, 4
     exponent = math.frexp(max(radiance))[1]
     texel = bytes([*(max(0, min(255, round(256 * math.ldexp(c, -exponent)))) for c in radiance), exponent + 128])
@@ -34,8 +34,8 @@ def write_plain(path: Path, radiance) -> None:
 
 
 def rendering(scene, folder: Path, picture: Path) -> list[str]:
-    """Command that renders the world of a scene into an image of longitudes and latitudes, in a second Blender: here it would
-    replace the user's last render."""
+    """Returns a command that renders the world of a scene into a latitude-longitude image. It runs a second Blender, to
+    keep the user's last render."""
     file = folder / "world.blend"
     bpy.data.libraries.write(str(file), {scene.world}, path_remap="ABSOLUTE")
     script = ["--python-exit-code", "1", "--python", str(RENDER_WORLD)]

@@ -1,4 +1,4 @@
-// The whole way through the library, as someone outside uses it: a scene, a ray, a solution, a file, a picture.
+// Uses the installed library from scene to picture: a scene, a ray, a solution, a file, a picture.
 
 #include <interflect/interflect.h>
 
@@ -15,7 +15,7 @@ void expect(bool holds, const char* what) {
     std::exit(1);
 }
 
-// A closed cube of 1 m, seen from inside, that shines and reflects alike everywhere.
+// A closed cube of 1 m, seen from inside, with uniform emission and reflection.
 interflect::Scene glowing_cube(float exitance, float reflectance) {
     interflect::Scene scene;
     scene.materials = {{"glow", interflect::Rgb(reflectance), interflect::Rgb(exitance)}};
@@ -28,7 +28,7 @@ interflect::Scene glowing_cube(float exitance, float reflectance) {
     return scene;
 }
 
-// Dims one of two groups of sources while a run goes on, saves it and opens it again.
+// Dims one of two groups of sources during a run, then saves the run and opens it again.
 void dim_a_lamp() {
     interflect::Scene scene = glowing_cube(2, 0.5f);
     scene.luminaires = {{"lamp", 0, interflect::PointLight{{0.5f, 0.5f, 0.6f}, interflect::Rgb(1)}}};
