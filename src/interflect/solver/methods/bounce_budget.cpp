@@ -7,17 +7,18 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Random walks take the place of bounces when the next bounce would get fewer rays.
+/// Random walks replace the remaining bounces if the next bounce would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// Or when the remaining bounces would trace less than this share of the pass: every bounce takes time for every
-/// element.
+/// They also replace bounces that would trace less than this share of the pass, because each bounce takes time for
+/// every element.
 constexpr double least_share_left = 0.05;
-/// Fewer walks would make the total power of small passes noisy. The rays beyond the plan are not counted.
+/// Minimum number of random walks; fewer would make the total power of small passes noisy. The rays beyond the plan are
+/// not counted.
 constexpr std::int64_t fewest_walks = 32;
-/// Before a pass has told: the sum over all bounces of what is left to shoot, relative to the first.
+/// Unshot power, summed over all bounces, relative to the first; used until a pass has measured it.
 constexpr double assumed_bounces = 2;
-/// What is left to shoot is expected to fall by such factors from one bounce to the next: before it is known; where it
-/// has just grown, as it may while light spreads towards the view; and at most.
+/// Expected ratio of the unshot power of successive bounces: for the first bounce; after an increase, which may occur
+/// while light spreads towards the view; and the upper limit.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace

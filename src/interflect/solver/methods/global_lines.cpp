@@ -22,14 +22,14 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Lines of one task, whose crossings are found one after the other, all lines at a time.
+/// Lines per task; a task finds the next crossing of all its lines at a time.
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// How many times a patch may receive from a line, on average over all lines, before its sums overflow. It is crossed
-/// once; more looks back through it where it is one-sided, and to it through panes.
+/// Deposits per line, on average over all lines, at which the sums of a patch overflow. A line crosses a patch once;
+/// more deposits occur through the backs of one-sided faces and through panes.
 constexpr double lines_headroom = 0x1p8;
 
-/// A sphere that holds the scene.
+/// Sphere that contains the scene.
 struct LineDomain {
     V3f centre;
     float radius;
@@ -40,35 +40,35 @@ struct LineDomain {
         centre = box.center();
         float square = 0;
         for (const V3f& v : scene.vertices) square = std::max(square, (v - centre).length2());
-        constexpr float margin = 1.0001f;  // over what rounding takes away
+        constexpr float margin = 1.0001f;  // for rounding
         radius = margin * std::sqrt(square);
     }
-    /// Area of the disk that the lines of one direction cross [m^2].
+    /// Returns the area of the disk crossed by the lines of one direction [m^2].
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
 };
 
-/// A patch that faces a line, and what it sees when it looks back along it; none where that is nothing.
+/// Patch that faces a line, and the patch that it sees in the opposite direction, or `none`.
 struct LineSegment {
     std::uint32_t front, back;
-    bool is_mutual;  ///< What is seen sees it too. Not through the back of a one-sided face.
+    bool is_mutual;  ///< Whether `back` also sees `front`: not through the back of a one-sided face.
 };
 
-/// The lines of one task that may still cross something; reused by its thread.
+/// Lines of one task that may still cross a patch. Each thread reuses its bundle.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, looking_back;
-    /// Of each line, how much farther than the patch that it crossed last something may be and still coincide with it
-    /// [m]; infinite before the first.
+    /// Per line: tolerance for a patch to coincide with the last crossed one, along the line [m]; infinite before the
+    /// first crossing.
     std::vector<float> slack;
-    std::vector<std::uint32_t> crossed;  ///< The last patch that each line hit.
+    std::vector<std::uint32_t> crossed;  ///< Last patch that each line crossed.
     std::vector<Hit> hits, seen;
     std::vector<LineSegment> segments;
-    std::vector<Panes::HitBehind> behind;  ///< Seen through panes; by index of the segment.
+    std::vector<Panes::HitBehind> behind;  ///< Hits through panes, by index of the segment.
 };
 
-/// Uniform lines: the direction is uniform on the sphere, the line crosses the disk through the centre uniformly.
+/// Generates uniform lines: directions are uniform on the sphere, crossings are uniform on the disk through the centre.
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
@@ -86,10 +86,10 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
 }
 
 /// Finds the next patch that faces each line, and the first patch in the opposite direction with the patches behind
-/// panes. Moves each line behind its patch. Drops lines that meet no patch. Also drops a line that meets the same patch
-/// again, which rounding may cause: a line crosses a flat patch once.
+/// panes. Moves each line behind its patch. Drops lines that hit no patch. Also drops a line that hits the same patch
+/// again, which only rounding can cause: a line crosses a flat patch once.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
-    constexpr float offsets_apart = 4;  // at most, what coincides; as RayCaster::ray_offset()
+    constexpr float offsets_apart = 4;  // maximum distance of coincident patches, see RayCaster::ray_offset()
     bundle.segments.clear();
     bundle.looking_back.clear();
     bundle.hits.resize(bundle.lines.size());
@@ -99,7 +99,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         if (patch == none || patch == bundle.crossed[i]) continue;
         const V3f direction = bundle.lines[i].direction;
         const PatchGeometry& geometry = forest.geometry(patch);
-        // On the patch, as where rays start elsewhere: what the hit is off by may be more than the ray offset.
+        // Projects the hit onto the patch, like other ray origins: its error may exceed the ray offset.
         const V3f x = geometry.point(geometry.parameters_of(bundle.lines[i].origin + distance * direction));
         const V3f offset = ray_caster.ray_offset(patch) * geometry.normal();
         const std::size_t kept = bundle.segments.size();
@@ -121,10 +121,10 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
     }
 }
 
-/// What the lines of a step brought, as integers, so that the order of arrival does not matter.
+/// Contributions of the lines of a step, as integers: their sums do not depend on the order of deposits.
 class LineSums {
   public:
-    /// @param quantum  Power per unit of radiosity that a line carries along a segment, either way [m^2].
+    /// @param quantum Power per unit of radiosity that a line carries along a segment, in each direction [m^2].
     LineSums(const ElementForest& forest, const Radiosity& light, double quantum, std::int64_t lines)
         : quantum_(quantum), power_(0), square_(0) {
         double brightest = 0;
@@ -149,8 +149,8 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// Carries light on through the panes of a segment. Lines of the opposite direction carry the opposite light, since
-    /// a pane may have one side only.
+    /// Transmits light through the panes of a segment, in one direction only. Lines of the opposite direction carry the
+    /// opposite light, because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -166,16 +166,16 @@ class LineSums {
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
             if (channel_sum(radiosity_[i]) > 0)
-                r.escaped_rays += escaped_rays_[i];  // rays of dark walls, seen from outside, do not count
+                r.escaped_rays += escaped_rays_[i];  // excludes rays of dark walls into the open
         }
         return r;
     }
-    /// How often light left each patch along a line.
+    /// Returns the number of segments along which each patch sent light.
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
     /// @param to      A patch, or none if the light escapes.
-    /// @param quanta  Factor for each channel: 2 if the lines of the opposite direction do not carry the same light.
+    /// @param quanta Factor per channel: 2 if the lines of the opposite direction do not carry the same light.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& quanta) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(quanta) * quantum_;
         if (to == none) {
@@ -195,17 +195,16 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes whose bounces are carried by global lines (Sbert 1993, 1997): lines of uniform density through a sphere
-/// around the scene, whatever shines. A line crosses each patch with a probability in proportion to its area
-/// (Cauchy and Crofton), at an angle that is cosine-distributed there, and every pair of patches that see each other
-/// along it exchange light both ways. So a line's segments stand for all of the scene at once, but few of them meet
-/// what is small: where the light comes from small emitters the noise is large.
-/// Panes transmit light along the lines.
+/// Passes whose bounces are transported by global lines (Sbert 1993, 1997): uniform lines through a sphere around the
+/// scene, independent of the light sources. A line crosses a patch with a probability proportional to its area (Cauchy
+/// and Crofton), at a cosine-distributed angle. Every two patches that see each other along it exchange light in both
+/// directions. Few lines cross small emitters, so the noise of their light is large. Panes transmit light along the
+/// lines.
 ///
-/// N lines through a sphere of radius R: with B_a 4 pi R^2 / (2 N) along each segment, an expected A_a F_ab B_a goes
-/// from a to b. A line costs 1 + 2 h rays, of which h = sum A / (4 pi R^2) is the expected number of patches that face
-/// it; a step takes as many lines as its rays allow by that mean. Constant on patches: no refinement. Cost: O(N h
-/// log(patches)) time.
+/// N lines cross a sphere of radius R. With B_a 4 pi R^2 / (2 N) along each segment, the expected power from a to b is
+/// A_a F_ab B_a. A line costs 1 + 2 h rays, where h = sum A / (4 pi R^2) is the expected number of patches that face
+/// it. The number of lines of a step follows from its rays by this mean. Constant on patches: no refinement. Cost: O(N
+/// h log(patches)) time.
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
@@ -225,7 +224,7 @@ class GlobalLines final : public Passes {
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
-        // Lines of their own for each bounce: the product of bounces is unbiased where they are independent.
+        // Each bounce has its own lines: the product of bounces is unbiased only if they are independent.
         const std::uint64_t key = mix(mix(state.options.seed, line_purpose), steps_);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};
@@ -233,7 +232,7 @@ class GlobalLines final : public Passes {
             LineBundle& bundle = bundles.local();
             bundle.lines.resize(end - begin);
             make_lines(domain_, state.options.experimental.points, key, begin, bundle);
-            // A line crosses each of the flat patches at most once.
+            // A line crosses each flat patch at most once.
             for (std::uint32_t i = 0; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
                 if (is_cut_short || state.stop.is_due()) {
                     is_cut_short = true;
@@ -260,8 +259,8 @@ class GlobalLines final : public Passes {
     static constexpr std::uint64_t line_purpose = 0x6c696e6573;
     const LineDomain domain_;
     const Panes panes_;
-    double area_ = 0;          // of the patches that lines can meet [m^2]
-    std::uint64_t steps_ = 0;  // bounces that had lines of their own
+    double area_ = 0;          // area of the patches that lines can hit [m^2]
+    std::uint64_t steps_ = 0;  // number of traced bounces; each has its own lines
 };
 
 }  // namespace

@@ -16,23 +16,21 @@
 
 namespace interflect::inline detail {
 
-/// A link whose error bound exceeds the threshold, and which of its elements is to be subdivided.
+/// Link whose error bound exceeds the threshold, and the element to subdivide.
 struct RefinementCandidate {
     std::size_t link;
     std::uint32_t divided;
-    double factor;  // over the threshold
+    double factor;  // error bound / threshold
 };
 
 namespace {
 
-/// Light has settled enough to refine by, and for good, when a sweep changes no more than this share of it.
+/// Relative change of light in a sweep at which the links are refined, and at which the run ends.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
-/// Where all lines of sight were blocked, the error bound is this share of what the link would carry unoccluded: of
-/// as many as were tried, the next may be free.
+/// Error bound of a link with 16 blocked lines of sight, relative to its unoccluded exchange: a 17th line may be free.
 constexpr double bound_if_blocked = 1.0 / 16;
-/// Most rays for the four links that replace one.
+/// Maximum number of rays for the four links that replace one.
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
-/// Of one task.
 constexpr std::size_t pairs_per_task = 256, patches_per_task = 8;
 
 struct Sphere {
@@ -49,14 +47,14 @@ Sphere sphere_around(const Scene& scene, const Patch& patch) {
     return sphere;
 }
 
-/// The most that what lies in two spheres exchanges [m^2].
+/// Returns an upper bound of the exchange between surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
     const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// What every element receives, per unit of area, of what leaves each of the elements that it is linked to.
-/// @param area_of  Link::area or Link::mean_area.
+/// Returns the light or importance that each element receives over its links, per unit of area.
+/// @param area_of Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
                       T (Link::*area_of)() const) {
@@ -73,7 +71,7 @@ std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, 
     return received;
 }
 
-/// B of every element; what is not finite is set to 0, so that it is not gathered, and counted.
+/// Returns the radiosity of every element. Non-finite values are counted and set to 0, so they are not gathered.
 std::vector<Rgb> present_radiosity(SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     std::vector<Rgb> b;
@@ -86,7 +84,7 @@ std::vector<Rgb> present_radiosity(SolverState& state) {
     return b;
 }
 
-/// Sum over the elements of area times |new - old|, relative to that of area times new.
+/// Sum over the elements of area times |new - old|, relative to the sum of area times new.
 class RelativeChange {
   public:
     void add(double area, double before, double now) {
@@ -128,7 +126,7 @@ void LinkedElements::find_patches_to_link() {
     for (const Patch& patch : state_.scene.patches) spheres.push_back(sphere_around(state_.scene, patch));
     for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) surface += forest_.area(i);
     const auto emits = [&](std::uint32_t i) { return channel_sum(state_.materials.exitance(i)) > 0; };
-    // A reflector as bright as the average sends no more than the threshold over so small an exchange.
+    // The exchange is so small that a reflector of average brightness sends at most the threshold over it.
     const auto is_weak = [&](std::uint32_t i, std::uint32_t j) {
         return !emits(i) && !emits(j) &&
                largest_exchange(spheres[i], spheres[j], forest_.area(i), forest_.area(j)) <
@@ -152,7 +150,7 @@ void LinkedElements::find_patches_to_link() {
         candidates_.insert(candidates_.end(), some.begin(), some.end());
 }
 
-/// Turns candidates into links, but for those between elements that exchange nothing even unoccluded.
+/// Turns the candidates into links. Drops pairs whose unoccluded exchange is 0.
 void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
@@ -180,7 +178,7 @@ RgbD LinkedElements::gather_light() {
         irradiance = Rgb(received[e]);
         const RgbD power = received[e] * static_cast<double>(forest_.area(e));
         if (e < forest_.patch_count()) escaped -= power;
-        // Transmitted light arrives at the pane and behind it.
+        // A pane and the surface behind it both receive the transmitted light.
         if (forest_.is_leaf(e)) escaped += RgbD(state_.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
     light_change_ = change.value();
@@ -205,7 +203,7 @@ void LinkedElements::gather_importance() {
 
 namespace {
 
-/// The largest and the smallest radiosity of each element's parts.
+/// Smallest and largest radiosity of the parts of each element.
 struct RadiosityRange {
     std::vector<Rgb> least, most;
 
@@ -220,7 +218,8 @@ struct RadiosityRange {
     }
 };
 
-/// Bound on the error of what a link carries [m^2]: the variation of the form factor; all of it where partly occluded.
+/// Returns a bound on the error of a link's exchange [m^2]: the variation of the form factor, and the whole unoccluded
+/// exchange to the degree that the lines of sight differ.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;
@@ -229,10 +228,10 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// What the links carry wrongly at most, after Smits et al. 1992: what element i receives from j is taken as the same
-/// all over i, where the form factor varies by its spread over i times B_j, and by its spread over j times the
-/// difference between the brightest and the darkest parts of j. Each counts against the element that, divided, amends
-/// it; both directions are looked at, the worse counts.
+/// Returns the links whose error bound exceeds the threshold, after Smits et al. 1992. A link from j to i treats the
+/// received light as constant over i. Over i, it varies by the spread of the form factor times B_j. Over j, it varies
+/// by the spread times the difference between the brightest and the darkest part of j. Each bound belongs to the
+/// element whose subdivision reduces it. The larger bound of the two directions counts.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
     const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);
@@ -265,7 +264,7 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
     return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.unseen());
 }
 
-/// Where not all can be divided, keeps the worst.
+/// Keeps the candidates that the limit of rays allows, those with the largest bounds first.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, state_.options.limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
@@ -277,7 +276,7 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
     candidates.resize(affordable);
 }
 
-/// The elements that came last are their parents' parts: until the next sweep they are as bright.
+/// Initialises new elements (index >= first) from their parents, until the next sweep.
 void LinkedElements::describe_new_elements(std::uint32_t first) {
     Solution& solution = state_.solution;
     inherit(forest_, first, solution.irradiance);

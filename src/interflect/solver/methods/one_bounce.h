@@ -5,8 +5,8 @@
 
 namespace interflect::inline detail {
 
-/// Iterations of one bounce each, as in the paper: what is received of the present estimate is merged with the running
-/// mean.
+/// Iterations of one bounce each, as in the paper. The light received from the current estimate is merged with the
+/// running mean (Eq. 6).
 class OneBounce : public IterationMethod {
   public:
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
@@ -14,7 +14,7 @@ class OneBounce : public IterationMethod {
 
   private:
     bool importance_step_is_done_ = false;
-    std::uint32_t elements_before_ = 0;  // this iteration
+    std::uint32_t elements_before_ = 0;  // at the start of the iteration
 };
 
 }  // namespace interflect::inline detail

@@ -17,12 +17,13 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// With fewer rays in all there is none to spare before the first iteration.
+/// Minimum number of rays of a run that prepares before its first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
-/// Importance is followed at first until this share of it is left.
+/// The initial transport of importance ends when at most this share is unshot.
 constexpr double negligible_importance = 0.005;
 
-/// What a bounce has to shoot, as a number that rays are shared by.
+/// Returns the unshot power of a bounce relative to the first one, partly weighted by importance. Rays are distributed
+/// over the bounces by this number.
 double unshot_weight(const PowerStep& bounce, const Pass& pass, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, pass.first_power);
@@ -54,7 +55,7 @@ std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + s
 
 }  // namespace
 
-/// Follows importance bounce by bounce, with so many rays at first; what it finds at each is added to the estimate.
+/// Transports importance from the views bounce by bounce with about `rays` rays. Adds each bounce to the estimate.
 void Passes::start_importance(SolverState& state, std::int64_t rays) {
     Solution& solution = state.solution;
     ImportanceStart& start = importance_;
@@ -67,7 +68,7 @@ void Passes::start_importance(SolverState& state, std::int64_t rays) {
         start.unshot = run_step(state, std::move(step)).importance;
         start.budget = budget;
         state.importance_rays += traced;
-        start.left = 0;  // of the reflected importance; at first all of V is to be shot
+        start.left = 0;  // sum of the importance received in this bounce; initially all of V
         for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
             solution.indirect_importance[e] += start.unshot[e];
             if (e < state.forest->patch_count())
@@ -89,10 +90,11 @@ void Passes::begin_pass(SolverState& state, std::int64_t rays, bool oracle_refin
     state.quanta = {};
 }
 
-/// Traces one bounce of a pass of so many rays and adds it to what the pass has. @return Its rays; 0: the pass is over.
+/// Traces one bounce of a pass of `rays` rays and adds it to the pass.
+/// @return Number of traced rays; 0: the pass has ended.
 std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool oracle_refines) {
     Solution& solution = state.solution;
-    // Importance is carried on by the first bounce alone, which has the most rays.
+    // Only the first bounce, which has the most rays, transports importance.
     const bool carries_importance = pass_.emits && importance_use(solution) == ImportanceUse::full &&
                                     !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, pass_.unshot, pass_.emits);
@@ -116,7 +118,7 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     step.spent = &pass_.unshot;
     const std::uint32_t before = state.forest->size();
     Received received;
-    // Random walks end a pass whatever traces its bounces.
+    // Random walks complete a pass in every method.
     if (traced > 0) received = step.to_the_end ? run_step(state, std::move(step)) : trace(state, std::move(step));
 
     pass_.budget = budget;
@@ -144,13 +146,13 @@ std::int64_t Passes::trace_bounce(SolverState& state, std::int64_t rays, bool or
     return traced;
 }
 
-/// @param oracle_refines  Whether pairs are refined by Eq. 14, 15 on the way; else the mesh stays as it is.
+/// @param oracle_refines Whether Eq. 14 and 15 refine the mesh during the pass; otherwise the mesh is fixed.
 FreshEstimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     if (!pass_.is_under_way) begin_pass(state, rays, oracle_refines);
     while (!pass_.budget.is_last() && trace_bounce(state, rays, oracle_refines) > 0) {
     }
     FreshEstimate fresh = std::move(pass_.fresh);
-    if (fresh.irradiance.empty())  // nothing could be shot
+    if (fresh.irradiance.empty())  // no power to shoot
         fresh = {std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f),
                  GroupLight(state.groups.size(), std::vector<Rgb>(state.forest->size(), Rgb(0)))};
     bounces_ = pass_.budget.bounces();
@@ -175,7 +177,7 @@ void Passes::prepare(SolverState& state) {
         stage_ = pass == Stage::coarse_pass ? Stage::refining_pass : Stage::report;
     }
     if (stage_ == Stage::report) {
-        state.importance_rays += aim_outdoor_light(state);  // importance is known better now
+        state.importance_rays += aim_outdoor_light(state);  // importance is more accurate now
         state.schedule.began_with(0, rays_so_far(state));
         if (rays_so_far(state) > 0) report(state, 0, escaped_power_);
         stage_ = Stage::done;
@@ -191,7 +193,7 @@ void Passes::make_first_estimate(SolverState& state) {
 
 namespace {
 
-/// How rays that carry power are shared among the elements now; those of luminaires are left out.
+/// Returns the probabilities with which power rays start on the elements; excludes luminaires.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     const ImportanceWeights weights =
@@ -201,7 +203,7 @@ std::vector<float> power_sampling(const SolverState& state) {
     return q;
 }
 
-/// Importance of every patch, all together.
+/// Returns the total importance of every patch.
 std::vector<float> patch_importance(const SolverState& state) {
     const Importance psi = importance_of(state.solution);
     std::vector<float> values;
@@ -209,9 +211,9 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// By how much the variance of what some views see changes per ray when rays start otherwise: a source's light comes in
-/// quanta in proportion to its power over its share of the rays, and counts by what it matters to the views.
-/// @param importance  Of patches.
+/// Returns the ratio of the new to the old variance per ray, as seen by some views. The payloads of a source are
+/// proportional to its power over its share of the rays, and are weighted by its importance.
+/// @param importance Of patches.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {
     constexpr double largest = 256;
@@ -245,8 +247,8 @@ void Passes::retarget(SolverState& state) {
     if (!finds_importance_) old_q_.clear(), old_importance_.clear();
 }
 
-/// Finds importance for the views. What was averaged before counts as many of the new rays as would cause its noise:
-/// few where the new views make rays gather, many where they leave.
+/// Computes importance for the new views. The history becomes the number of new rays with the same noise: it shrinks
+/// where the new views increase the ray density and grows elsewhere.
 void Passes::adapt_to_views(SolverState& state) {
     if (!importance_.is_under_way) rays_before_adaptation_ = rays_so_far(state);
     start_importance(state, state.schedule.start_rays());
@@ -257,7 +259,7 @@ void Passes::adapt_to_views(SolverState& state) {
     const std::vector<float> old_psi = std::exchange(old_importance_, {});
     if (old_q.empty()) return;
     for (auto e = static_cast<std::uint32_t>(old_q.size()); e < state.forest->size(); ++e)
-        old_q.push_back(old_q[state.forest->parent(e)] / 4);  // elements that were made since
+        old_q.push_back(old_q[state.forest->parent(e)] / 4);  // elements created since then
     const std::vector<float> new_q = power_sampling(state), new_psi = patch_importance(state);
     const float here = noise_ratio(state, new_psi, old_q, new_q), there = noise_ratio(state, old_psi, old_q, new_q);
     std::vector<float> ratio(state.forest->patch_count());

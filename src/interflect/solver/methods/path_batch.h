@@ -21,14 +21,14 @@
 
 namespace interflect::inline detail {
 
-/// Paths of one task of a PathBatch, which traces one bounce of all of them at a time: enough that Embree gets long
+/// Paths per task of a PathBatch, which traces one bounce of all of them at a time. Large enough for long Embree
 /// batches.
 inline constexpr std::size_t paths_per_task = 4096;
-/// Most particles that one becomes at a hit; where importance rises more, the next hits split it further.
+/// Maximum number of copies of a particle at a hit. If importance rises further, later hits split it again.
 inline constexpr double most_copies = 8;
-/// How much more than expected a batch may bring before its sums overflow; leaves 2^45 units for the expected.
+/// Ratio of received to expected power at which the sums of a batch overflow; leaves 2^45 units for the expected power.
 inline constexpr double sum_headroom = 0x1p16;
-/// Keys of the random numbers, so that no two purposes share one.
+/// Keys of the random numbers, one per purpose.
 enum class WalkPurpose : std::uint64_t {
     light = 1,
     importance,
@@ -44,31 +44,31 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// What particles carry; every vector has an entry for every patch, `emitted` and `density` then for every part of the
-/// luminaires where these emit. Importance (Eq. 7) is importance emitted by the
-/// cameras: a patch first emits the reflected part of what it received from them, the same in all channels.
+/// Payload of the particles. Every vector has an entry per patch; `emitted` and `density` continue with the parts of
+/// emitting luminaires. Importance (Eq. 7) is emitted by the cameras. A patch first emits the reflected part of the
+/// importance that it received from them, equal in all channels.
 struct Payload {
-    std::vector<Rgb> emitted;      ///< What leaves a source at first: W [lm or W], or rho V.
+    std::vector<Rgb> emitted;      ///< Initial power of a source: W [lm or W], or rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
     std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
     bool is_grey = false;          ///< Importance: panes transmit the mean of their channels.
 };
 
-/// What a batch of paths brought, as integers, so that the order of arrival does not matter.
+/// Contributions of a batch of paths, as integers: their sums do not depend on the order of deposits.
 struct PathSums {
     FixedPoint unit;
-    std::vector<FixedPoint::Value> received;  ///< By every patch.
+    std::vector<FixedPoint::Value> received;  ///< Power received by each patch.
     FixedPoint::Value escaped{};
-    std::vector<std::int64_t> started;  ///< Rays that left every patch.
+    std::vector<std::int64_t> started;  ///< Number of rays that left each patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    /// @param hits  Most hits of a ray: more than one where it passes through panes.
+    /// @param hits Maximum number of hits of a ray: more than one if it passes through panes.
     PathSums(const Payload& payload, double hits)
         : unit(sum_headroom * hits * most_expected(payload)),
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// No channel of all that arrives has a greater expected value: what is emitted over 1 - rho.
+    /// Returns an upper bound of the expected received power in any channel: emitted power over 1 - rho.
     static double most_expected(const Payload& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
@@ -77,13 +77,13 @@ struct PathSums {
     }
 };
 
-/// Power that is about to leave a patch, or a part of the luminaires.
+/// Power about to leave a patch or a part of the luminaires.
 struct Particle {
     std::uint32_t patch;
     Rgb power;
 };
 
-/// The particles of one task that are under way; reused by its thread.
+/// Active particles of one task. Each thread reuses its wavefront.
 struct Wavefront {
     std::vector<Particle> particles, reflected;
     std::vector<Ray> rays;
@@ -99,10 +99,11 @@ struct Wavefront {
     }
 };
 
-/// One batch of paths, each followed from its emission to its end.
+/// Batch of paths, each traced from its emission to its end.
 class PathBatch {
   public:
-    /// @param paths  > 0.  @param key  Of the batch's random numbers.
+    /// @param paths > 0.
+    /// @param key Key of the batch's random numbers.
     PathBatch(const SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key)
         : forest_(*state.forest),
           emission_(state.emission),
@@ -148,8 +149,8 @@ class PathBatch {
         }
     }
 
-    /// Starts the paths begin ... end - 1. Patch s sends W_s / (N q_s) with each of its own, which are consecutive
-    /// points of its sequence.
+    /// Starts the paths begin ... end - 1. A path of source s carries W_s / (N q_s). The paths of a source are
+    /// consecutive points of its sequence.
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();
@@ -170,8 +171,8 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
-    /// Adds the power of every particle to its first patch, and the filtered power to the patches behind panes. Lists
-    /// the power that each of these patches reflects.
+    /// Deposits the power of every particle at the first patch that it hits, and the filtered power at the patches
+    /// behind panes. Lists the power that each of these patches reflects.
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
         std::int64_t escaped_rays = 0;
@@ -201,10 +202,9 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Russian roulette and splitting: what is reflected goes on as a random number of copies whose mean is n, each
-    /// with 1/n of the power. With n = power * density / quantum each copy carries what an emitter there would send.
-    /// The copies of a whole wavefront are drawn systematically with one random number, so that their total hardly
-    /// varies.
+    /// Applies Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each
+    /// with 1/n of the power. With n = power * density / quantum, a copy carries the power of a particle emitted there.
+    /// One random number samples the copies of a wavefront systematically, so their total hardly varies.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;
@@ -218,7 +218,7 @@ class PathBatch {
         }
     }
 
-    /// Makes the rays on which the particles leave.
+    /// Generates the rays of the reflected particles.
     void reflect(std::uint64_t key, Wavefront& w) const {
         w.make_room_for_rays();
         for (std::size_t i = 0; i < w.particles.size(); ++i)
@@ -237,8 +237,8 @@ class PathBatch {
     std::int64_t paths_;
     std::uint64_t key_;
     PathSums sums_;
-    double quantum_ = 0;    // sum of the channels of a particle where the density is 1
-    std::vector<float> q_;  // share of the paths that starts on each patch
+    double quantum_ = 0;    // power of a particle where the density is 1, summed over the channels
+    std::vector<float> q_;  // share of the paths that start on each source
     std::optional<RayAllocation> allocation_;
 };
 

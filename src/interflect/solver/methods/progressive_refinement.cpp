@@ -16,21 +16,21 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A step shoots all patches of which at least this share of the largest is unshot.
+/// A step shoots all patches whose sampling weight is at least this share of the largest.
 constexpr float share_of_largest = 0.5f;
-/// When less than this share of what was unshot at first is left, or a step would get fewer rays, the last step shoots
-/// the rest.
+/// The last step shoots the rest: if less than this share of the initial amount is unshot, or if a step would get fewer
+/// rays.
 constexpr double negligible_rest = 0.01;
 constexpr std::int64_t fewest_rays_of_step = 16;
-/// Before a series of steps has told: all that is shot, over what is unshot at first.
+/// Sum of the weights of all steps, until a series of steps has measured it.
 constexpr double assumed_shots = 2;
 
-/// How the rays of one series of steps, from darkness to where little is left to shoot, are shared. Weights are
-/// relative to what is unshot at first.
+/// Distribution of rays over one series of steps, from darkness until little is left to shoot. Weights are relative to
+/// the initially unshot amount.
 struct ShotBudget {
     std::int64_t left = 0;            ///< Rays.
     double expected = assumed_shots;  ///< Sum of the weights of all steps.
-    double shot = 0;                  ///< Of those so far.
+    double shot = 0;                  ///< Sum of the weights so far.
     bool is_under_way = false;
 
     void begin(std::int64_t rays) {
@@ -42,12 +42,12 @@ struct ShotBudget {
         if (shot > 0) expected = shot;
         is_under_way = false;
     }
-    /// @param weight, unshot  Of what is chosen for a step, and of all that is unshot. The reflected light that is yet
-    /// to come is expected in proportion to the latter.
+    /// @param weight Amount selected for a step.
+    /// @param unshot Total unshot amount. Later reflections are expected in proportion to it.
     std::int64_t share(double weight, double unshot) const {
         return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
     }
-    /// The number of random walks that take the rays left: a walk shoots its power `expected` times.
+    /// Returns the number of random walks for the remaining rays: a walk shoots its power `expected` times.
     std::int64_t walks() const {
         return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
     }
@@ -63,7 +63,7 @@ struct ShotBudget {
     }
 };
 
-/// Leaves the sampling weights of what is to be shot in a step, those of at least share_of_largest.
+/// Keeps the sampling weights that are at least share_of_largest times the largest; sets the others to 0.
 void choose_largest(std::vector<float>& q) {
     const float least = share_of_largest * *std::max_element(q.begin(), q.end());
     for (float& weight : q)
@@ -76,7 +76,7 @@ double sum_of(const std::vector<float>& q) {
     return sum;
 }
 
-/// What was chosen has been shot; what arrived is unshot.
+/// Removes the amounts that were shot and adds the received ones.
 template <class T>
 void replace_shot(std::vector<T>& unshot, const std::vector<float>& chosen, const std::vector<T>& arrived) {
     for (std::size_t i = 0; i < unshot.size(); ++i) unshot[i] = (chosen[i] > 0 ? T(0) : unshot[i]) + arrived[i];
@@ -84,21 +84,21 @@ void replace_shot(std::vector<T>& unshot, const std::vector<float>& chosen, cons
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
-/// Progressive refinement (Cohen et al. 1988) with rays in place of form factors: patches hold what they have received
-/// and not shot yet, and each step shoots those with the most of it, by power, or with a view by power times importance
-/// as ihsrr shares its rays (Bekaert and Willems 1994, 1995). Emitters are the first step. Importance is found by the
-/// same steps in dual order: those with the most unshot importance shoot it, at first what the views show.
+/// Progressive refinement (Cohen et al. 1988) with rays in place of form factors. Patches hold unshot received power,
+/// and each step shoots the patches with the most. With a view, power is weighted by importance, as in ihsrr (Bekaert
+/// and Willems 1994, 1995). The first step shoots the emitters. Importance is computed by the same steps in dual order:
+/// the patches with the most unshot importance shoot it, initially the view importance.
 ///
-/// An iteration is a solution from darkness to where little is left to shoot; its error falls with the mean of many,
-/// Eq. 6. Random walks complete the last step of power: if rays are few, they carry most of the power.
+/// An iteration is a solution from darkness until little is left to shoot. The mean of many iterations, Eq. 6, reduces
+/// the error. Random walks complete the last step of power. If there are few rays, they carry most of the power.
 ///
-/// A step is a batch of all patches of which at least half as much is unshot as of the first of them: order is kept to
-/// a factor of two, ties need no rule, and transport() traces long batches.
+/// A step is a batch of all patches with at least half of the largest unshot amount. Thus order is kept to a factor of
+/// two, ties need no rule, and transport() traces long batches.
 ///
-/// Constant on patches: no refinement. Same seed, same bits, for any number of threads.
+/// Constant on patches: no refinement. The same seed gives the same bits for any number of threads.
 class ProgressiveRefinement final : public IterationMethod {
   public:
-    /// Importance, so that the first rays of power know where it matters.
+    /// Computes importance, which guides the first power rays.
     void prepare(SolverState& state) override {
         shoot_importance(state,
                          std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
@@ -118,28 +118,28 @@ class ProgressiveRefinement final : public IterationMethod {
     void shoot_power(SolverState& state, IterationPlan plan);
 
     ShotBudget importance_budget_, power_budget_;
-    std::vector<float> unshot_importance_, fresh_importance_;  // the latter of all steps so far
+    std::vector<float> unshot_importance_, fresh_importance_;  // the latter summed over all steps so far
     double first_importance_ = 0;                              // unshot before the first step
-    std::int64_t importance_history_ = 0;                      // rays that the mean stands for
-    bool emits_ = true;                                        // the next step of power is the first
+    std::int64_t importance_history_ = 0;                      // number of rays in the mean
+    bool emits_ = true;                                        // whether the next step of power is the first
     std::vector<Rgb> unshot_;                                  // irradiance
-    FreshEstimate fresh_;                                      // of all steps so far
+    FreshEstimate fresh_;                                      // sum of all steps so far
     ImportanceWeights weights_;
     double first_power_ = 0, first_weighted_power_ = 0;  // see PowerStep; before the first step
-    std::int64_t power_rays_ = 0;                        // of the last series, or of that under way
-    RgbD escaped_{0, 0, 0};                              // power, likewise
-    std::int64_t for_importance_ = -1;                   // rays of this iteration; -1: it has not begun
-    std::int64_t rays_before_ = 0;                       // this iteration
+    std::int64_t power_rays_ = 0;                        // of the current or last series
+    RgbD escaped_{0, 0, 0};                              // power, of the same series
+    std::int64_t for_importance_ = -1;                   // rays of this iteration; -1: not begun
+    std::int64_t rays_before_ = 0;                       // at the start of the iteration
 };
 
-/// What importance lacks of its share alpha of the rays, where so many are planned in all.
+/// Returns the number of rays that importance lacks of its share alpha of `planned` rays in total.
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - importance_history_);
 }
 
-/// One step. @return Whether there is another.
+/// Performs one step. @return Whether another follows.
 bool ProgressiveRefinement::shoot_some_importance(SolverState& state) {
     const ElementForest& forest = *state.forest;
     double unshot = 0;
@@ -166,7 +166,7 @@ bool ProgressiveRefinement::shoot_some_importance(SolverState& state) {
     return !is_last;
 }
 
-/// Shoots importance from the views on, and merges what it finds with the mean.
+/// Transports importance from the views and merges the result with the mean.
 void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t rays) {
     if (rays <= 0) return;
     if (!importance_budget_.is_under_way) {
@@ -195,7 +195,7 @@ void ProgressiveRefinement::begin_power(SolverState& state, std::int64_t rays) {
     state.quanta = {};
 }
 
-/// One step. @return Whether there is another.
+/// Performs one step. @return Whether another follows.
 bool ProgressiveRefinement::shoot_some_power(SolverState& state) {
     const Radiosity light(state.materials, unshot_, emits_);
     auto [step, power, weighted_power, lost] =
@@ -211,7 +211,7 @@ bool ProgressiveRefinement::shoot_some_power(SolverState& state) {
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
-    // What matters little to the views is power too, and counts where it has got to when it is shot.
+    // Unweighted power: unimportant power may reach important patches when it is shot.
     const bool is_last = power < negligible_rest * first_power_ || power_budget_.is_last(weight, unshot);
     if (is_last) chosen = step.q, weight = unshot * power_budget_.expected;
     step.q = chosen;
@@ -256,7 +256,7 @@ RgbD ProgressiveRefinement::iterate(SolverState& state, IterationPlan& plan) {
     }
     if (power_budget_.is_under_way) shoot_power(state, plan);
     for_importance_ = -1;
-    // Importance that nothing reflects, or light that all is absorbed of, leaves rays unused.
+    // Rays stay unused if no surface reflects the importance or the light.
     plan.rays = std::max<std::int64_t>(1, state.power_rays + state.importance_rays - rays_before_);
     return state.escaped_power;
 }

@@ -13,17 +13,17 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Paths of the pilot that finds how long paths are, and the least rays of the batch for each.
+/// Paths of the pilot, which measures the length of paths; minimum rays of the batch per pilot path.
 constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 
-/// What one batch brought.
+/// Result of one batch.
 struct BatchResult {
-    std::vector<Rgb> irradiance;  ///< Of every patch; of importance likewise per area.
+    std::vector<Rgb> irradiance;  ///< Per patch; importance is per area too.
     RgbD escaped{0, 0, 0};
     std::int64_t rays = 0;
 };
 
-/// Follows so many paths, and enters their rays.
+/// Traces this number of paths and updates the counts of rays.
 BatchResult follow_paths(SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key) {
     if (!state.may_begin_step()) throw Interrupted();
     PathBatch batch(state, payload, paths, key);
@@ -41,7 +41,7 @@ BatchResult follow_paths(SolverState& state, const Payload& payload, std::int64_
     return arrived;
 }
 
-/// What noise it has if all of it arrives in equal quanta, independently.
+/// Estimates the noise, assuming that the power arrives in equal, independent contributions.
 FreshEstimate independent_arrivals(const SolverState& state, const BatchResult& arrived) {
     const double power = luminance(integral(*state.forest, arrived.irradiance));
     FreshEstimate fresh{arrived.irradiance, {}, {}};
@@ -51,9 +51,9 @@ FreshEstimate independent_arrivals(const SolverState& state, const BatchResult& 
     return fresh;
 }
 
-/// Follows as many paths as take about this many rays.
+/// Traces enough paths for about this number of rays.
 BatchResult walk(SolverState& state, const Payload& payload, std::int64_t rays, PathSeries& series) {
-    if (series.pilot_rays == 0) {  // what the pilot finds is thrown away: a batch must not choose its own size
+    if (series.pilot_rays == 0) {  // the pilot's result is discarded: a batch must not choose its own size
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
         series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
         series.rays_per_path = static_cast<double>(series.pilot_rays) / static_cast<double>(paths);
@@ -67,8 +67,8 @@ BatchResult walk(SolverState& state, const Payload& payload, std::int64_t rays, 
     return arrived;
 }
 
-/// What should lead particles from where they are: Eq. 10 in place of Eq. 9 unless asked for, since what leaves a patch
-/// matters by where it arrives.
+/// Returns the importance that guides particles: that of Eq. 10, or on request of Eq. 9. The power that leaves a patch
+/// is important for its destination, hence Eq. 10.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -81,8 +81,8 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// beta + (1 - beta) psi, where psi is relative to its mean over the emitted power: then the share beta of the paths
-/// starts by power alone.
+/// Returns beta + (1 - beta) psi, with psi relative to its mean over the emitted power. Thus power alone starts the
+/// share beta of the paths.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -106,7 +106,7 @@ Payload light(const SolverState& state) {
     payload.density = particle_density(state.solution, payload.emitted);
     for (std::size_t i = 0; i < state.emission.part_count(); ++i) {
         payload.emitted.emplace_back(state.emission.power(i));
-        payload.density.push_back(1);  // the mean: what parts matter to the views is not known
+        payload.density.push_back(1);  // the mean: the importance of parts is unknown
     }
     return payload;
 }
@@ -134,7 +134,7 @@ void RandomWalks::prepare(SolverState& state) {
     state.schedule.began_with(0, state.importance_rays);
 }
 
-/// What importance lacks of its share alpha of the rays, where so many are planned in all.
+/// Returns the number of rays that importance lacks of its share alpha of `planned` rays in total.
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
@@ -155,7 +155,7 @@ void RandomWalks::walk_light(SolverState& state, std::int64_t rays, const Iterat
     if (rays <= 0) return;
     const BatchResult arrived = walk(state, light(state), rays, light_);
     state.power_rays += arrived.rays;
-    const bool tells_of_error = plan.rays >= state.schedule.start_rays();  // a remainder of the rays tells too little
+    const bool tells_of_error = plan.rays >= state.schedule.start_rays();  // a remainder of the rays is too small
     if (tells_of_error) estimate_noise(state, independent_arrivals(state, arrived), plan.rays);
     const double before = state.history[0], now = before + static_cast<double>(plan.rays);
     const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
@@ -193,7 +193,7 @@ RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
     walk_light(state, plan.rays - for_importance_, plan);
     importance_is_done_ = false;
     const std::int64_t traced = state.power_rays + state.importance_rays - rays_before_;
-    if (traced > 0) plan.rays = traced;  // else no view shows what reflects, and the plan is used up
+    if (traced > 0) plan.rays = traced;  // otherwise no visible surface reflects, and the plan is used up
     return escaped_;
 }
 

@@ -7,38 +7,38 @@
 
 namespace interflect::inline detail {
 
-/// Batches of paths of one kind: of light, or of importance.
+/// Batches of paths of one kind: light or importance.
 struct PathSeries {
-    std::uint64_t key;  ///< Of their random numbers.
+    std::uint64_t key;  ///< Key of their random numbers.
     std::uint64_t batches = 0;
-    std::int64_t pilot_rays = 0;  ///< Of the pilot of the first batch.
-    double rays_per_path = 0;     ///< Of the last batch, or of the pilot; 0: there was none.
+    std::int64_t pilot_rays = 0;  ///< Rays of the pilot of the first batch.
+    double rays_per_path = 0;     ///< Of the last batch or the pilot; 0: not measured.
 };
 
-/// Solves Eq. 1 of Prikryl et al. 2000 by random walks of particles (Pattanaik and Mudur 1992): a particle leaves an
-/// emitter, adds its power to what every patch that it hits receives, and goes on from there, uniformly on the patch,
-/// with the probability that the reflectance gives. Behind a pane the transmitted part of the power goes straight on.
-/// All channels travel together; survival keeps their sum.
+/// Random walks of particles that solve Eq. 1 of Prikryl et al. 2000 (Pattanaik and Mudur 1992). A particle leaves an
+/// emitter and deposits its power at every patch that it hits. It continues from a uniform point on the patch, with a
+/// probability given by the reflectance. Behind a pane, the transmitted power continues straight. A particle carries
+/// all channels; survival keeps their sum.
 ///
-/// With importance (Pattanaik and Mudur 1993, 1995) psi is found by random walks from the cameras, with the share alpha
-/// of the rays, and the particles are made proportional to power times psi: an emitter sends more of them, each with
-/// less; one that hits a patch is split where psi has risen, and dies sooner where it has fallen. A share beta of the
-/// paths starts by power alone. Unbiased for every psi while beta > 0.
+/// With importance (Pattanaik and Mudur 1993, 1995), random walks from the cameras estimate psi with the share alpha of
+/// the rays. The density of particles is then proportional to power times psi. An emitter with larger psi sends more
+/// particles, each with less power. A particle is split if psi rises at a hit, and more likely to end if it falls.
+/// Power alone starts the share beta of the paths. Unbiased for every psi while beta > 0.
 ///
-/// Paths are followed to their end, so the rays of a batch come out a per cent or so off the plan. A walk needs no
-/// incremental start. Same seed, same bits, for any number of threads. Cost: O(N log(patches)) time on all threads, 150
-/// bytes a patch.
+/// Paths are traced to their end, so the rays of a batch deviate by about a per cent from the plan. No incremental
+/// start is needed. The same seed gives the same bits for any number of threads. Cost: O(N log(patches)) time on all
+/// threads, 150 bytes per patch.
 class RandomWalks : public IterationMethod {
   public:
     explicit RandomWalks(const SolverState& state);
 
-    /// Begins with importance, so that light does not start before it is known where it matters.
+    /// Computes importance, which guides the first light paths.
     void prepare(SolverState& state) override;
 
-    /// Follows paths that take about plan.rays rays, and merges what they bring with the running mean (Eq. 6). A batch
-    /// counts by the rays planned for it, not by those traced: long paths bring more too, and such weights would add a
-    /// bias.
-    /// @return The power that leaves the scene, by all batches so far.
+    /// Traces paths for about plan.rays rays and merges the result with the running mean (Eq. 6). The weight of a batch
+    /// is its planned number of rays, not the traced number: long paths also deposit more, so such weights would cause
+    /// a bias.
+    /// @return Escaped power, averaged over all batches so far.
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
     void retarget(SolverState& state) override;
     void archive(StateArchive& archive) override;
@@ -50,7 +50,7 @@ class RandomWalks : public IterationMethod {
 
     PathSeries light_, importance_;
     RgbD escaped_{0, 0, 0};                // power, mean of all batches
-    std::int64_t importance_history_ = 0;  // rays planned for the batches that psi is the mean of
+    std::int64_t importance_history_ = 0;  // planned rays of the batches in the mean of psi
     bool importance_is_done_ = false;      // of this iteration
     std::int64_t for_importance_ = 0, rays_before_ = 0;
 };

@@ -32,12 +32,13 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Lets every source shoot what it lacks of its share of `all` rays. A leaf may have shot more than its share, by
-/// chance or before it was known well: others of its patch then shoot less, so that the patch's share is right.
-/// @param step  Its weights are the shares.
+/// Sets the weights of the step to the rays that each source lacks of its share of `all` rays. A leaf may have shot
+/// more than its share, by chance or because of a poor early estimate. Other leaves of its patch then shoot less, so
+/// the patch keeps its share.
+/// @param step Its weights are the shares on entry.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const {
     struct Balance {
-        double lacks = 0, lacking = 0;  // with and without what is beyond the shares of leaves
+        double lacks = 0, lacking = 0;  // missing rays, with and without the surplus of other leaves
     };
     std::vector<Balance> patches(forest.patch_count());
     const auto lacks = [&](std::uint32_t e) { return static_cast<double>(all) * step.q[e] - shot_[e]; };
@@ -68,7 +69,7 @@ RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
         power_step(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
     step.equal_quanta = true;
     step.groups = group_radiosity(state, state.solution.groups);
-    // These methods know no importance: the weights are the leaves' shares of all power.
+    // These methods have no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(state));
     keep_lacking_rays(forest, total_ + plan.rays, step);
     const std::int64_t rays = step.rays;

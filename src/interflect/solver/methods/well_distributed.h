@@ -10,19 +10,19 @@
 
 namespace interflect::inline detail {
 
-/// The rays of a run in which every ray is kept: all that were ever shot stand for the present estimate together, as a
-/// well-distributed ray set (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot
-/// n_i = N P_i / sum P rays, each of which carries the quantum sum P / N; when the estimate of P changes, or N grows,
-/// an iteration shoots what each leaf lacks, and old hits count on with the new quantum. A leaf that has shot more than
-/// its share shoots again when N has grown enough; until then N is a little larger than was planned, so that all rays
-/// together carry sum P. The colour of a ray stays what it was when it was shot.
+/// Iterations that keep every ray: all rays so far represent the current estimate as a well-distributed ray set
+/// (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot n_i = N P_i / sum P rays
+/// with the payload sum P / N. When the estimate of P or N changes, an iteration shoots the rays that each leaf lacks,
+/// and old hits count with the new payload. A leaf with more rays than its share shoots again when N has grown enough.
+/// Until then, N is slightly larger than planned, so all rays together carry sum P. A ray keeps the colour that it had
+/// when shot.
 class WellDistributedRays : public IterationMethod {
   public:
     explicit WellDistributedRays(const SolverState& state);
 
-    /// With complete passes: a first estimate by one of them.
+    /// Makes a first estimate by a complete pass, unless iterations are single bounces.
     void prepare(SolverState& state) override;
-    /// Grows N by plan.rays and takes the irradiance from all rays so far.
+    /// Increases N by plan.rays and computes the irradiance from all rays so far.
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override {
@@ -37,12 +37,12 @@ class WellDistributedRays : public IterationMethod {
   private:
     void keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const;
 
-    Passes passes_;                      // before the first iteration
-    std::vector<double> shot_;           // rays of each leaf
-    std::vector<double> shot_by_parts_;  // rays of each part of the luminaires
-    std::vector<Rgb> arrived_;           // quanta per area at each element, split to colours [1/m^2]
-    GroupLight arrived_groups_;          // of that, what each light group brought
-    RgbD escaped_{0, 0, 0};              // quanta that left the scene
+    Passes passes_;                      // used before the first iteration
+    std::vector<double> shot_;           // rays shot by each leaf
+    std::vector<double> shot_by_parts_;  // rays shot by each part of the luminaires
+    std::vector<Rgb> arrived_;           // received quanta per area of each element, per channel [1/m^2]
+    GroupLight arrived_groups_;          // shares of the light groups in arrived_
+    RgbD escaped_{0, 0, 0};              // quanta that escaped
     std::int64_t total_ = 0;             // N: rays of all leaves
 };
 
