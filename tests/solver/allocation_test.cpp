@@ -1,4 +1,4 @@
-// How rays are handed to leaves: systematically, in proportion to q (Eq. 3, Prikryl et al. 2000).
+// Systematic allocation of rays to leaves in proportion to q (Eq. 3, Prikryl et al. 2000).
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ std::vector<float> some_weights() {
     return q;
 }
 
-/// The first ray of every source, and the number of all.
+/// Returns the first ray of every source, then the total number of rays.
 std::vector<std::int64_t> allocate_rays(const std::vector<float>& q, std::int64_t rays, double offset) {
     const RayAllocation allocation(q, rays, offset);
     std::vector<std::int64_t> first(q.size() + 1, 0);
@@ -35,7 +35,7 @@ std::vector<std::int64_t> allocate_rays(const std::vector<float>& q, std::int64_
     return first;
 }
 
-/// The largest number below 1: no random offset is larger.
+/// Largest number below 1, the upper limit of random offsets.
 const double largest_offset = std::nextafter(1.0, 0.0);
 
 TEST(AllocateRays, GivesEachSourceItsShareRoundedUpOrDown) {

@@ -1,4 +1,4 @@
-// What rays bring to elements is added up in any order and by any number of threads to the same sums.
+// The sums of contributions do not depend on their order or the number of threads.
 
 #include "interflect/solver/arrivals.h"
 
@@ -21,7 +21,7 @@ TEST(Arrivals, GivesEachElementThePartsOfContributionsThatArriveThere) {
     buffer.add(0, a, true, true);
     buffer.add(0, b, true, false);
     buffer.add(2, b, false, true);
-    buffer.add(4, a, true, false);  // made since the step began
+    buffer.add(4, a, true, false);  // created during the step
     buffer.flush_all();
     EXPECT_EQ(arrivals.take(0), (Contribution{3, 30, 300, 12, 1000}));
     EXPECT_EQ(arrivals.take(1), (Contribution{0, 0, 0, 0, 0}));

@@ -1,6 +1,6 @@
-// How the error falls with the number of rays N, and whether the solver's own estimate of it can be trusted.
-// Seen to fail (scripts/mutation-test) when streams do not advance, and with every bias that dense_test.cpp names but
-// those that need openings or two-sided faces.
+// Decay of the error with the number of rays N, and accuracy of the solver's own error estimate. Seen to fail
+// (scripts/mutation-test) if streams do not advance, and with every bias listed in dense_test.cpp except those that
+// need openings or two-sided faces.
 
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@ using namespace testing_support;
 
 constexpr std::uint64_t runs = 8;
 
-/// Root mean square over the seeds, of the true error and of the solver's estimate.
+/// Root mean squares, over the seeds, of the true error and of the solver's estimate.
 struct Errors {
     double error = 0, estimate = 0;
-    double smallest_ratio = std::numeric_limits<double>::infinity();  // of estimate to error in one run
+    double smallest_ratio = std::numeric_limits<double>::infinity();  // estimate / error of one run
 };
 
 class Convergence : public testing::Test {

@@ -1,11 +1,11 @@
-// Eq. 1 (Prikryl et al. 2000) as a dense linear system, patch by patch and channel by channel: the solver's mean over
-// many seeds must be its solution. In an empty box the form factors are exact; in a furnished room they come from an
-// independent ray tracer, whose own noise enters the test.
+// Eq. 1 (Prikryl et al. 2000) as a dense linear system, per patch and channel. Its solution must be the solver's mean
+// over many seeds. In an empty box the form factors are exact. In a furnished room an independent ray tracer computes
+// them, and its noise enters the test.
 //
-// Seen to fail (scripts/mutation-test) when radiosity lacks rho, irradiance or power lacks the area, a quantum lacks q,
-// rays are allocated uniformly, 0.5% of the power is lost, directions lack the cosine or turn over 6 radians, origins
-// crowd near the centre, escaped rays land on a patch, backs of faces answer as their fronts, rays are not lifted off
-// their surface.
+// Seen to fail (scripts/mutation-test) if radiosity lacks rho, irradiance or power lacks the area, a payload lacks q,
+// rays are allocated uniformly, 0.5% of the power is lost, directions lack the cosine or cover an azimuth of only 6
+// radians, origins cluster near the centre, escaped rays hit a patch, backs of faces act as fronts, or rays start
+// without an offset from their surface.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Irradiance of every leaf and channel in solutions with different seeds, all on the same mesh.
+/// Irradiance of every leaf and channel in solutions with different seeds on one mesh.
 class Sample {
   public:
     template <class OptionsOfSeed>
@@ -32,7 +32,8 @@ class Sample {
     Sample(const Scene& scene, PointSet points)
         : Sample(scene, 32, [&](std::uint64_t seed) { return unbiased_options(points, seed); }) {}
 
-    /// p-value of the hypothesis that the expected values are `factor` times `irradiance`, itself known to `error`.
+    /// Returns the p-value of the hypothesis that the expected values are `factor` times `irradiance`, which has the
+    /// standard error `error`.
     double p_value(double factor, const std::vector<RgbD>& irradiance, const std::vector<RgbD>& error) const {
         std::vector<double> p_values;
         for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -41,7 +42,7 @@ class Sample {
         }
         return bonferroni(p_values);
     }
-    /// The same where `irradiance` is exact.
+    /// The same for an exact `irradiance`.
     double p_value(double factor, const std::vector<RgbD>& irradiance) const {
         return p_value(factor, irradiance, std::vector<RgbD>(irradiance.size(), RgbD(0, 0, 0)));
     }
@@ -107,8 +108,8 @@ TEST_P(DenseSolution, IsTheMeanInAnOpenBoxAndWhatEscapesIsCounted) {
     }
 }
 
-// Every method and variant, on a mesh that is divided once and stays: rays that carry different quanta, and receivers
-// that are found from the root. What the mesh is made of is found again as a scene, whose dense solution is exact.
+// Every method and variant on a mesh that is divided once and then fixed: payloads differ, and receivers are found from
+// the root. The leaves are converted to a scene, whose dense solution is exact.
 class DenseSolutionOfMethod : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(All, DenseSolutionOfMethod, testing::ValuesIn(stochastic_variants()),
                          [](const auto& test) { return test.param.name; });
@@ -120,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Extremes, DenseSolutionOfMethod, testing::ValuesIn(extr
 
 TEST_P(DenseSolutionOfMethod, IsTheMeanInAColourfulBox) {
     Scene scene = colourful_box();
-    scene.materials[3].reflectance = Rgb(0.02f);  // what is black receives as a whole, on whatever mesh
+    scene.materials[3].reflectance = Rgb(0.02f);  // a black element would receive as a whole on any mesh
     const Sample sample(scene, 20, [](std::uint64_t seed) { return on_a_fixed_mesh(GetParam(), seed); });
     const bool divided = GetParam().options.method.refines && !GetParam().options.experimental.defer_refinement;
     for (const Solution& s : sample.solutions()) ASSERT_EQ(s.forest->size(), divided ? 5u * 54 : 54u);

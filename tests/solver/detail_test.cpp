@@ -1,11 +1,11 @@
-// What is known of how siblings differ, on simulated estimates whose truth and noise are known: the noise that a model
-// finds, Stein's estimate of the error after shrinkage, means that are merged, and where elements are split.
-// Statistical tests have fixed seeds; correct code fails each with a chance of 0.001 (statistics.h).
+// Differences between siblings, on simulated estimates with known truth and noise: the noise found by the model,
+// Stein's estimate of the error after shrinkage, merged means, and splits. Statistical tests have fixed seeds; the
+// probability of a false alarm is 0.001 each (statistics.h).
 //
-// Seen to fail (scripts/mutation-test): noise that forgets how few rays the iteration has, one scale for all elements,
-// inner elements without the factor 3/4; risk without its last term, or checked by the mean itself instead of the next
-// iteration; differences merged with the tau of the patches; new elements that trust in full what they inherit; a split
-// criterion without noise, or without signal.
+// Seen to fail (scripts/mutation-test): noise that ignores the number of rays of the iteration, one scale for all
+// elements, inner elements without the factor 3/4; risk without its last term, or checked against the mean itself
+// instead of the next iteration; differences merged with the tau of the patches; new elements with the full history of
+// their parents; a split criterion without noise, or without signal.
 
 #include "interflect/solver/detail.h"
 
@@ -26,10 +26,9 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double sure = 4;  // standard deviations: a normal variable is farther off with a chance of 6e-5
+constexpr double sure = 4;  // standard deviations; a normal variable exceeds this with probability 6e-5
 
-/// A run that has not traced any ray yet, on a mesh whose patches, n x n on each wall of a cube, are divided `levels`
-/// times.
+/// Run without rays so far, on a mesh of n x n patches per wall of a cube, each divided `levels` times.
 struct Setting {
     Scene scene;
     RayCaster ray_caster;
@@ -56,9 +55,9 @@ struct Setting {
         state.streams.used.resize(state.forest->size(), 0);
     }
 
-    /// An iteration of so many rays. Siblings differ from their parent by the signal and by noise that has, before the
-    /// siblings' mean is taken off, factor[level] times `variance` / rays on a patch and four times as much from level
-    /// to level; the model is told the same without the factor.
+    /// Simulates an iteration. Siblings differ from their parent by the signal and by noise. Before the siblings' mean
+    /// is subtracted, the noise has the variance factor[level] * `variance` / rays on a patch, and four times as much
+    /// per level. The model receives the variance without the factor.
     template <class Signal>
     FreshEstimate iteration(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
         const ElementForest& forest = *state.forest;
@@ -93,16 +92,16 @@ struct Setting {
 constexpr auto no_signal = [](std::uint32_t, std::uint32_t) { return 0.0f; };
 
 TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
-    Setting s(10, 2);  // 600 patches, 2400 and 9600 elements below, which one ray in 2, 8 and 32 meets
+    Setting s(10, 2);  // 600 patches with 2400 and 9600 descendants; one ray in 2, 8 and 32 hits them
     const std::vector<float> factor{3, 1, 0.1f};
-    constexpr float variance = 3;  // of one ray, on a patch
+    constexpr float variance = 3;  // of one ray on a patch
     for (int k = 0; k < 12; ++k) {
         EXPECT_EQ(s.state.noise.is_known(), k > 1) << k;
         s.iterate(1e5f * static_cast<float>(1 + k), factor, variance, no_signal);
     }
     const std::array<std::uint32_t, 3> first{0, 600, 3000};
     for (std::size_t level = 0; level < 3; ++level) {
-        // Three of four siblings are independent; four iterations count, by the model's memory.
+        // Three of four siblings are independent. Four iterations count, by the decay of the model's history.
         const double expected = variance * std::pow(4.0, level) * factor[level] * (level == 0 ? 1 : 0.75);
         const double freedom = 4.0 * (level == 0 ? 600 : 0.75 * (level == 1 ? 2400 : 9600));
         const double found = s.state.noise.variance(*s.state.forest, s.state.solution.irradiance, first[level], 1);
@@ -113,7 +112,7 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
     }
 }
 
-/// What reduced differences are off by in the mean over all siblings, if they should be `signal`.
+/// Returns the mean squared error of the shrunk differences over all siblings, given the true `signal`.
 template <class Signal>
 double true_risk(const Setting& s, const Signal& signal) {
     const ElementForest& forest = *s.state.forest;
@@ -139,7 +138,7 @@ TEST(RiskCheck, MeasuresTheErrorOfReducedDifferences) {
         measured += s.state.risk_check.measured / risk / 8;
         expected += s.state.risk_check.expected / risk / 8;
     }
-    // 2400 products with a noise of four times the risk, in eight iterations of which each shares most with the next.
+    // 2400 products, with noise of four times the risk. Each of the eight iterations shares most data with the next.
     EXPECT_NEAR(measured, 1, 0.1);
     EXPECT_NEAR(expected, 1, 0.1);
 }
@@ -152,7 +151,7 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     options.views.push_back({{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}});
     interflect::SolverState state(scene, ray_caster, options);
     state.solution.view_importance.assign(state.forest->size(), 1.0f);
-    state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // of luminance 0.02, but what is reflected has 0.4
+    state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // luminance 0.02, but that of the reflected light is 0.4
     EXPECT_LE(error_weight(state, ErrorMeasure::pictures, 0), 0.8 * 0.8);
     EXPECT_GE(error_weight(state, ErrorMeasure::pictures, 0), 0.1 * 0.1);
 }
@@ -164,7 +163,7 @@ TEST_P(Risk, IsTheMeanSquareErrorThatIsLeft) {
     constexpr int trials = 200'000;
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
-    const double a = GetParam();  // of unit noise
+    const double a = GetParam();  // in units of the noise
     const std::array<double, 4> signal{a, a, -a, -a};
     std::vector<double> differences, without_last_term;
     double mean_error = 0, mean_unreduced = 0;
@@ -200,7 +199,7 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
         for (std::uint32_t e = 0; e < s.state.forest->size(); ++e)
             if (e >= s.state.forest->patch_count() && (e - s.state.forest->patch_count()) % 4 != 0)
                 s.state.history[e] =
-                    s.state.history[e - (e - s.state.forest->patch_count()) % 4];  // as siblings have it
+                    s.state.history[e - (e - s.state.forest->patch_count()) % 4];  // siblings share a history
         const FreshEstimate fresh = s.iteration(100, {1, 1, 1}, 2, no_signal);
         merge_details(s.state, s.state.solution.irradiance, fresh.irradiance, {100, false});
     }
@@ -210,8 +209,8 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
         EXPECT_NEAR(means[e].x, s.state.solution.irradiance[e].x, 1e-5f) << e;
 }
 
-/// Mean over trials of how young siblings are found, of which the first alone is lit, and each estimate of that is
-/// either nothing or much: two merges of 100 rays where patches already stand for 1000.
+/// Returns estimates for under-sampled siblings, one per trial. Only the first sibling is lit, and each of its samples
+/// is either 0 or large. Two merges of 100 rays follow; patches already have a history of 1000.
 template <class Merge>
 std::array<std::vector<double>, 4> young_siblings(const Merge& merge_one) {
     Setting s(1, 1);
@@ -219,7 +218,7 @@ std::array<std::vector<double>, 4> young_siblings(const Merge& merge_one) {
     std::bernoulli_distribution hit(0.2);
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<Rgb>& mean = s.state.solution.irradiance;
-        mean.assign(mean.size(), Rgb(1));  // inherited: four for the first of the siblings, none for the others
+        mean.assign(mean.size(), Rgb(1));  // inherited; the truth is 4 for the first sibling, 0 for the others
         for (std::uint32_t e = 0; e < mean.size(); ++e) s.state.history[e] = e < 6 ? 1000.0f : 0.0f;
         for (int k = 0; k < 2; ++k) {
             std::vector<Rgb> received(mean.size(), Rgb(0));
@@ -255,7 +254,7 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
         std::vector<Rgb>& mean = s.state.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));
         update_history(s.state, plan,
-                       patches);  // what the first iteration brought; elements below the patches were made in it
+                       patches);  // after one iteration, which created the elements below the patches
         std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
         for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
         pull(*s.state.forest, received);
@@ -267,7 +266,7 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
     }
 }
 
-/// The share of leaves that are split after iterations with unit noise and this signal.
+/// Returns the share of leaves split after iterations with unit noise and this signal.
 template <class Signal>
 double share_split(const Signal& signal) {
     Setting s(10, 1);
@@ -280,13 +279,14 @@ double share_split(const Signal& signal) {
 }
 
 TEST(VarianceRefinement, SeldomSplitsPureNoise) {
-    // Siblings are split where spread / noise > 1 + 0.12 * 4 / 0.3 = 2.6; three times that is chi-square with three
-    // degrees of freedom, above 7.8 with a chance of 0.0503. 600 groups of siblings: 4 standard deviations are 0.036.
+    // Siblings are split if spread / noise > 1 + 0.12 * 4 / 0.3 = 2.6. Three times this ratio is chi-square with three
+    // degrees of freedom, and exceeds 7.8 with probability 0.0503. 4 standard deviations of 600 groups of siblings are
+    // 0.036.
     const double share = share_split(no_signal);
     EXPECT_NEAR(share, 0.0503, 0.036);
 }
 
-// Seen to fail as infinite: the square of the noise is beyond single precision.
+// Seen to fail with an infinite result: the square of the noise exceeds single precision.
 TEST(Detail, RiskGoesWithTheUnit) {
     const auto risk = [](float unit) { return Detail{.spread = 3 * unit, .noise = 2 * unit}.risk() / unit; };
     EXPECT_FLOAT_EQ(risk(1e25f), risk(1));
@@ -294,7 +294,7 @@ TEST(Detail, RiskGoesWithTheUnit) {
 }
 
 TEST(VarianceRefinement, SplitsAtAShadowEdge) {
-    // Six iterations: noise of a difference has the variance 0.75 * 10 / 6000 = 0.035^2.
+    // After six iterations, the noise of a difference has the variance 0.75 * 10 / 6000 = 0.035^2.
     EXPECT_EQ(share_split([](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.3f : -0.3f; }), 1);
     const auto in_half = [](std::uint32_t first, std::uint32_t k) {
         return first / 4 % 2 == 0 ? 0.0f : k < 2 ? 0.3f : -0.3f;

@@ -1,8 +1,7 @@
-// How small elements may become: what a pixel of the nearest view shows of them; where no view looks, a length that
-// depends on the surfaces of the scene, not on the size of the world.
-// Seen to fail when the cosine is left out or a smaller one allowed, the first view takes the place of the nearest, the
-// scene's origin is ignored, the length for unseen elements grows with the world, what a pixel shows holds for unseen
-// elements too, or a given area holds for them alone.
+// Smallest size of elements: the area that a pixel of the nearest view shows. For unseen elements, a length that
+// depends on the surfaces of the scene, not on the size of the world. Seen to fail if the cosine is omitted or may be
+// smaller, the first view replaces the nearest, the scene's origin is ignored, the length for unseen elements grows
+// with the world, the pixel's area applies to unseen elements too, or a given area applies only to them.
 
 #include "interflect/solver/element_floor.h"
 
@@ -20,7 +19,7 @@ using namespace testing_support;
 
 Scene room() { return closed_box({4, 3, 2.5f}, 1, {{"wall", Rgb(0.5f), Rgb(1)}}); }
 
-/// A right angle over 100 pixels: at distance 1 a pixel is 0.02 wide.
+/// Returns a view with an angle of 90 degrees over 100 pixels: at distance 1, a pixel is 0.02 wide.
 WeightedView from(Imath::V3d eye) {
     WeightedView view;
     view.view = {"view", eye, eye + Imath::V3d(0, 1, 0), {0, 0, 1}, 90};

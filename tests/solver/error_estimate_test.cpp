@@ -1,6 +1,6 @@
-// What a run says of its own error, and the mesh that it makes for it: the same whether the lamp is in the picture or
-// not, since emission is no part of either. The truth is a long run's picture, shaded flat, of whose light that the
-// lamp emits straight to the eye is taken off.
+// Error estimate of a run, and the mesh made for it. Both must be the same with and without the lamp in the picture,
+// because they exclude emission. The true picture is that of a long run, shaded flat, without the light that the lamp
+// emits directly to the camera.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using namespace testing_support;
 
 constexpr int width = 160, height = 90;  // of pictures [pixels]
 
-/// A room of 4 x 3 x 2.5 m with a table, and a lamp on its far wall near the ceiling.
+/// Returns a room of 4 x 3 x 2.5 m with a table, and a lamp on its far wall near the ceiling.
 Scene room() {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
     const std::uint32_t wood = add_material(scene, Rgb(0.4f), Rgb(0)), lamp = add_material(scene, Rgb(0), Rgb(300));
@@ -31,7 +31,8 @@ Scene room() {
     return scene;
 }
 
-/// From beside the near wall towards the far one; the lamp is at the upper edge of the picture, or just above it.
+/// Returns a view from the near wall towards the far one. The lamp is at the upper edge of the picture or just above
+/// it.
 WeightedView view(bool shows_lamp) {
     WeightedView v;
     v.view = {"room", {0.2, 1.5, 1.4}, {4, 1.5, shows_lamp ? 1.13 : 0.93}, {0, 0, 1}, 34};
@@ -53,7 +54,7 @@ Image picture(const Scene& scene, const RayCaster& ray_caster, const Solution& s
     return render(scene, *s.forest, ray_caster, s.options.views[0].view, irradiance, options).image;
 }
 
-/// A method, and whether the lamp is in the picture.
+/// Parameters: the method, and whether the lamp is in the picture.
 class ErrorEstimate : public testing::TestWithParam<std::tuple<const char*, bool>> {
   protected:
     const Scene scene_ = room();
@@ -81,7 +82,7 @@ TEST_P(ErrorEstimate, IsTheErrorOfReflectedLightInThePicture) {
     EXPECT_EQ(emitted > 0, shows_lamp) << "the lamp is where the test says";
     for (const std::int64_t rays : {300'000, 1'200'000}) {
         double estimate = 0, error = 0;  // mean squares over the runs
-        std::string each;                // what the runs say of themselves
+        std::string each;                // the runs' own estimates
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
             const Solution s = solve(scene_, ray_caster_, options_for(method, shows_lamp, rays, seed));
             const IterationReport& last = s.iterations.back();
@@ -101,8 +102,8 @@ TEST_P(ErrorEstimate, IsTheErrorOfReflectedLightInThePicture) {
     }
 }
 
-/// Estimated over true error of a view of a scene, whose truth is a long run's picture: roots of mean squares over
-/// runs.
+/// Returns the ratio of estimated to true error of a view, both as root mean squares over runs. The true picture is
+/// that of a long run.
 double estimate_over_truth(const Scene& scene, const WeightedView& view, std::int64_t rays) {
     constexpr int runs = 4;
     const RayCaster ray_caster(scene);
@@ -157,8 +158,8 @@ TEST(MeshByVariance, IsTheSameWithTheLampInThePictureAndOutsideIt) {
     };
     const double with_lamp = leaves(true), without = leaves(false);
     EXPECT_GT(without, 4 * 500);
-    // The camera is turned, so the two pictures show other surfaces. When emission was in the threshold, the lamp
-    // halved the mesh; experiments/run acceptance measures larger scenes, where it changes less than 5%.
+    // The camera is turned, so the two pictures show different surfaces. When the threshold included emission, the lamp
+    // halved the mesh. experiments/run acceptance measures larger scenes, where the lamp changes less than 5%.
     EXPECT_NEAR(with_lamp / without, 1, 0.05);
 }
 
@@ -181,7 +182,7 @@ TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
         EXPECT_TRUE(std::isinf(report.error_estimate));
         EXPECT_TRUE(std::isinf(report.noise_estimate));
     }
-    // Light may run out before the rays do: it is absorbed.
+    // All light may be absorbed before the rays are used up.
     EXPECT_GT(s.iterations.back().rays, options.limits.rays / 10 * 9) << "no error is small enough where none is known";
     scene.materials[0].reflectance = Rgb(0.5f);
     const Solution grey = solve(scene, RayCaster(scene), options);

@@ -1,6 +1,6 @@
-// Options at the ends of their ranges do what theory says. That alpha, beta and the rest leave the mean where it is,
-// also at their ends, is tested in dense_test.cpp.
-// Seen to fail when elements below new elements trust in full what these inherit, when alpha or beta is ignored.
+// Options at the ends of their ranges. dense_test.cpp tests that alpha, beta and other options do not change the mean,
+// also at their ends. Seen to fail if descendants of new elements have the full history of these, or if alpha or beta
+// is ignored.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ SolveOptions options_of(const char* method) {
     return options;
 }
 
-/// The solution after iteration number `last`; 0 is what the run was prepared by.
+/// Returns the solution after iteration `last`; 0 is the preparation of the run.
 Solution solve_until(int last, const Scene& scene, const SolveOptions& options) {
     std::atomic<bool> stop{false};
     return solve(scene, RayCaster(scene), options,
@@ -55,7 +55,7 @@ TEST(AlphaZeroAndBetaOne, ShootEveryRayByPowerAlone) {
     by_importance.experimental.beta = 1;
     const std::vector<Rgb> driven = solve_all(scene, by_importance).irradiance;
     const std::vector<Rgb> plain = solve_all(scene, by_power).irradiance;
-    // The weights are the same up to rounding, which may move a ray to the next patch once in a while.
+    // The weights are equal up to rounding, which may occasionally move a ray to the next patch.
     for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(driven[i].x / plain[i].x, 1, 1e-3) << i;
 }
 
@@ -81,7 +81,8 @@ TEST(AlphaOne, LeavesLightAsThePreparationFoundIt) {
     EXPECT_NE(end.indirect_importance, start.indirect_importance);
 }
 
-/// Two iterations of single bounces, few enough rays that each misses some leaves. All is divided in the first.
+/// Traces two iterations of single bounces, with so few rays that each misses some leaves. The first divides all
+/// elements.
 Solution two_iterations_trusting(double inherited_weight) {
     SolveOptions options = options_of("hsrr");
     options.views.clear();
@@ -92,7 +93,7 @@ Solution two_iterations_trusting(double inherited_weight) {
     return solve_until(2, furnace(1), options);
 }
 
-// Seen to fail with siblings left as merged: what young elements forgot was missing, 0.2% here.
+// Seen to fail if merged siblings are not corrected: light lost with the history was missing, 0.2% here.
 TEST(InheritedTrust, NeitherLosesNorMakesLight) {
     ASSERT_EQ(two_iterations_trusting(1).forest->size(), 6u * (1 + 4 + 16 + 64));
     const double all = two_iterations_trusting(1).iterations.back().total_power.x;

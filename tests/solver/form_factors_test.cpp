@@ -1,8 +1,8 @@
-// Form factors from ray counts against Howell's closed forms; first the closed forms themselves against figures that
-// anyone can look up, and the independent ray tracer of tests/support against the closed forms.
+// Form factors from ray counts against Howell's closed forms. Before that, the closed forms against published figures,
+// and the independent ray tracer of tests/support against the closed forms.
 //
-// Seen to fail (scripts/mutation-test) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
-// directions lack the cosine, origins crowd near the centre, the seed is ignored.
+// Seen to fail (scripts/mutation-test) if a payload lacks q, rays are allocated uniformly, 0.5% of the power is lost,
+// directions lack the cosine, origins cluster near the centre, or the seed is ignored.
 
 #include "tests/support/form_factors.h"
 
@@ -32,7 +32,7 @@ const Pair parallel_squares{"parallel", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 
 const Pair perpendicular_squares{
     "perpendicular", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0.200044};
 
-/// Two squares, each lit on one side; `from` is patch 0.
+/// Returns a scene of two squares, each lit on one side; `from` is patch 0.
 Scene scene_of(const Pair& pair) {
     Scene scene;
     add_material(scene, {0, 0, 0}, {1, 1, 1});
@@ -50,14 +50,14 @@ TEST_P(TwoSquares, ClosedFormIsTheCataloguesFigure) {
     EXPECT_NEAR(form_factor(to, from), expected, 5e-7);
 }
 
-/// Power that patch 1 receives for one lumen from patch 0: an estimate of the form factor.
+/// Returns the power received by patch 1 per lumen from patch 0: an estimate of the form factor.
 double received_share(const Pair& pair, PointSet set, std::uint64_t seed, std::int64_t rays) {
     const Scene scene = scene_of(pair);
     ElementForest forest(scene, 2);
     SampleStreams streams(set, seed);
     const Materials materials(scene);
     const std::vector<Rgb> darkness(2, Rgb(0));
-    TransportStep step;  // the squares are of 1 m^2: power and radiosity are the same number
+    TransportStep step;  // the squares have 1 m^2, so power and radiosity are equal
     step.q = {1, 0};
     step.rays = rays;
     step.light = Radiosity(materials, darkness);
@@ -86,7 +86,7 @@ TEST_P(TwoSquares, SobolRaysAreUnbiasedAndFarLessNoisy) {
     EXPECT_GT(t_test(shares, exact), false_alarm);
     EXPECT_LT(t_test(shares, 1.01 * exact), false_alarm) << "would notice one percent";
     const double binomial_sigma = std::sqrt(exact * (1 - exact) / rays);
-    EXPECT_LT(std::sqrt(squares / 64), 0.3 * binomial_sigma);  // over many more seeds it is a quarter
+    EXPECT_LT(std::sqrt(squares / 64), 0.3 * binomial_sigma);  // a quarter over many more seeds
 }
 
 TEST(ExactFormFactors, SumToOneInAClosedBoxAndAreReciprocal) {

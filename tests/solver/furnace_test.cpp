@@ -1,11 +1,12 @@
-// The furnace: a closed box with exitance M and reflectance rho everywhere. Every patch's form factors sum to 1, so
-// H = B = M + rho H and B = M / (1 - rho). Before the limit the expected value follows Eq. 6, so each iteration has its
-// exact answer. The box is 1 x 2 x 3 m, 3 x 3 patches a wall: in a cube of 2 x 2 all 24 patches are congruent, and
-// wrong directions or starting points pass unseen.
+// The furnace: a closed box with exitance M and reflectance rho everywhere. The form factors of a patch sum to 1, so H
+// = B = M + rho H and B = M / (1 - rho). Before the limit, Eq. 6 gives the exact expected value of each iteration. The
+// box has 1 x 2 x 3 m and 3 x 3 patches per wall. In a cube with 2 x 2 patches per wall, all 24 patches are congruent,
+// and wrong directions or starting points would not be noticed.
 //
-// Seen to fail (scripts/mutation-test) when radiosity lacks rho, the incremental start has rho twice, irradiance or
-// power lacks the area, a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost, directions lack the
-// cosine or turn over 6 radians, origins crowd near the centre, tau is always 1/2, streams do not advance.
+// Seen to fail (scripts/mutation-test) if radiosity lacks rho, the incremental start has rho twice, irradiance or power
+// lacks the area, a payload lacks q, rays are allocated uniformly, 0.5% of the power is lost, directions lack the
+// cosine or cover an azimuth of only 6 radians, origins cluster near the centre, tau is always 1/2, or streams do not
+// advance.
 
 #include <gtest/gtest.h>
 
@@ -26,13 +27,13 @@ using namespace testing_support;
 
 constexpr double exitance = 2.0;  // M [W/m^2]
 constexpr int warm_up = 4, averaged = 4, runs = 64;
-constexpr double float_rounding = 1e-5;  // relative, of sums of floats
+constexpr double float_rounding = 1e-5;  // relative rounding error of sums of floats
 
 Scene furnace(double rho) {
     return closed_box({1, 2, 3}, 3, {{"wall", Rgb(static_cast<float>(rho)), Rgb(static_cast<float>(exitance))}});
 }
 
-/// H after all iterations, by Eq. 6 with the sum of the form factors, 1; tends to M / (1 - rho).
+/// Returns H after all iterations by Eq. 6, with form factors that sum to 1. Tends to M / (1 - rho).
 double expected_irradiance(double rho) {
     double irradiance = 0.0;
     for (int k = 1; k <= warm_up + averaged; ++k) {
@@ -52,7 +53,7 @@ SolveOptions paper_options(std::uint64_t seed) {
     return options;
 }
 
-/// Over all surfaces, from the roots of the forest.
+/// Returns the mean irradiance over all surfaces, from the roots of the forest.
 double area_weighted_mean(const Solution& solution) {
     const std::vector<Rgb> ones(solution.irradiance.size(), Rgb(1));
     return integral(*solution.forest, solution.irradiance).x / integral(*solution.forest, ones).x;
@@ -79,7 +80,8 @@ struct Runs {
         }
     }
 
-    /// p-value of the hypothesis that every patch's expected value is `expected`; patches of one run are correlated.
+    /// Returns the p-value of the hypothesis that every patch has the expected value `expected`. Patches of one run are
+    /// correlated.
     double p_value(double expected) const {
         std::vector<double> p_values;
         for (const std::vector<double>& patch : irradiance) p_values.push_back(t_test(patch, expected));
@@ -97,10 +99,10 @@ TEST_P(Furnace, IsUnbiasedAndWouldNoticeOnePercent) {
     EXPECT_GT(sample.p_value(expected), false_alarm);
     EXPECT_LT(sample.p_value(1.01 * expected), false_alarm);
 
-    // Every ray carries the same and none escapes: the area-weighted mean has no noise at all.
+    // All rays have the same payload and none escapes, so the area-weighted mean has no noise.
     for (const double mean : sample.area_mean) EXPECT_NEAR(mean / expected, 1, float_rounding);
-    // The plain mean over the patches has: it must lie within three standard errors.
-    constexpr double three_standard_errors = 0.0027;  // p-value of a normal variable three standard deviations off
+    // The plain mean over the patches has noise, and must lie within three standard errors.
+    constexpr double three_standard_errors = 0.0027;  // p-value of a normal variable at three standard deviations
     EXPECT_GT(t_test(sample.plain_mean, expected), three_standard_errors);
 }
 
@@ -120,7 +122,7 @@ TEST_P(Furnace, HasTheSameAnswerWithTheDefaultStart) {
 }
 
 TEST(Furnace, WeighsEveryIterationByItsRays) {
-    // Without noise in the mean, the power after each iteration tells its weight: tau = N_m / (N_1 + ... + N_m).
+    // The mean has no noise, so the power after each iteration shows its weight: tau = N_m / (N_1 + ... + N_m).
     constexpr double rho = 0.5;
     SolveOptions options{.method = find_method("srr")};
     options.experimental.one_bounce = true;
@@ -148,7 +150,7 @@ TEST(Furnace, RadiosityOfBlackWallsIsTheirExitanceExactly) {
         EXPECT_EQ(b, Rgb(static_cast<float>(exitance)));
 }
 
-// The furnace on a deep mesh that every method is forced to make: six walls, each an 8 x 8 grid of leaves at the end.
+// The furnace on a deep mesh imposed on every method: six walls, each with a final grid of 8 x 8 leaves.
 class DeepFurnace : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(All, DeepFurnace, testing::ValuesIn(stochastic_variants()),
                          [](const auto& test) { return test.param.name; });
@@ -194,8 +196,8 @@ TEST_P(DeepFurnace, HasTheSameIrradianceEverywhere) {
     for (const double mean : area_mean) EXPECT_NEAR(mean / expected, 1, float_rounding) << "all rays carry the same";
 }
 
-// A closed room of surface S with one luminaire of power Phi and reflectance rho everywhere: all that is emitted and
-// reflected arrives, S E = Phi + rho S E, whatever stands in the room.
+// A closed room of surface S and reflectance rho, with one luminaire of power Phi. All emitted and reflected light is
+// received, so S E = Phi + rho S E for any objects in the room.
 class ClosedRoom : public testing::TestWithParam<double> {};  // rho
 INSTANTIATE_TEST_SUITE_P(Rho, ClosedRoom, testing::Values(0.0, 0.5, 0.9, 0.95));
 

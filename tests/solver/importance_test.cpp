@@ -1,5 +1,5 @@
-// View importance: the adjoint of light. What a view measures is the same from either end, sum v P = sum psi W, and in
-// a closed grey box the importance of everything is what was received straight from the eye over 1 - rho.
+// View importance, the adjoint of light. Both transports measure the same for a view: sum v P = sum psi W. In a closed
+// grey box, total importance is the importance received directly from the camera over 1 - rho.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace testing_support;
 
-/// A grey box of 1 x 2 x 3 m, 3 x 3 patches a wall, each wall with a reflectance of its own; the ceiling shines.
+/// Returns a grey box of 1 x 2 x 3 m with 3 x 3 patches per wall. Each wall has its own reflectance; the ceiling emits.
 Scene grey_box() {
     std::vector<Material> walls;
     for (const float rho : {0.2f, 0.7f, 0.5f, 0.4f, 0.8f, 0.3f}) walls.push_back({"wall", Rgb(rho), Rgb(0)});
@@ -40,7 +40,7 @@ double sum_over_leaves(const Solution& s, const std::vector<float>& per_area) {
     return sum;
 }
 
-/// sum v P: what the view measures, from the light.
+/// Returns sum v P, the measurement of the view by light.
 double measured_by_light(const Scene& scene, const Solution& s) {
     const std::vector<Rgb> b = radiosity(Materials(scene), *s.forest, s.irradiance);
     double sum = 0;
@@ -49,7 +49,7 @@ double measured_by_light(const Scene& scene, const Solution& s) {
     return sum;
 }
 
-/// sum psi W: the same, from the importance of the emitters.
+/// Returns sum psi W, the same measurement by the importance of the emitters.
 double measured_by_importance(const Scene& scene, const Solution& s) {
     double sum = 0;
     for (const std::uint32_t e : s.forest->leaves())
@@ -67,12 +67,12 @@ TEST(Importance, OfTheViewSumsToOne) {
 }
 
 TEST(Importance, InAClosedGreyBoxIsViewImportanceOverOneMinusRho) {
-    // Equal quanta in a closed box: no statistics; what is left is the end of the start and the last merge.
+    // Payloads are equal in a closed box, so there is no statistical error. The end of the start and the last merge
+    // cause the deviation.
     for (const float rho : {0.0f, 0.5f, 0.8f}) {
         const Scene scene = closed_box({1, 2, 3}, 3, {{"grey", Rgb(rho), Rgb(1)}});
         SolveOptions options = options_for("isrr", 1);
-        options.experimental.separate_iterations =
-            true;  // then all rays of an importance step carry the same importance
+        options.experimental.separate_iterations = true;  // gives all rays of an importance step the same payload
         const Solution s = solve(scene, RayCaster(scene), options);
         const double indirect = rho / (1 - rho);
         EXPECT_NEAR(sum_over_leaves(s, s.indirect_importance), indirect, 0.02 * indirect) << "rho " << rho;
@@ -83,9 +83,8 @@ class Duality : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(All, Duality, testing::ValuesIn(variants_with_importance()),
                          [](const auto& test) { return test.param.name; });
 
-// On a fixed mesh, whose elements keep light and importance alike. Where the oracle lets light be received by whole
-// elements whose parts receive importance, or the other way round, or V moves from element to element as they are
-// divided, the two transports are adjoint only in the limit.
+// On a fixed mesh, where elements hold light and importance alike. The transports are adjoint only in the limit if the
+// oracle deposits light and importance at different levels, or if V moves between elements as they are divided.
 TEST_P(Duality, LightAndImportanceMeasureTheSame) {
     constexpr int runs = 16;
     const Scene scene = grey_box();

@@ -1,8 +1,8 @@
-// Light groups: what each brings, all with the same rays, and what dimming makes of it.
+// Light groups: the light of each, computed with the same rays, and the effect of dimming.
 //
-// Seen to fail when a group's share lacks what its light is reflected as, when a patch emits for every group, when
-// passes leave their unshot groups behind, when differences of siblings are not reduced alike, when set_exitance()
-// leaves the emission as it was.
+// Seen to fail if the share of a group lacks reflected light, if a patch emits for every group, if passes omit unshot
+// light of groups, if the differences of siblings of all groups are not scaled by the same factor, or if set_exitance()
+// does not change the emission.
 
 #include "interflect/light_groups.h"
 
@@ -26,8 +26,8 @@ using namespace testing_support;
 
 const View into_the_room = {"room", {0.3, 0.4, 1.9}, {3.5, 2.3, 0.4}, {0, 0, 1}, 65};
 
-/// A room of 4.3 x 2.7 x 2.4 m with a red lamp, a blue one, a point light and a sky that comes in where a quarter of
-/// the ceiling is missing.
+/// Returns a room of 4.3 x 2.7 x 2.4 m with a red lamp, a blue lamp, a point light, and a sky behind the missing
+/// quarter of the ceiling.
 Scene lit_room() {
     Scene scene = closed_box({4.3f, 2.7f, 2.4f}, 2, {{"wall", {0.7f, 0.6f, 0.5f}, Rgb(0)}});
     scene.patches.pop_back();
@@ -53,7 +53,7 @@ SolveOptions options_of(const std::string& method, std::int64_t rays = 400'000) 
     return options;
 }
 
-/// Root of the mean square difference over the root of the mean square, of patches.
+/// Returns the root mean square difference over the root mean square of b, of patches weighted by area.
 double difference(const ElementForest& forest, const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
     double error = 0, square = 0;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
@@ -116,7 +116,7 @@ TEST_P(LightGroupsOf, SumToTheUngroupedSolution) {
         }
 }
 
-/// Each group alone, solved with its own rays, by the same method: on a coarse mesh light is elsewhere.
+/// Compares with each group solved alone, with its own rays and the same method, because coarse meshes move light.
 TEST_P(LightGroupsOf, AreWhatEachBringsAlone) {
     const Scene scene = lit_room();
     const RayCaster ray_caster(scene);
@@ -137,7 +137,7 @@ TEST(Dimming, IsWhatSolvingTheDimmedSceneGives) {
     const RayCaster ray_caster(scene);
     Solution solution = solve(scene, ray_caster, options_of("hsrr", 2'000'000));
     dim(scene, solution, "other", 0);
-    dim(scene, solution, "blue", 0);  // what is dark stays a group
+    dim(scene, solution, "blue", 0);  // dark groups remain groups
     dim(scene, solution, "red", 0.25f);
     dim(scene, solution, "torch", 3);
     Scene together = scene;
@@ -152,7 +152,7 @@ TEST(Dimming, IsWhatSolvingTheDimmedSceneGives) {
 class ExitanceOf : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, ExitanceOf, testing::Values("hsrr", "ihsrr"));
 
-/// In the middle of a run groups are dimmed, one to nothing and back; the end is what the dimmed scene's solution is.
+/// Dims groups in the middle of a run, one to 0 and back. The result must be the solution of the dimmed scene.
 TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {
     SolveOptions options = options_of(GetParam(), 4'000'000);
     Solver solver(lit_room(), options);

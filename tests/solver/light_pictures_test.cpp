@@ -1,5 +1,5 @@
-// Light sources that are no surfaces on the hierarchy, in pictures: against path tracing, which shares nothing with the
-// solver but the rays.
+// Light sources that are not surfaces, on the hierarchy, in pictures. The reference is path tracing, which shares only
+// the ray casting with the solver.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ namespace {
 
 using namespace testing_support;
 
-/// A room with a window, a lamp in it, a spot light and the Sun: with the hierarchy and importance, mean and blocks of
-/// the picture agree with path tracing. Leaves keep their one value: what interpolation does is not asked here.
+/// A room with a window, a lamp, a spot light and the sun. With the hierarchy and importance, the mean and blocks of
+/// the picture agree with path tracing. Shading is flat, so interpolation is not tested.
 struct Hierarchy {
     const char* name;
     const char* method;
@@ -36,7 +36,7 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     scene.materials[0].reflectance = {0.6f, 0.5f, 0.4f};
     scene.luminaires.push_back({"lamp", 0, PointLight{{3.1f, 2.2f, 2.4f}, {60, 60, 40}}});
     scene.luminaires.push_back({"spot", 0, SpotLight{{4, 1, 2.9f}, {-1, 0.5f, -2}, {200, 100, 100}, 15, 35}});
-    auto web = std::make_shared<PhotometricWeb>();  // a box that hangs below the ceiling and shines up as well
+    auto web = std::make_shared<PhotometricWeb>();  // a box below the ceiling that also emits upwards
     web->polar = {0, 60, 90, 180}, web->azimuth = {0, 90, 180, 270, 360};
     web->intensities = {90, 80, 20, 40, 90, 40, 10, 40, 90, 80, 20, 40, 90, 40, 10, 40, 90, 80, 20, 40};
     web->opening.size = {1.2f, 0.2f, 0.1f};

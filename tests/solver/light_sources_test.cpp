@@ -1,10 +1,11 @@
-// Light sources that are no surfaces, against what is known exactly. Nothing else emits, and nothing that a patch
-// reflects can reach another one: the irradiance of every patch is what the source alone causes there.
+// Light sources that are not surfaces, against exact irradiances. Nothing else emits, and reflected light reaches no
+// patch, so the irradiance of a patch is caused by the source alone.
 //
-// Seen to fail when a part's power lacks the count of parts, a point light has 2 pi, a spot light's fall is linear, the
-// importance of parts drives rays but is left out of what they carry, a sky's rays go out uniformly, the cells of a sky
-// lack the cosine, a dome's integral lacks a factor of pi, rows of a map have equal weights, a directional light's area
-// is that of the box's top, measured light has C0 and C90 exchanged.
+// Seen to fail if the power of a part lacks the number of parts, a point light has 2 pi, the falloff of a spot light is
+// linear, the importance of parts affects the distribution of rays but not their payload, the rays of a sky are
+// uniform, the cells of a sky lack the cosine, the integral of a dome lacks a factor of pi, the rows of a map have
+// equal weights, the area of a directional light is that of the top of the box, or C0 and C90 of measured light are
+// exchanged.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ using namespace testing_support;
 constexpr int runs = 12;
 constexpr double pi = std::numbers::pi;
 
-/// A floor of 10 x 10 patches, 4 m x 3 m, at the height 0.5 m; grey, as importance needs it.
+/// Returns a floor of 10 x 10 patches, 4 m x 3 m, at a height of 0.5 m. It is grey, because importance is reflected.
 Scene open_floor(const Luminaire& luminaire) {
     Scene scene;
     scene.objects = {""};
@@ -39,7 +40,7 @@ Scene open_floor(const Luminaire& luminaire) {
     return scene;
 }
 
-/// The mean of a function over a patch that is a rectangle, by the midpoint rule.
+/// Returns the mean of a function over a rectangular patch by the midpoint rule.
 double mean_over(const Scene& scene, std::uint32_t patch, const std::function<double(const V3d&)>& value) {
     constexpr int points = 24;
     const Rectangle r = rectangles_of(scene)[patch];
@@ -64,7 +65,7 @@ SolveOptions options_of(const std::string& method, std::uint64_t seed) {
     return options;
 }
 
-/// One kind of source, and the irradiance that it causes at a point of the floor, which faces up.
+/// A kind of source, and its irradiance at a point of the floor, which faces up.
 struct Source {
     std::string name;
     Luminaire luminaire;
@@ -76,14 +77,15 @@ double towards_floor(const V3d& x, double intensity) {
     const V3d d = lamp - x;
     return intensity * d.z / std::pow(d.length(), 3);
 }
-/// 300 cd on the axis, straight down; full within 20 degrees, none from 50 on.
+/// Intensity of 300 cd on the axis, straight down: full within 20 degrees, 0 beyond 50 degrees.
 double spot_intensity(const V3d& x) {
     const double cosine = (lamp - x).normalized().z, inner = std::cos(20 * pi / 180), outer = std::cos(50 * pi / 180);
     const double fall = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
     return 300 * fall * fall;
 }
 
-/// 60 cd at the nadir; at the horizon none in the C0 plane, which holds y, and 180 cd in C90, linear in both angles.
+/// Returns intensities of 60 cd at the nadir. At the horizon they are 0 in the C0 plane, which contains y, and 180 cd
+/// in C90. They are linear in both angles.
 std::shared_ptr<const PhotometricWeb> tent_web() {
     auto web = std::make_shared<PhotometricWeb>();
     web->polar = {0, 90}, web->azimuth = {0, 90, 180, 270, 360};
@@ -97,8 +99,8 @@ double tent_intensity(const V3d& x) {
     return 60 * (1 - share) + 180 * to_c90 * share;
 }
 
-/// Its upper half, rows of 45 degrees: a horizontal surface gets pi / 3 L (cos^2 - cos^2 of the row's edges) of a
-/// texel.
+/// Upper half of a map, with rows of 45 degrees. The irradiance of a horizontal surface by a texel is pi / 3 L (cos^2 -
+/// cos^2), at the edges of the row.
 EnvironmentMap six_texels_above_horizon() {
     std::vector<Rgb> texels;
     for (const int radiance : {10, 0, 40, 25, 90, 5, 7, 7, 7, 30, 60, 0})
@@ -158,7 +160,7 @@ TEST_P(LightSources, LightAnOpenFloor) {
     for (std::uint32_t i = 0; i < irradiance.size(); ++i) {
         const double expected = mean_over(scene, i, source.irradiance);
         expected_sum += expected;
-        if (expected < 1e-2) continue;  // hardly a ray arrives: not normal
+        if (expected < 1e-2) continue;  // too few rays for a normal distribution
         p_values.push_back(t_test(irradiance[i], expected));
         for (std::size_t run = 0; run < runs; ++run) sums[run] += irradiance[i][run];
     }
@@ -172,9 +174,9 @@ INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), [](c
     return name;
 });
 
-/// A lamp close to one large face, which begins as a single element. Its rays go to all sides of it, and from each
-/// the oracle must see how near the lamp is: what it accepts is spread over the whole element. Seen to fail when the
-/// lamp is taken to face each ray.
+/// A lamp close to one large face, which is initially a single element. Rays leave it in all directions, and the oracle
+/// must know the distance of the lamp for each: the power of an accepted ray is spread over the whole element. Seen to
+/// fail if the lamp is assumed to face each ray.
 TEST(PointLightNearALargeFace, IsReceivedWhereItFalls) {
     Scene scene;
     scene.objects = {""};
@@ -203,9 +205,9 @@ TEST(PointLightNearALargeFace, IsReceivedWhereItFalls) {
     EXPECT_LT(std::sqrt(squares), 0.1);
 }
 
-/// However fine the mesh, the rays that are kept give each source its share: with far more elements than the room
-/// needs, what the sky brings to the outsides, which nothing else lights, is exact. Seen to fail when leaves that shot
-/// too much are not made up for by others of their patch.
+/// Rays that are kept give each source its share on any mesh. The mesh is much finer than necessary, and the irradiance
+/// of the outer sides, which only the sky lights, is exact. Seen to fail if other leaves of a patch do not compensate
+/// for leaves with too many rays.
 TEST(WellDistributedRaysOnAFineMesh, GiveTheSkyItsShare) {
     Scene scene = room_with_window(Rgb(1000));
     scene.materials[0].reflectance = Rgb(0.5f);
@@ -254,7 +256,7 @@ TEST(UniformSkyLight, ThroughAWindowFollowsTheFormFactor) {
     EXPECT_GT(bonferroni(p_values), false_alarm);
 }
 
-/// What the luminaires emit arrives or escapes, to the last bit of a float's rounding.
+/// All power of the luminaires is received or escapes, up to the rounding of a float.
 TEST(LightSourcesTogether, EmitWhatArrivesAndEscapes) {
     Scene scene = room_with_window(Rgb(100));
     for (const Source& source : sources()) scene.luminaires.push_back(source.luminaire);

@@ -1,8 +1,8 @@
-// Light from outside that enters a room in a landscape of 1 km through a hole of 0.4 m: rays must be aimed at the hole,
-// and what they bring stays unbiased. The floor alone reflects, onto black walls, so its irradiance is known.
+// Light from outside enters a room in a landscape of 1 km through a hole of 0.4 m. Rays must be aimed at the hole and
+// stay unbiased. Only the floor reflects, onto black walls, so its irradiance is known.
 //
-// Seen to fail when no targets are found (most runs end dark), when rays along lines of a later box
-// are not left out, when their power counts as escaped.
+// Seen to fail if no targets are found (most runs end dark), if rays along lines of a later box are not excluded, or if
+// the power of these rays counts as escaped.
 
 #include "interflect/solver/light_targets.h"
 
@@ -26,9 +26,9 @@ namespace {
 
 using namespace testing_support;
 
-constexpr float low = 1.5f, left = 2, side = 0.4f;  // of the hole, in the wall x = 0 [m]
+constexpr float low = 1.5f, left = 2, side = 0.4f;  // of the hole in the wall x = 0 [m]
 
-/// A room of 5 x 4 x 3 m and two far corners.
+/// Returns a room of 5 x 4 x 3 m, and two small faces far away.
 Scene room_in_a_landscape(const Luminaire& luminaire) {
     Scene scene;
     scene.objects = {""};
@@ -49,7 +49,7 @@ Scene room_in_a_landscape(const Luminaire& luminaire) {
     return scene;
 }
 
-/// Power of a sky on the floor, through the hole, by the midpoint rule.
+/// Returns the power of a sky on the floor through the hole, by the midpoint rule.
 double through_hole(const std::function<double(const V3d&)>& radiance) {
     constexpr int n = 60, m = 16;
     double sum = 0;
@@ -65,7 +65,7 @@ double through_hole(const std::function<double(const V3d&)>& radiance) {
 struct Source {
     std::string name;
     Luminaire luminaire;
-    double expected;  // power that the floor receives
+    double expected;  // power received by the floor
 };
 
 std::vector<Source> sources() {
@@ -112,7 +112,7 @@ TEST_P(SmallHole, LetsLightInWithoutBias) {
     EXPECT_LT(std::sqrt(square - mean * mean), 0.15) << mean;
 }
 
-/// Light that is aimed at the hole counts once, as emitted and as escaped.
+/// Light that is aimed at the hole counts once in the emitted and the escaped power.
 TEST_P(SmallHole, LosesNoPower) {
     const Scene scene = room_in_a_landscape(GetParam().luminaire);
     const Solution solution = solve(scene, RayCaster(scene), options_of(1));
@@ -145,7 +145,7 @@ TEST(Targets, EndWhereLinesComeTogether) {
         EXPECT_TRUE(scene_box.intersects(target.min) && scene_box.intersects(target.max));
 }
 
-/// Evenly spread lines need no targets.
+/// Uniformly distributed lines need no targets.
 TEST(Targets, AreNoneForAnOpenPlain) {
     const Imath::Box3f scene_box(V3f(-500, -500, 0), V3f(500, 500, 20));
     std::vector<OutdoorLine> lines;
@@ -157,7 +157,7 @@ TEST(Targets, AreNoneForAnOpenPlain) {
     EXPECT_LE(find_targets(lines, std::vector<double>(lines.size(), 1.0), scene_box).size(), 4u);
 }
 
-/// Views and light groups that change while a run goes on take the targets with them.
+/// The targets follow changes of views and light groups during a run.
 TEST(Targets, FollowTheViewsAndTheDimming) {
     Scene scene = room_in_a_landscape(sources()[1].luminaire);
     Solver solver(scene, options_of(1));

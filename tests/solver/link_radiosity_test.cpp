@@ -1,11 +1,12 @@
-// Hierarchical radiosity over links has no noise, so its answers are compared with closed forms and dense solutions
-// themselves. The tolerances are a small multiple of what is left of the quadrature, the mesh and the lines of sight.
+// Hierarchical radiosity over links has no noise, so its results are compared directly with closed forms and dense
+// solutions. The tolerances are a small multiple of the error of the quadrature, the mesh and the lines of sight.
 //
-// Seen to fail when importance lacks rho, a line of sight is tried from one end only or never, power is not divided by
-// the area, a link carries light one way only, polygons are not cut at the horizon, form factors are taken from the
-// larger element or lack 0.5%, triangles have the weights of squares, push or pull is left out, a divided link stays,
-// the oracle lacks psi or rho, doubts nothing where a link is partly or wholly hidden, or takes no account of the form
-// factor's spread, rays, links or the smallest area are not limited, sweeps end before the light has converged.
+// Seen to fail if importance lacks rho, a line of sight is traced from one end only or never, power is not divided by
+// the area, a link transports light in one direction only, polygons are not clipped at the horizon, form factors are
+// taken from the larger element or lack 0.5%, triangles have the weights of squares, push or pull is omitted, or a
+// divided link remains. Also if the error bound lacks psi or rho, is 0 for partly or wholly hidden links, or ignores
+// the spread of the form factor; if rays, links or the smallest area are not limited; or if sweeps end before the light
+// has converged.
 
 #include "interflect/solver/methods/link_radiosity.h"
 
@@ -48,7 +49,7 @@ SolveOptions refined_to(double epsilon) {
     return options;
 }
 
-/// One element a patch.
+/// Returns options for one element per patch.
 SolveOptions unrefined() {
     SolveOptions options = refined_to(1);
     options.method.refines = false;
@@ -59,10 +60,10 @@ Solution solve_scene(const Scene& scene, const SolveOptions& options) {
     return solve(scene, RayCaster(scene), options);
 }
 
-// The polygon from a point.
+// Form factors from a point to a polygon.
 
 TEST(FormFactorToPolygon, OfASquareAboveItsCornerIsTheCataloguesFigure) {
-    // Howell B-3 (a differential element below the corner of a parallel rectangle), of sides 1 at distance 1.
+    // Howell B-3 (a differential element below the corner of a parallel rectangle), with sides of 1 at distance 1.
     const double s = 1 / std::sqrt(2.0);
     const double expected = 2 * s * std::atan(s) / (2 * std::numbers::pi);
     const std::array<V3d, 4> square{{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}};  // lit from below
@@ -70,7 +71,7 @@ TEST(FormFactorToPolygon, OfASquareAboveItsCornerIsTheCataloguesFigure) {
 }
 
 TEST(FormFactorToPolygon, IsCutAtTheHorizon) {
-    // A wall that reaches as far below the ground as above: what stands above the ground counts.
+    // A wall extends equally far above and below the ground; only the part above counts.
     const std::array<V3d, 4> whole{{{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}}};
     const std::array<V3d, 4> above{{{1, -1, 0}, {1, 1, 0}, {1, 1, 1}, {1, -1, 1}}};
     const std::array<V3d, 4> turned{{{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}};
@@ -100,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         Squares{"near", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0.4, 0.4, 0.05}, {0, 0.2, 0}, {0.2, 0, 0}}, 1e-5}),
     [](const auto& test) { return test.param.name; });
 
-/// `from` shines with one lumen and reflects nothing; `to` is patch 1.
+/// Returns two squares: `from` emits one lumen and reflects nothing; `to` is patch 1.
 Scene lit_squares(const Squares& squares) {
     Scene scene;
     add_material(scene, Rgb(0), Rgb(static_cast<float>(1 / squares.from.area())));
@@ -117,7 +118,7 @@ TEST_P(UnitSquares, ExchangeTheClosedFormsShare) {
     EXPECT_NEAR(share, form_factor(GetParam().from, GetParam().to), GetParam().quadrature_error);
 }
 
-/// Irradiance of patches on a mesh that is finer, n x n for each.
+/// Returns the mean irradiance of each patch, given a finer mesh of n x n elements per patch.
 std::vector<RgbD> means_of(const std::vector<RgbD>& finer, std::size_t n) {
     std::vector<RgbD> means(finer.size() / (n * n), RgbD(0, 0, 0));
     for (std::size_t i = 0; i < finer.size(); ++i) means[i / (n * n)] += finer[i] / static_cast<double>(n * n);
@@ -139,7 +140,7 @@ TEST(LinkRadiosity, TrianglesExchangeWhatTheirSquareDoes) {
     Patch other_half = scene.patches[1];
     other_half.vertices = {v[0], v[2], v[3], none};
     scene.patches.push_back(other_half);
-    scene.materials[1].reflectance = Rgb(0.5f);  // what reflects nothing is not refined
+    scene.materials[1].reflectance = Rgb(0.5f);  // a black patch would not be refined
     for (const SolveOptions& options : {unrefined(), refined_to(1e-3)}) {
         const Solution s = solve_scene(scene, options);
         const float share = 0.5f * (s.irradiance[1].x + s.irradiance[2].x);
@@ -147,7 +148,7 @@ TEST(LinkRadiosity, TrianglesExchangeWhatTheirSquareDoes) {
     }
 }
 
-// On the patches as they are: the dense solution, but for quadrature and lines of sight.
+// On undivided patches the result is the dense solution, apart from quadrature and lines of sight.
 
 class Furnace : public testing::TestWithParam<float> {};  // rho
 INSTANTIATE_TEST_SUITE_P(Rho, Furnace, testing::Values(0.0f, 0.5f, 0.9f));
@@ -188,9 +189,9 @@ TEST(LinkRadiosity, OfASceneWithoutLightIsDark) {
     for (const Rgb& h : s.irradiance) EXPECT_EQ(h, Rgb(0));
 }
 
-// What is between and behind.
+// Occlusion.
 
-/// A black lamp of 1 lm and a grey floor, patches 0 and 1, a metre apart. What else there is, is of material 2, black.
+/// Returns a black lamp of 1 lm and a grey floor, patches 0 and 1, a metre apart. Material 2, for additions, is black.
 Scene lamp_over_floor() {
     Scene scene = lit_squares({"", {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0});
     scene.materials[1].reflectance = Rgb(0.5f);
@@ -225,8 +226,8 @@ TEST(LinkRadiosity, OfCoincidentFacesOneIsLit) {
     EXPECT_GT(s.irradiance[forest.leaf_at(1, {0.1f, 0.1f})].x, 0.1);
 }
 
-/// Irradiance of the floor through a slit between x = low and x = high in a board half way up, endless in y: a strip of
-/// the floor at x sees the lamp from 2 low - x to 2 high - x.
+/// Returns the irradiance of the floor through a slit between x = low and x = high in a board at half height, unbounded
+/// in y. A strip of the floor at x sees the lamp from 2 low - x to 2 high - x.
 double expected_through_slit(double low, double high) {
     constexpr int strips = 256;
     double sum = 0;
@@ -257,7 +258,7 @@ TEST(LinkRadiosity, FindsLightThatTheFirstLinesMissed) {
     add_board(scene, -9, 0.3f);
     add_board(scene, 0.301f, 10);
     EXPECT_EQ(solve_scene(scene, unrefined()).irradiance[1], Rgb(0));
-    // So narrow a slit is found once elements are about as small as they may be, 5 mm.
+    // Such a narrow slit is found when elements have almost their smallest size, 5 mm.
     EXPECT_NEAR(solve_scene(scene, refined_to(1e-6)).irradiance[1].x / expected_through_slit(0.3, 0.301), 1, 0.2);
 }
 
@@ -268,7 +269,7 @@ TEST(LinkRadiosity, WhatReflectsNothingIsNotRefined) {
     EXPECT_EQ(solve_scene(scene, refined_to(1e-3)).forest->size(), 2u);
 }
 
-// Refined.
+// Refinement.
 
 TEST(LinkRadiosity, RefinedApproachesTheDenseSolutionOfAFineMesh) {
     const Scene scene = closed_box({1, 2, 3}, 1, colourful_box().materials);
@@ -323,7 +324,7 @@ TEST(LinkRadiosity, ClosedBoxLosesNoPowerOnAnyMesh) {
     }
 }
 
-/// With so many links at most.
+/// Solves with at most this number of links.
 void solve_with_links(const Scene& scene, const SolveOptions& options, std::size_t link_limit) {
     const RayCaster ray_caster(scene);
     SolverState state(scene, ray_caster, options);
@@ -381,8 +382,8 @@ TEST(LinkRadiosity, HasTheSameBitsForAnyNumberOfThreads) {
 
 // Importance.
 
-/// Two rooms with a doorway between them; grey; each has a lamp. The eye stands in the first, with its back to the
-/// door.
+/// Returns two grey rooms with a doorway between them, each with a lamp. The camera stands in the first, facing away
+/// from the door.
 Scene two_rooms() {
     Scene scene;
     const std::uint32_t white = add_material(scene, Rgb(0.7f), Rgb(0)), lamp = add_material(scene, Rgb(0), Rgb(50));
@@ -395,7 +396,8 @@ Scene two_rooms() {
     }
     add_rectangle(scene, {0, 0, 0}, {0, 3, 0}, {0, 0, 2.5f}, white);
     add_rectangle(scene, {8, 0, 0}, {0, 0, 2.5f}, {0, 3, 0}, white);
-    add_rectangle(scene, {4, 0, 0}, {0, 2, 0}, {0, 0, 2.5f}, white, 1, 1, true);  // between: a door from y = 2 to y = 3
+    add_rectangle(scene, {4, 0, 0}, {0, 2, 0}, {0, 0, 2.5f}, white, 1, 1, true);  // between the rooms; the door is from
+                                                                                  // y = 2 to y = 3
     return scene;
 }
 constexpr std::uint32_t first_of_second_room = 5;
@@ -414,7 +416,7 @@ std::uint32_t elements_of_patches(const Solution& s, std::uint32_t first, std::u
     return count;
 }
 
-/// sum v P: what the view measures.
+/// Returns sum v P, the measurement of the view.
 double measured(const Scene& scene, const Solution& s) {
     return sum_over_leaves(s, s.view_importance, radiosity(Materials(scene), *s.forest, s.irradiance));
 }

@@ -1,9 +1,9 @@
-// Luminaires of measured light: what they cause on a floor, from a point and from openings of every shape that are as
-// large as they are far; the directions of their rays.
+// Measured luminaires: irradiance of a floor, from a point and from openings of every shape that are as large as their
+// distance; directions of rays.
 //
-// Seen to fail when C0 and C90 are exchanged, when the conditional CDF takes one of its two columns, when start points
-// are uniform over the surface and not over its projection, when a cylinder's ends are left out, when a mirrored
-// luminaire is not, when illumination() lacks the ratio of cosines.
+// Seen to fail if C0 and C90 are exchanged, if the conditional CDF uses one of its two columns, if start points are
+// uniform over the surface instead of its projection, if the ends of a cylinder are omitted, if a mirrored luminaire is
+// not mirrored, or if illumination() lacks the ratio of cosines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ using Shape = LuminousOpening::Shape;
 
 constexpr double pi = std::numbers::pi;
 
-/// No symmetry, gaps of different widths, dark in part.
+/// Returns a web without symmetry, with gaps of different widths, partly dark.
 std::shared_ptr<PhotometricWeb> uneven_web(PhotometricWeb::Pole pole = PhotometricWeb::Pole::nadir) {
     auto web = std::make_shared<PhotometricWeb>();
     web->pole = pole;
@@ -38,13 +38,13 @@ std::shared_ptr<PhotometricWeb> uneven_web(PhotometricWeb::Pole pole = Photometr
         for (std::size_t j = 0; j < web->polar.size(); ++j)
             web->intensities.push_back(i == 4 && j > 1 ? 0.0f : 100 + 40.0f * static_cast<float>((3 * i + 5 * j) % 7));
     for (std::size_t j = 0; j < web->polar.size(); ++j)
-        web->intensities[5 * web->polar.size() + j] = web->intensities[j];  // 300 is -60
+        web->intensities[5 * web->polar.size() + j] = web->intensities[j];  // 300 degrees equals -60
     return web;
 }
 
 // ---- Directions
 
-/// Cells of equal flux hold equally many rays' worth of the web: Pearson's test over cells of the sphere.
+/// Compares the numbers of rays in cells of the sphere with the flux of the web there, by Pearson's test.
 void expect_directions(const PhotometricWeb& web) {
     const WebSampler sampler(web);
     EXPECT_NEAR(sampler.flux() / web.flux(), 1, 1e-12);
@@ -111,13 +111,13 @@ const std::vector<OpeningCase> openings{{"rectangle", {Shape::box, {1.2f, 0.5f, 
                                         {"tube_along_c90", {Shape::cylinder, {0.2f, 1.2f, 0.3f}, 1}},
                                         {"ellipsoid", {Shape::ellipsoid, {0.9f, 0.5f, 0.7f}, 2}}};
 
-/// A point of the surface of an opening, outward normal and area.
+/// A point on the surface of an opening, with outward normal and area.
 struct SurfacePoint {
     V3d position, normal;
     double area;
 };
 
-/// The surface in small pieces; of a line its length.
+/// Returns the surface in small pieces. That of a line is empty.
 std::vector<SurfacePoint> surface_of(const LuminousOpening& o) {
     constexpr int n = 40;
     const V3d half = V3d(o.size) / 2;
@@ -177,7 +177,7 @@ TEST_P(Openings, HaveTheAreaThatIsSeen) {
 
 constexpr double lamp_height = 0.7;
 
-/// The light above the floor, its axes turned so that none is the floor's.
+/// Returns a luminaire above the floor, rotated so that no axis is one of the floor's.
 Luminaire luminaire_with(const LuminousOpening& opening) {
     auto web = uneven_web();
     web->opening = opening;
@@ -186,7 +186,7 @@ Luminaire luminaire_with(const LuminousOpening& opening) {
                 web, {0.2f, -0.1f, static_cast<float>(lamp_height)}, {0.2f, 0.1f, -1}, {1, 0.4f, 0}, false, Rgb(2)}};
 }
 
-/// The irradiance of the floor: the integral of the radiance I(d) / A(d) over all of the opening that is seen.
+/// Returns the irradiance of the floor: the integral of the radiance I(d) / A(d) over the visible part of the opening.
 double irradiance_from(const MeasuredLight& light, const std::vector<SurfacePoint>& surface, const V3d& x) {
     const V3d z = -V3d(light.direction).normalized(), c0 = V3d(light.c0), ex = (c0 - z * z.dot(c0)).normalized(),
               ey = z.cross(ex);
@@ -274,7 +274,7 @@ TEST_P(Openings, LightTheFloorBelowThem) {
 
 struct Turn {
     std::string name;
-    V3d x, y, z;  // where the luminaire's axes point
+    V3d x, y, z;  // directions of the luminaire's axes
 };
 std::ostream& operator<<(std::ostream& out, const Turn& t) { return out << t.name; }
 
@@ -288,7 +288,7 @@ INSTANTIATE_TEST_SUITE_P(All, Turned,
                                          Turn{"mirrored", {1, 0, 0}, {0, -1, 0}, {0, 0, 1}}),
                          [](const auto& one) { return one.param.name; });
 
-/// E = I(theta, C) cos(theta) / r^2 in the middle of patches that are small beside their distance.
+/// Expects E = I(theta, C) cos(theta) / r^2, averaged over each patch by the midpoint rule.
 TEST_P(Turned, LightAFloorAsTheFileSays) {
     const Turn& turn = GetParam();
     Scene scene;

@@ -1,9 +1,8 @@
-// The mesh that the oracle makes (Eq. 14, 15, Prikryl et al. 2000) and where it must be the same: METHOD.md section 3
-// asks that it does not change with the unit of length, with how finely a lamp happens to be divided, or with lights
-// that matter nothing to the view. And what it leaves coarse must stay bounded.
+// The mesh made by the oracle (Eq. 14, 15, Prikryl et al. 2000). It must not depend on the unit of length, the division
+// of a lamp, or lights without importance for the view. The coarse parts must stay bounded.
 //
-// Seen to fail when the reference power is the emitted power (lights elsewhere), lacks the area that is seen (unit of
-// length), or is the power of the brightest patch (divided lamps, lights elsewhere).
+// Seen to fail if the reference power is the emitted power (lights elsewhere), lacks the visible area (unit of length),
+// or is the power of the brightest patch (divided lamps, lights elsewhere).
 
 #include <gtest/gtest.h>
 
@@ -19,12 +18,12 @@ namespace {
 
 using namespace testing_support;
 
-/// A room of 4 x 3 x 2.5 m with a table under a lamp, over a cellar that no light leaves or enters.
+/// A room of 4 x 3 x 2.5 m with a table under a lamp, above a cellar that exchanges no light with it.
 struct Room {
     float metre = 1;            ///< In units of the file.
     float brightness = 1;       ///< Of all lights.
-    int lamp_divisions = 1;     ///< Each way.
-    float cellar_exitance = 0;  ///< The lamp's is 100.
+    int lamp_divisions = 1;     ///< In each direction.
+    float cellar_exitance = 0;  ///< That of the lamp is 100.
     double epsilon = 1e-5, epsilon_decay = 0;
     std::int64_t rays = 200'000;
     std::uint64_t seed = 1;
@@ -53,7 +52,7 @@ Scene scene_of(const Room& room) {
     return scene;
 }
 
-/// Leaves on the walls and the table, on the lamp, in the cellar.
+/// Numbers of leaves on the walls and the table, on the lamp, and in the cellar.
 struct Leaves {
     double room = 0, lamp = 0, cellar = 0;
 };
@@ -80,7 +79,7 @@ Leaves leaves_of(const char* method, const Room& room) {
     return leaves;
 }
 
-/// Counts differ by less with another seed; the last test tells how much less they differ than they might.
+/// Upper limit of the difference between seeds; Mesh.FollowsTheThreshold tests that the threshold has a larger effect.
 constexpr double tolerance = 0.03;
 
 class Mesh : public testing::TestWithParam<const char*> {};
@@ -95,19 +94,19 @@ TEST_P(Mesh, DoesNotDependOnTheUnitOfLengthOrOfPower) {
 }
 
 TEST_P(Mesh, DoesNotDependOnTheDivisionOfALamp) {
-    // As long as the lamp is not divided more finely than the oracle itself divides it.
+    // Valid if the lamp is not divided more finely than by the oracle.
     const Leaves whole = leaves_of(GetParam(), {});
     const auto ratio = [&](int divisions) {
         EXPECT_LE(divisions * divisions, whole.lamp);
         return leaves_of(GetParam(), {.lamp_divisions = divisions}).room / whole.room;
     };
     for (const int divisions : {2, 4, 8}) EXPECT_NEAR(ratio(divisions), 1, tolerance) << divisions;
-    // Areas fall by a factor of 4 from level to level: dividing by anything but halves moves where the steps fall.
+    // Areas decrease by a factor of 4 per level, so other divisions than halves move the steps.
     EXPECT_NEAR(ratio(3), 1, 0.25);
 }
 
 TEST(MeshOfImportance, DoesNotDependOnLightsThatMatterNothingToTheView) {
-    // Mean of four seeds, since the light of the cellar takes rays from the room.
+    // Mean of four seeds, because the light of the cellar takes rays from the room.
     const auto leaves_in_the_room = [](float exitance) {
         double sum = 0;
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -128,12 +127,13 @@ TEST_P(Mesh, FollowsTheThreshold) {
     EXPECT_GT(leaves_of(GetParam(), {.epsilon = 0.8e-5}).room / expected, 1 + 2 * tolerance);
 }
 
-// Seen to fail when the threshold stays.
+// Seen to fail if the threshold is constant.
 TEST_P(Mesh, GetsFinerAsRaysAreGathered) {
-    // With a decay of 1/2, epsilon is the threshold at 20 million rays: ten times that at 200,000, when all are traced.
+    // With a decay of 1/2, epsilon is the threshold at 20 million rays. At 200,000, when all are traced, it is ten
+    // times as large.
     const double expected = leaves_of(GetParam(), {.epsilon = 1e-5}).room;
     EXPECT_NEAR(leaves_of(GetParam(), {.epsilon = 1e-6, .epsilon_decay = 0.5}).room / expected, 1, 0.25);
-    // Half of the threshold makes many more elements; four times the rays by themselves make few.
+    // Half of the threshold creates many more elements; four times the rays alone create few.
     const double with_more_rays = leaves_of(GetParam(), {.epsilon = 1e-5, .rays = 800'000}).room;
     EXPECT_GT(leaves_of(GetParam(), {.epsilon = 1e-6, .epsilon_decay = 0.5, .rays = 800'000}).room,
               1.15 * with_more_rays);

@@ -1,15 +1,15 @@
-// What every method of the table that follows light to its end must do: the mean over many seeds is the exact solution,
-// what escapes is counted, and the error falls with the rays and is known. A new method is tested as soon as it has a
-// row.
+// Tests of every method in the table that traces light to its end. The mean over many seeds must be the exact solution,
+// escaped power is counted, and the error decreases with the rays and is estimated. A new row of the table is tested
+// automatically.
 //
-// Each test that compares samples with a true value fails correct code with a chance of `false_alarm`, once for all,
-// since the seeds are fixed.
+// Each test that compares samples with a true value fails for correct code with probability `false_alarm`, once and for
+// all, because the seeds are fixed.
 //
-// Seen to fail, for global lines: a quantum half as large, lines that carry light one way only, directions that are
-// uniform in angle in place of the sphere, offsets that crowd near the centre, the same lines for all bounces, escapes
-// that count once, exchange both ways through the back of a face. For progressive refinement: what was shot stays
-// unshot, what was not chosen is lost, the rest is not
-// handed on, a step shoots more than it takes off, iterations that end with 30% unshot.
+// Seen to fail, for global lines: half the payload, lines that transport light in one direction only, directions
+// uniform in angle instead of on the sphere, offsets that cluster near the centre, the same lines for all bounces,
+// escaped power counted once, exchange in both directions through the back of a face. For progressive refinement: shot
+// power stays unshot, power that was not selected is lost, the rest is not passed on, a step shoots more than it
+// subtracts, iterations end with 30% unshot.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ class EveryMethod : public testing::TestWithParam<Variant> {
 
     std::vector<Solution> solutions(const Scene& scene) const {
         const RayCaster ray_caster(scene);
-        // Global lines ignore the distribution of light: for the same noise they need more rays.
+        // Global lines ignore the distribution of light, so they need more rays for the same noise.
         const std::int64_t rays = GetParam().name.starts_with("global_lines") ? 2 * rays_of_run : rays_of_run;
         std::vector<Solution> all;
         for (std::uint64_t seed = 1; seed <= runs; ++seed) all.push_back(solve(scene, ray_caster, options(rays, seed)));
@@ -54,7 +54,7 @@ class EveryMethod : public testing::TestWithParam<Variant> {
     }
 };
 
-/// Each method as it is without a view, and with importance where that can steer it.
+/// Returns each method without a view, and with importance if importance can steer it.
 std::vector<Variant> with_and_without_importance() {
     std::vector<Variant> variants;
     for (Variant v : variants_of_other_methods()) {
@@ -71,7 +71,7 @@ std::vector<Variant> with_and_without_importance() {
 INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(with_and_without_importance()),
                          [](const auto& test) { return test.param.name; });
 
-/// p-value of the hypothesis that the expected values of all patches and channels are these, times a factor.
+/// Returns the p-value of the hypothesis that the expected values of all patches and channels are `factor` times these.
 double p_value(const std::vector<Solution>& solutions, const std::vector<RgbD>& expected, double factor) {
     std::vector<double> p_values;
     for (std::size_t i = 0; i < expected.size(); ++i)
@@ -83,7 +83,7 @@ double p_value(const std::vector<Solution>& solutions, const std::vector<RgbD>& 
     return bonferroni(p_values);
 }
 
-/// The same of the area-weighted mean, which is known better.
+/// The same for the area-weighted mean, which has less noise.
 double p_value_of_mean(const Scene& scene, const std::vector<Solution>& solutions, const std::vector<RgbD>& expected,
                        double factor) {
     std::vector<double> values;
@@ -135,7 +135,7 @@ TEST_P(EveryMethod, HasTheDenseSolutionAsItsMeanAndCountsWhatEscapes) {
     EXPECT_LT(t_test(escaped, 1.05 * escaping), false_alarm) << "would notice 5%";
 }
 
-/// That the mean of the runs is what a long run of srr finds.
+/// Expects the mean of the runs to agree with a long run of srr.
 void expect_agreement(const Scene& scene, const std::vector<Solution>& sample) {
     SolveOptions reference{.method = find_method("srr")};
     reference.limits.rays = 8'000'000;
@@ -145,8 +145,8 @@ void expect_agreement(const Scene& scene, const std::vector<Solution>& sample) {
     EXPECT_LT(p_value(sample, exact, 1.05), false_alarm) << "would notice 5%";
 }
 
-// The back of a one-sided face lets light through, one way only: a screen that faces the lamp leaves the wall behind it
-// in shadow, but is no obstacle to what that wall sends.
+// The back of a one-sided face transmits light, in one direction only. A screen that faces the lamp shades the wall
+// behind it, but does not block the light from that wall.
 TEST_P(EveryMethod, AgreesWithOthersWhereFacesAreSeenFromBehind) {
     Scene scene = colourful_box();
     const std::uint32_t white = add_material(scene, Rgb(0.7f), Rgb(0));
@@ -164,8 +164,8 @@ TEST_P(EveryMethod, ShootsOrRefusesLightSourcesThatAreNoSurfaces) {
     expect_agreement(scene, solutions(scene));
 }
 
-// Without a view the estimated error is that of all surfaces, which is known here. From eight seeds its root mean
-// square is known to some 10%.
+// Without a view, the estimate is the error of all surfaces, which is known here. The root mean square of eight seeds
+// is accurate to about 10%.
 TEST_P(EveryMethod, ErrorFallsWithTheRaysAndIsReported) {
     if (!GetParam().options.views.empty()) return;
     constexpr std::uint64_t seeds = 8;

@@ -1,6 +1,6 @@
-// Means over neighbouring patches, which keep a small lamp from being taken for unimportant.
-// Seen to fail (scripts/mutation-test) when patches are not weighed by area, or neighbourhoods do not pass on what they
-// have from the next larger ones.
+// Means over neighbouring patches, which prevent small lamps from appearing unimportant. Seen to fail
+// (scripts/mutation-test) if patches are not weighted by area, or if neighbourhoods do not pass on the values of the
+// next larger ones.
 
 #include "interflect/solver/neighbourhoods.h"
 #include "interflect/elements/forest.h"
@@ -54,7 +54,7 @@ TEST(Neighbourhoods, KeepTheMeanAndGiveMostToWhatIsNear) {
     std::vector<float> values(54, 0.0f);
     values[10] = 1;
     const std::vector<float> smooth = w.smoothed(values, 0.3f);
-    EXPECT_NEAR(w.area_mean(smooth) / w.area_mean(values), 1, 0.02);  // exactly, if all were halved equally often
+    EXPECT_NEAR(w.area_mean(smooth) / w.area_mean(values), 1, 0.02);  // exact if all were halved equally often
     EXPECT_GT(smooth[10], 0.7f);
     EXPECT_GT(*std::min_element(smooth.begin(), smooth.end()), 0);
     const auto centre = [&](std::uint32_t p) { return w.forest.geometry(p).point({0.5f, 0.5f}); };

@@ -1,5 +1,5 @@
-// What the oracle is told about two elements, and what it says (Eq. 14, 15, Prikryl et al. 2000).
-// Seen to fail when the estimate takes the receiver's area for the shooter's, or the cosines may fall to nothing.
+// Inputs and result of the oracle for two elements (Eq. 14, 15, Prikryl et al. 2000). Seen to fail if the estimate uses
+// the receiver's area for the shooter's, or if the cosines may become 0.
 
 #include "interflect/solver/oracle.h"
 
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, FormFactorEstimate,
 TEST_P(FormFactorEstimate, IsAnUpperEstimateOfTheRightSize) {
     const double exact = form_factor(GetParam().receiver, GetParam().shooter);
     const float estimate = form_factor_estimate(proxy(GetParam().shooter), proxy(GetParam().receiver));
-    EXPECT_GT(estimate, 0.9 * exact);  // it may fall short by some percent where the two lie aside
+    EXPECT_GT(estimate, 0.9 * exact);  // a few per cent too low for elements that do not face each other
     EXPECT_LT(estimate, 1.5 * exact);
 }
 
@@ -62,7 +62,7 @@ TEST(FormFactorEstimates, AreFiniteWhereTheCentresMeet) {
 class Accepts : public testing::Test {
   protected:
     const ElementProxy shooter_ = proxy(ceiling_at(1)), receiver_ = proxy(floor_tile);
-    const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // of what 7 lm/m^2 bring to 1 m^2
+    const double power_ = 7.0 * form_factor_estimate(shooter_, receiver_);  // power from 7 lm/m^2 to 1 m^2
     bool accepts(double threshold, float importance) const {
         Oracle oracle;
         oracle.threshold = threshold;

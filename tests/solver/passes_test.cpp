@@ -1,10 +1,10 @@
-// Passes that follow light from the emitters bounce by bounce: each is an unbiased estimate of all bounces on the mesh
-// as it is, and random walks follow its light to the end. Against dense solutions, which are exact in an
-// empty box; in a furnace, where irradiance is M / (1 - rho) everywhere. Correct code fails a test with a chance of
-// 0.001 (statistics.h) unless it says otherwise; seeds are fixed.
+// Passes trace light from the emitters bounce by bounce, and random walks complete them. Each is an unbiased estimate
+// of all bounces on the current mesh. References are dense solutions, which are exact in an empty box, and a furnace,
+// where irradiance is M / (1 - rho) everywhere. Correct code fails a test with probability 0.001 (statistics.h), unless
+// stated otherwise; seeds are fixed.
 //
-// Seen to fail when the irradiance that a pass did not shoot is dropped, when it is handed on without the ratio of the
-// passes' rays (TotalPower, FurnaceOfPasses), when every bounce emits, and when passes are averaged with equal weights.
+// Seen to fail if unshot irradiance of a pass is dropped, if it is passed on without the ratio of the passes' rays
+// (TotalPower, FurnaceOfPasses), if every bounce emits, or if passes are averaged with equal weights.
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ TEST_P(Passes, HaveTheDenseSolutionAsTheirMean) {
     EXPECT_LT(p_value(1.04), false_alarm) << "would notice four percent";
 }
 
-/// A closed box whose walls reflect this much on average, each another share of it; one wall shines.
+/// Returns a closed box with this mean reflectance. Each wall has its own reflectance; one wall emits.
 Scene box_of_walls(float rho) {
     const float spread = std::min(0.15f, 0.6f * (1 - rho));
     std::vector<Material> walls;
@@ -126,7 +126,8 @@ TEST_P(TotalPower, IsUnbiasedAndItsDeviationFallsAsTheRootOfTheRays) {
     expect_unbiased(with_few, few);
     expect_unbiased(with_many, many);
     EXPECT_LT(t_test(with_many, 1.005), false_alarm) << "would notice half a percent";
-    // The logarithm of a ratio of two deviations of 40 values has a standard deviation of 0.16; 3.3 of them.
+    // The logarithm of a ratio of two deviations of 40 values has a standard deviation of 0.16. The tolerance is 3.3
+    // times this.
     const double ratio = deviation_of(with_few) / deviation_of(with_many);
     EXPECT_NEAR(std::log(ratio), std::log(4.0), 3.3 * 0.16) << ratio;
 }

@@ -1,9 +1,9 @@
-// Where a scene lies, in what unit, how it is turned, and in what order its faces come must not matter. A small
-// furnished room is written as MGF in many such ways, read and solved; what is absorbed, and the mean of a view, must
-// be those of the room as it is, within the noise.
+// Position, unit, rotation and order of the faces of a scene must not affect its solution. A small furnished room is
+// written as MGF in many such ways, read and solved. The absorbed power and the mean of a view must equal those of the
+// original room within the noise.
 //
-// Seen to fail: with all scenes relative to the world's origin (at 100 km and beyond), and with one ray offset for the
-// whole scene, of its largest coordinate (the stray faces). A change of 1% in all, of 6% in the view would be noticed.
+// Seen to fail with all scenes relative to the world's origin (at 100 km and beyond), and with one ray offset for the
+// whole scene by its largest coordinate (the stray faces). Changes of 1% in the power or 6% in the view are noticed.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ using Imath::V3d;
 
 constexpr int runs = 12;
 
-/// How the room is written: x -> scale * permuted(x, mirrored in x where asked) + offset.
+/// Placement of the room: x -> scale * permuted(x, optionally mirrored in x) + offset.
 struct Placement {
     const char* name;
     double scale = 1;
     V3d offset{0, 0, 0};
-    int turn = 0;  // the axes go round so many times
+    int turn = 0;  // number of cyclic permutations of the axes
     bool mirrored = false;
-    unsigned shuffle = 0;  // seed of another order of the faces; 0: as they are
+    unsigned shuffle = 0;  // seed of another order of the faces; 0: original order
     const char* extra = "";
 
     V3d operator()(V3d x) const {
@@ -45,7 +45,8 @@ struct Placement {
     }
 };
 
-/// The room: 4 x 3 x 2.5 m, a table top, a box on the floor, a lamp under the ceiling, a picture on a wall.
+/// Returns the room as MGF: 4 x 3 x 2.5 m, with a table top, a box on the floor, a lamp under the ceiling and a picture
+/// on a wall.
 std::string room(const Placement& place) {
     std::vector<std::string> faces;
     const auto rectangle = [&](const char* material, V3d corner, V3d u, V3d v) {
@@ -75,9 +76,9 @@ std::string room(const Placement& place) {
     return text + place.extra;
 }
 
-/// What a solution says, without the unit of length.
+/// Results of a solution that do not depend on the unit of length.
 struct Measured {
-    double absorbed = 0;  // over what is emitted
+    double absorbed = 0;  // relative to the emitted power
     double seen = 0;      // mean luminance of a view [cd/m^2]
 };
 
@@ -104,7 +105,7 @@ Measured measure(const Placement& place, std::uint64_t seed) {
     return result;
 }
 
-/// For each quantity how it changes with the placement, of each seed.
+/// Relative change of each quantity by the placement, per seed.
 struct Changes {
     std::vector<double> absorbed, seen;
 };
@@ -160,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Room, Position, testing::ValuesIn(placements),
 
 TEST_P(Position, DoesNotMatter) {
     const Changes c = changes(GetParam());
-    // All placements together fail correct code with this chance.
+    // Probability of a false alarm per test; false_alarm for all placements together.
     const double chance = false_alarm / static_cast<double>(2 * placements.size());
     EXPECT_GT(t_test(c.absorbed, 0), chance);
     EXPECT_GT(t_test(c.seen, 0), chance);

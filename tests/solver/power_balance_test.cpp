@@ -1,4 +1,4 @@
-// What is emitted is absorbed or escapes, in closed and open scenes, with textures and glass.
+// Emitted power is absorbed or escapes, in closed and open scenes, with textures and glass.
 
 #include "interflect/power_balance.h"
 
@@ -32,7 +32,7 @@ TEST_P(Balance, OfAClosedRoomIsExact) {
     EXPECT_NEAR(balance.relative_difference(), 0, 1e-3);
 }
 
-/// A room lit by a panel, with a ninth of one wall missing.
+/// Returns a room lit by a panel, with a ninth of one wall missing.
 Scene open_room() {
     Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.7f), Rgb(0)}});
     scene.patches.erase(scene.patches.begin() + 13);
@@ -40,8 +40,8 @@ Scene open_room() {
     return scene;
 }
 
-/// What escapes is the mean of the passes, as irradiance is.
-/// Seen to fail, by 0.26%, where it is that of the last pass alone, which also shoots what the pass before it left.
+/// Escaped power is averaged over the passes, like irradiance. Seen to fail by 0.26% with the escaped power of the last
+/// pass alone, which also shoots the unshot power of the previous pass.
 TEST_P(Balance, OfAnOpenRoomCloses) {
     const Scene scene = open_room();
     const RayCaster ray_caster(scene);
@@ -55,7 +55,7 @@ TEST_P(Balance, OfAnOpenRoomCloses) {
     for (const double e : escaped) EXPECT_NEAR(e, balance.escaped.x, 0.3 * balance.escaped.x) << "from the first on";
 }
 
-/// Once the lamp is dimmed, what escaped before counts no more. Seen to fail, by 2%, where it does.
+/// After dimming, power that escaped before does not count. Seen to fail by 2% otherwise.
 TEST_P(Balance, ClosesAfterTheLampIsDimmed) {
     Scene scene = open_room();
     scene.light_groups = {{"lamp", scene.materials.back().name}};
@@ -68,8 +68,8 @@ TEST_P(Balance, ClosesAfterTheLampIsDimmed) {
     EXPECT_NEAR(balance.relative_difference(), 0, 5e-3);
 }
 
-/// A point light over a floor, half of it under a pane of glass. Seen to fail without the pane's transmittance (light
-/// that goes through would count as absorbed there) and without what escapes.
+/// A point light over a floor, half of it under a pane of glass. Seen to fail without the pane's transmittance
+/// (transmitted light would count as absorbed by the pane) and without the escaped power.
 TEST_P(Balance, OfAnOpenSceneWithGlassCloses) {
     Scene scene;
     add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, add_material(scene, Rgb(0.5f), Rgb(0)), 2, 2);

@@ -1,6 +1,5 @@
-// The weights that rays are handed out by, Eq. 3 and 8-11 of Prikryl et al. 2000, on figures that can be checked by
-// hand. Seen to fail when an area is missing, or rho in Eq. 8, when infinite weights are kept, and when they are not
-// counted.
+// Sampling weights of rays, Eq. 3 and 8-11 of Prikryl et al. 2000, on values that can be checked by hand. Seen to fail
+// if an area is missing, if rho is missing in Eq. 8, or if infinite weights are kept or not counted.
 
 #include "interflect/solver/probabilities.h"
 #include "interflect/elements/forest.h"
@@ -22,8 +21,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::FloatEq;
 
-/// A square of 4 m^2 that reflects 1/4, 1/2 and 3/4 of the channels and is divided in four, and a black one of
-/// 2 m^2.
+/// A divided square of 4 m^2 with reflectances 1/4, 1/2 and 3/4, and a black square of 2 m^2.
 class Weights : public testing::Test {
   protected:
     Weights() { forest_.subdivide(0); }
@@ -48,7 +46,7 @@ class Weights : public testing::Test {
     const Scene scene_ = two_squares();
     const Materials materials_{scene_};
     ElementForest forest_{scene_, 6};
-    // By element: the divided square, the black one, the parts of the first.
+    // Per element: the divided square, the black square, the children of the first.
     std::vector<Rgb> irradiance_{Rgb(9), Rgb(2), Rgb(4, 4, 4), Rgb(0), Rgb(0, 0, 4), Rgb(4)};
     std::vector<float> importance_{9, 1, 3, 3, 0, 0.75f};
     std::vector<float> nearby_{2, 5};  // of the two squares

@@ -1,6 +1,6 @@
-// How much power rays carry: the largest and the quantiles over the mean, by bins of a quarter of an octave.
-// Seen to fail when a bin, or all of them, count rays once, not as many as were added, when rays of an operand are
-// dropped or not counted, and when a quantile may exceed the largest.
+// Payloads of rays: the largest and the quantiles relative to the mean, in bins of a quarter of an octave. Seen to fail
+// if one or all bins count added rays once instead of by their number, if rays of an operand are dropped or not
+// counted, or if a quantile may exceed the largest payload.
 
 #include "interflect/solver/quanta.h"
 
@@ -11,7 +11,7 @@
 namespace interflect {
 namespace {
 
-constexpr double bin_ratio = 1.19;  // upper end of a bin over its lower end, 2^(1/4)
+constexpr double bin_ratio = 1.19;  // ratio of the ends of a bin, 2^(1/4)
 
 TEST(Quanta, AreOneWhereNothingIsCarriedOrAllRaysCarryTheSame) {
     Quanta quanta;

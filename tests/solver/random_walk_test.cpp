@@ -1,15 +1,15 @@
-// Random walks of particles: the mean over many seeds must be the solution of Eq. 1 (Prikryl et al. 2000), with and
-// without importance, and importance must make what the view sees less noisy.
+// Random walks of particles. The mean over many seeds must be the solution of Eq. 1 (Prikryl et al. 2000), with and
+// without importance. Importance must reduce the noise of the visible surfaces.
 //
-// Each test that compares samples with a true value fails correct code with a chance of `false_alarm`, once for all,
-// since the seeds are fixed. Rays are traced until all particles are dead, so that nothing is left out, and the exact
-// values need no allowance for it.
+// Each test that compares samples with a true value fails for correct code with probability `false_alarm`, once and for
+// all, because the seeds are fixed. Rays are traced until all particles end, so the exact values need no allowance for
+// missing light.
 //
-// Seen to fail when what is reflected lacks rho, irradiance or emitted power lacks the area, emission lacks q,
-// survivors keep all of the power that they share, the draw of survivors is not random, 0.5% of the power is lost, the
-// first hits of some paths are not scored, tau is always 1/2, all batches use the same random numbers, importance lacks
-// its first rho; and, by the noise of what is seen, when survival or all of the density ignores importance. Tasks, or
-// bounces, that share their random numbers pass: the numbers then serve particles at other places.
+// Seen to fail if reflected power lacks rho, irradiance or emitted power lacks the area, emission lacks q, survivors
+// keep all of the power that they share, survival is not random, 0.5% of the power is lost, the first hits of some
+// paths are not scored, tau is always 1/2, all batches use the same random numbers, or importance lacks its first rho.
+// Also, by the noise of visible surfaces, if survival or the whole density ignores importance. Tasks or bounces with
+// the same random numbers pass, because these are used for particles at other places.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -57,7 +57,7 @@ struct Runs {
             solutions.push_back(solve(scene, ray_caster, options_of_seed(seed)));
     }
 
-    /// p-value of the hypothesis that a number's expected value is this.
+    /// Returns the p-value of the hypothesis that a number has this expected value.
     template <class Number>
     double p_value(const Number& number_of_solution, double expected) const {
         std::vector<double> numbers;
@@ -102,8 +102,8 @@ TEST_P(RandomWalks, HasTheDenseSolutionAsItsMean) {
     EXPECT_LT(sample.p_value_of_irradiance(exact, 1.02), false_alarm) << "would notice two percent";
 }
 
-// Whatever leads the walk, its mean is the same: here V alone, which says little of where light should go; and total
-// importance, with no share for power alone, in a box where all receive importance.
+// The mean does not depend on the guide of the walk. Guides here are V alone, which hardly indicates where light should
+// go; and total importance without a share for power alone, in a box where all patches receive importance.
 TEST(RandomWalk, HasTheSameMeanWhateverLeadsIt) {
     const Scene scene = colourful_box();
     const std::vector<RgbD> exact = dense_irradiance(scene, exact_form_factors(scene));
@@ -139,8 +139,8 @@ TEST_P(RandomWalks, CountsWhatLeavesAnOpenScene) {
     }
 }
 
-// The error falls as N^-1/2, or somewhat faster with the Sobol' points of the first rays, and the report knows it. From
-// eight seeds its root mean square is known to some 10%.
+// The error decreases as N^-1/2, or slightly faster with the Sobol' points of the first rays, and the report estimates
+// it. The root mean square of eight seeds is accurate to about 10%.
 TEST(RandomWalk, ErrorFallsWithTheRaysAndIsReported) {
     constexpr std::uint64_t seeds = 8;
     const Scene scene = colourful_box();
@@ -164,8 +164,8 @@ TEST(RandomWalk, ErrorFallsWithTheRaysAndIsReported) {
     EXPECT_LT(ratio, 5.5);
 }
 
-// All that is emitted and reflected arrives or escapes. Importance aside, all particles carry the same, and a wavefront
-// of n particles has as many survivors as it should to within one, so that one run shows it.
+// All emitted and reflected power is received or escapes. Without importance, all particles have the same power, and
+// the number of survivors of a wavefront is exact to within one. So one run suffices.
 TEST(RandomWalk, KeepsEnergy) {
     for (const Scene& scene : {colourful_box(), open_colourful_box()}) {
         SolveOptions options = walk_options(ImportanceUse::off, 1);
@@ -223,12 +223,12 @@ TEST(RandomWalk, EndsWhenItsOptionsAreExtreme) {
                 const Solution s = solve(scene, ray_caster, options);
                 const auto has_light = [](const Rgb& h) { return channel_sum(h) > 0; };
                 EXPECT_EQ(std::any_of(s.irradiance.begin(), s.irradiance.end(), has_light), alpha == 0);
-                // Where nothing reflects, the eyes send nothing: there is no path for the rays of importance.
+                // If nothing reflects, the cameras emit no importance, so no importance paths exist.
                 EXPECT_EQ(solve(black, black_ray_caster, options).iterations.back().importance_rays, 0);
             }
 }
 
-// What a view measures is the same from either end, sum v P = sum psi W, in a grey scene.
+// In a grey scene, a view measures the same from either end: sum v P = sum psi W.
 TEST(RandomWalk, MeasuresTheSameByLightAndByImportance) {
     std::vector<Material> walls;
     for (const float rho : {0.2f, 0.7f, 0.5f, 0.4f, 0.8f, 0.3f}) walls.push_back({"wall", Rgb(rho), Rgb(0)});
@@ -256,8 +256,7 @@ double variance(const std::vector<double>& samples) {
     return squares / static_cast<double>(samples.size() - 1);
 }
 
-/// The luminance that a solution gives to the light which a view sees reflected: of each patch, with its share of the
-/// picture.
+/// Luminance of the reflected light that a view sees, per patch, with the patch's share of the picture.
 struct Picture {
     std::vector<double> luminances, shares;
 
@@ -282,7 +281,7 @@ std::vector<Picture> pictures_of(const Scene& scene, ImportanceUse use) {
     return pictures;
 }
 
-/// Variance of the luminance from run to run, its mean over the picture.
+/// Returns the variance of the luminance between runs, averaged over the picture.
 double variance_of(const std::vector<Picture>& pictures) {
     double sum = 0;
     for (std::size_t i = 0; i < pictures[0].shares.size(); ++i) {
@@ -293,8 +292,8 @@ double variance_of(const std::vector<Picture>& pictures) {
     return sum;
 }
 
-// The view is of one room of nine. Six samples of as many seeds gave ratios of the variances from 0.33 to 0.42, 0.38 in
-// the mean with a standard deviation of 0.035: correct code exceeds 0.6 with a chance far below `false_alarm`.
+// The view shows one room of nine. Six samples with this number of seeds gave variance ratios from 0.33 to 0.42, with a
+// mean of 0.38 and a standard deviation of 0.035. Correct code exceeds 0.6 with a probability far below `false_alarm`.
 TEST(RandomWalk, IsLessNoisyWhereTheViewLooksIfImportanceLeadsItAndNoLessRight) {
     const Scene scene = make_maze({});
     const std::vector<Picture> led = pictures_of(scene, ImportanceUse::full);

@@ -1,8 +1,8 @@
-// The rays that leave a patch: origins uniform on its area, directions with density cos(theta) / pi. Pearson's
-// chi-square test against cell areas found by clipping, which shares nothing with the patch's parametrisation.
+// Rays that leave a patch: origins uniform on its area, directions with density cos(theta) / pi. Pearson's chi-square
+// test uses cell areas found by clipping, which is independent of the patch's parametrisation.
 //
-// Seen to fail (scripts/mutation-test) when directions lack the cosine or its root, azimuths turn over 6 radians,
-// origins crowd near the centre, origins are uniform in the parameters of an irregular quadrilateral.
+// Seen to fail (scripts/mutation-test) if directions lack the cosine or its root, azimuths cover only 6 radians,
+// origins cluster near the centre, or origins are uniform in the parameters of an irregular quadrilateral.
 
 #include "interflect/solver/ray_source.h"
 
@@ -29,7 +29,7 @@ using Polygon = std::vector<V2d>;
 constexpr std::size_t ray_count = 200'000;
 constexpr float offset = 1e-5f;
 
-/// A patch by its corners in the plane, and where the plane lies.
+/// A patch, by its corners in the plane and the placement of the plane.
 struct Shape {
     const char* name;
     Polygon corners;
@@ -87,7 +87,7 @@ double area_of(const Polygon& polygon) {
     return area;
 }
 
-/// The part of a convex polygon where `inside`, a linear function, is not negative.
+/// Returns the part of a convex polygon where the linear function `inside` is non-negative.
 Polygon clipped(const Polygon& polygon, const std::function<double(const V2d&)>& inside) {
     Polygon part;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -99,10 +99,10 @@ Polygon clipped(const Polygon& polygon, const std::function<double(const V2d&)>&
     return part;
 }
 
-/// p-value of the hypothesis that the points are uniform on the polygon, over a grid of cells.
+/// Returns the p-value of the hypothesis that the points are uniform on the polygon, over a grid of cells.
 double uniformity(const Polygon& polygon, const std::vector<V2d>& points) {
     constexpr int side = 12;
-    constexpr double fewest = 10;  // expected in a cell; smaller ones are counted together
+    constexpr double fewest = 10;  // minimum expected count per cell; smaller cells are pooled
     V2d low = polygon[0], high = polygon[0];
     for (const V2d& p : polygon) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
@@ -139,8 +139,8 @@ double uniformity(const Polygon& polygon, const std::vector<V2d>& points) {
     return chi_square_test(observed, expected);
 }
 
-/// p-value of the hypothesis that directions in the frame (s, t, normal) have the density cos(theta) / pi, that is,
-/// that cos^2(theta) and the azimuth are independent and uniform.
+/// Returns the p-value of the hypothesis that directions in the frame (s, t, normal) have the density cos(theta) / pi:
+/// cos^2(theta) and the azimuth are independent and uniform.
 double cosine_distribution(const std::vector<V3d>& local_directions) {
     constexpr std::size_t rings = 16, sectors = 16;
     std::vector<double> observed(rings * sectors, 0.0);
@@ -174,7 +174,8 @@ TEST_P(ShotRays, BeginUniformlyOnThePatch) {
 
 TEST_P(ShotRays, BeginLiftedAboveThePatchAndNowhereElse) {
     const Plane plane(GetParam());
-    const double scale = GetParam().scale, rounding = 1e-6 * (scale + 1);  // of floats, patch within 3 scale + 0.4 m
+    const double scale = GetParam().scale, rounding = 1e-6 * (scale + 1);  // float rounding; the patch is within 3
+                                                                           // scale + 0.4 m
     for (const Ray& ray : rays_of(GetParam(), PointSet::sobol)) {
         ASSERT_NEAR((V3d(ray.origin) - plane.origin).dot(plane.normal()), offset * scale, rounding);
         const V2d p = plane.coordinates(ray.origin);
@@ -214,7 +215,7 @@ TEST_P(ShotRays, HaveDirectionsThatDoNotDependOnTheOrigin) {
     EXPECT_GT(chi_square_test(observed, expected, 2 * octants - 1), false_alarm);
 }
 
-// What the tests above would say to other distributions.
+// Tests that the tests above reject other distributions.
 
 TEST(CosineDistribution, RefusesUniformDirections) {
     std::vector<V3d> directions;

@@ -9,7 +9,7 @@ namespace interflect::testing_support {
 
 namespace {
 
-constexpr int divisions = 3;  // of a wall, each way
+constexpr int divisions = 3;  // of a wall, in each direction
 
 std::vector<Material> colourful_materials() {
     return {{"red", {0.8f, 0.1f, 0.1f}, {0, 0, 0}},         {"green", {0.2f, 0.7f, 0.1f}, {0.5f, 0, 1}},
@@ -17,7 +17,7 @@ std::vector<Material> colourful_materials() {
             {"lamp", {0.5f, 0.5f, 0.5f}, {10.0f, 8.0f, 5}}, {"white", {0.85f, 0.8f, 0.75f}, {0, 0, 0}}};
 }
 
-/// A box from `low` to `high` that is seen from outside.
+/// Adds a box from `low` to `high`, visible from outside.
 void add_box(Scene& scene, V3f low, V3f high, std::uint32_t material, int n) {
     const V3f d = high - low, x(d.x, 0, 0), y(0, d.y, 0), z(0, 0, d.z);
     add_rectangle(scene, low, z, y, material, n, n);

@@ -1,6 +1,6 @@
 // A pass traces all light until it is absorbed, so a run may stop after any pass. Leaves that would blur much light
 // reflect it from the points that received it, so coarse meshes do not move light.
-// Correct code fails a test with a chance of 0.001 (statistics.h); seeds are fixed.
+// Correct code fails a test with probability 0.001 (statistics.h); seeds are fixed.
 //
 // Earlier versions of the solver had both errors: 1.6% of the light was missing, and 5% too much under such lamps.
 
@@ -29,7 +29,7 @@ SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t see
     return options;
 }
 
-/// A room whose surfaces all reflect 0.95, with a lamp at the ceiling: all power is W / (1 - rho).
+/// Returns a room with reflectance 0.95 everywhere and a lamp at the ceiling. The total power is W / (1 - rho).
 Scene white_room() {
     Scene scene = closed_box({2.3f, 3.1f, 2.7f}, 1, {{"wall", Rgb(0.95f), Rgb(0)}});
     add_rectangle(scene, {0.9f, 1.2f, 2.69f}, {0, 0.4f, 0}, {0.4f, 0, 0}, add_material(scene, Rgb(0.95f), Rgb(100)));
@@ -57,9 +57,9 @@ TEST(WhiteRoom, HasAllItsLightWhereverARunStops) {
 }
 
 constexpr float ceiling_height = 3;
-constexpr std::uint32_t ceiling_patch = 5;  // of a closed_box of one patch a wall
+constexpr std::uint32_t ceiling_patch = 5;  // of a closed_box with one patch per wall
 
-/// A room with lamps 2 cm below the ceiling that shine upwards, on black backs. The ceiling reflects most.
+/// Returns a room with lamps 2 cm below the ceiling that emit upwards and have black backs. The ceiling reflects most.
 Scene room_with_up_lights() {
     std::vector<Material> walls(6, {"wall", Rgb(0.6f), Rgb(0)});
     walls[4].reflectance = Rgb(0.3f);
@@ -81,7 +81,7 @@ TEST(UpLights, LightARoomAlikeOnAnyMesh) {
     const auto power = [&](const SolveOptions& options) {
         return solve(scene, ray_caster, options).iterations.back().total_power.x;
     };
-    // A finer initial mesh, on which the published method has no such error, and many rays.
+    // A finer initial mesh, on which the published method does not have this error, and many rays.
     SolveOptions fine = options_of("hsrr", 4'000'000, 1);
     fine.experimental.epsilon = 4e-10;
     const double reference = power(fine);
@@ -107,7 +107,7 @@ TEST(UpLights, AreResolvedOnHiddenSurfacesWhereNoImportanceIsFollowed) {
     const double without_view = hidden_leaves("hsrr", ImportanceUse::off, false);
     EXPECT_GT(hidden_leaves("hsrr", ImportanceUse::off, true), 0.8 * without_view);
     EXPECT_GT(hidden_leaves("ihsrr", ImportanceUse::off, true), 0.8 * without_view);
-    // Hidden surfaces count by the power that a coarse mesh would misplace, not by the shape of their light.
+    // Hidden surfaces count by the power that a coarse mesh would misplace, not by the variation of their light.
     EXPECT_GT(hidden_leaves("ihsrr", ImportanceUse::direct, true), 0.25 * without_view);
 }
 

@@ -1,6 +1,6 @@
-// Sizes of iterations, which of them are averaged (Eq. 6, Prikryl et al. 2000).
-// Seen to fail when the rays of the warm-up or of importance count as averaged, and when no short iteration precedes a
-// long one, or one does where iterations are counted.
+// Sizes of iterations, and which iterations are averaged (Eq. 6, Prikryl et al. 2000). Seen to fail if the rays of the
+// warm-up or of importance count as averaged, if no short iteration precedes a long one, or if one does although the
+// number of iterations is given.
 
 #include "interflect/solver/schedule.h"
 
@@ -73,7 +73,7 @@ TEST(Schedule, GrowsWithWhatIsAveraged) {
     schedule.began_with(100'000, 0);
     std::int64_t averaged = 100'000;
     const std::vector<IterationPlan> plans = all_plans(schedule);
-    for (std::size_t k = 0; k + 1 < plans.size(); ++k) {  // the last one spends what is left
+    for (std::size_t k = 0; k + 1 < plans.size(); ++k) {  // the last one uses the remaining rays
         EXPECT_EQ(plans[k].rays, std::min<std::int64_t>(averaged / 2, 1 << 24)) << k;
         averaged += plans[k].rays;
     }

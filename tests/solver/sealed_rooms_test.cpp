@@ -1,6 +1,6 @@
-// Two sealed rooms, a lamp in one: whatever light is found in the other has leaked through elements that lie on both
-// sides of the wall. Cuts at contacts leave none of those. Light that leaks is a bias, not noise: no seeds are
-// averaged. Without cuts it leaks, which shows that the test can see it.
+// Two sealed rooms with a lamp in one. All light in the other leaked through elements that lie on both sides of the
+// wall. Cuts at contacts leave no such elements. Leaked light is a bias, not noise, so one seed suffices. The negative
+// control, without cuts, leaks.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr float depth = 4, height = 3, thickness = 0.01f, length = 8 + thickness;  // two_rooms.cpp [m]
 
-/// Area-weighted mean irradiance of the dark room over that of the lit one, leaf by leaf.
+/// Returns the ratio of the area-weighted mean irradiance of the dark room to the lit one, over the leaves.
 double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const Scene whole = make_two_rooms(rooms);
     const auto least_extent = static_cast<float>(2 * default_element_size(whole));
@@ -66,8 +66,8 @@ TEST_P(SealedRooms, StayDarkWhenCutAtContacts) {
 }
 
 TEST_P(SealedRooms, LeakWithoutCuts) {
-    // On a fine mesh little: elements that lie on both sides are small. So the mesh is kept coarse. A straight wall
-    // stands where elements meet, and hardly leaks even then.
+    // A fine mesh leaks little, because elements on both sides are small. So the mesh is kept coarse. A straight wall
+    // stands at the border of elements, and hardly leaks even then.
     constexpr double min_area = 0.25;  // [m^2]
     EXPECT_GT(leak(GetParam().rooms, false), 5 * leak(GetParam().rooms, true));
     if (GetParam().rooms.turn != 0) {

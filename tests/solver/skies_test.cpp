@@ -1,8 +1,8 @@
-// Rays that the solver shoots from skies, maps and the sun's disc, against integrals of their radiance by other code.
-// Nothing reflects: the irradiance of a patch is what the source alone causes there.
+// Rays shot from skies, maps and the disc of the sun, against independent integrals of their radiance. Nothing
+// reflects, so the irradiance of a patch is caused by the source alone.
 //
-// Seen to fail when a side of the scene's box lacks the cosine in its power or in its directions, when a map's colours
-// are those of its mean, when a disc's rays do not widen the rectangle that they start on.
+// Seen to fail if a side of the scene's box lacks the cosine in its power or in its directions, if a map has the
+// colours of its mean, or if the rays of a disc do not widen the rectangle on which they start.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 constexpr int runs = 12;
-constexpr double integration_error = 2e-4;  // relative, of expected irradiances
+constexpr double integration_error = 2e-4;  // relative error of expected irradiances
 
 SolveOptions options_of(std::uint64_t seed, std::int64_t rays) {
     SolveOptions options{.method = find_method("srr")};
@@ -35,7 +35,7 @@ SolveOptions options_of(std::uint64_t seed, std::int64_t rays) {
     return options;
 }
 
-/// Irradiance of every patch [patch][run], of one channel.
+/// Returns the irradiance of every patch [patch][run] in one channel.
 std::vector<std::vector<double>> solved(const Scene& scene, std::int64_t rays, int channel = 0) {
     const RayCaster ray_caster(scene);
     std::vector<std::vector<double>> irradiance(scene.patches.size());
@@ -51,7 +51,7 @@ class EverySky : public testing::TestWithParam<KnownSky> {};
 INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
                          [](const auto& test) { return test.param.name; });
 
-/// A convex box, lit from outside: each side has the irradiance of an open plane.
+/// Tests a convex box lit from outside: each side has the irradiance of an open plane.
 TEST_P(EverySky, LightsTheSidesOfABox) {
     Scene scene;
     scene.objects = {""};
@@ -71,7 +71,7 @@ TEST_P(EverySky, LightsTheSidesOfABox) {
     EXPECT_GT(bonferroni(p_values), false_alarm);
 }
 
-/// What arrives on a box and what escapes is what is emitted: exactly in the sum of the channels, by which rays are
+/// Received and escaped power equal the emitted power. This is exact in the sum of the channels, by which rays are
 /// distributed over the parts of a sky.
 TEST_P(EverySky, LosesNoPower) {
     Scene scene = room_with_window(Rgb(0));
@@ -86,7 +86,7 @@ TEST_P(EverySky, LosesNoPower) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 0.01) << c;
 }
 
-/// Through a window, onto the floor of a black room.
+/// Tests the light through a window on the floor of a black room.
 TEST_P(EverySky, ShinesThroughAWindow) {
     Scene scene = room_with_window(Rgb(0));
     scene.luminaires = {GetParam().luminaire};
@@ -104,14 +104,14 @@ TEST_P(EverySky, ShinesThroughAWindow) {
                 expected += GetParam().radiance(d.normalized()) * d.z * -d.x / std::pow(d.length2(), 2) *
                             (1.8 / (n * n * m * m));
             }
-        if (expected < 1) continue;  // hardly a ray arrives
-        // The integral's own error where a map has edges.
+        if (expected < 1) continue;  // too few rays
+        // The tolerance is the error of the integral at the edges of a map.
         p_values.push_back(t_test(found[2 * i], expected, 0.005 * expected));
     }
     EXPECT_GT(bonferroni(p_values), false_alarm);
 }
 
-/// Two texels of different colours light two sides of a box, each with its own.
+/// Two texels of different colours light two sides of a box, each with its own colour.
 TEST(EnvironmentMap, KeepsTheColoursOfItsTexels) {
     Scene scene;
     scene.objects = {""};
@@ -138,8 +138,8 @@ TEST(EnvironmentMap, KeepsTheColoursOfItsTexels) {
     }
 }
 
-/// A disc of 40 degrees over an edge: between light and shadow each patch has the part of the disc that it sees. The
-/// part of a horizontal plane is an area in the unit circle (Nusselt); the edge is an ellipse there.
+/// A disc of 40 degrees over an edge: in the penumbra, each patch receives light from the part of the disc that it
+/// sees. For a horizontal plane, this part is an area in the unit circle (Nusselt), where the edge is an ellipse.
 TEST(Disc, HasAPenumbra) {
     const double radius = std::sin(20 * pi / 180), height = 0.8;
     Scene scene;
@@ -172,8 +172,8 @@ TEST(Disc, HasAPenumbra) {
     EXPECT_GT(bonferroni(p_values), false_alarm);
 }
 
-/// In a small room that reflects, lit by a clear sky and the sun through its window, the solver's irradiance of patches
-/// is that of the path tracer.
+/// In a small reflecting room, lit by a clear sky and the sun through a window, the solver's irradiance of patches must
+/// equal the path tracer's.
 TEST(Daylight, IsTheSameToSolverAndPathTracer) {
     Scene scene = room_with_window(Rgb(0));
     scene.materials[0].reflectance = Rgb(0.5f);

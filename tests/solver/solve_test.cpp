@@ -1,5 +1,4 @@
-// What a caller of solve() relies on, apart from the numbers being right: limits, interruption, reproducibility,
-// errors.
+// Contract of solve() apart from correct numbers: limits, interruption, reproducibility, errors.
 
 #include "interflect/solve.h"
 
@@ -51,7 +50,7 @@ bool all_finite(const std::vector<Rgb>& colours) {
 
 Solution solved_on_threads(int threads, const Scene& scene, const SolveOptions& options) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    tbb::task_arena arena(threads);  // more threads than cores too
+    tbb::task_arena arena(threads);  // also with more threads than cores
     return arena.execute([&] { return solve(scene, options); });
 }
 
@@ -135,8 +134,7 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     }
 }
 
-// Seen to fail (with one ray, on the command line) with hierarchical methods, whose preparation took more rays than
-// there were.
+// Seen to fail with one ray on the command line: the preparation of hierarchical methods traced more rays than allowed.
 TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
     const Scene scene = colourful_box();
     for (const char* method : {"srr", "hsrr", "ihsrr"})
@@ -172,8 +170,8 @@ TEST(Solve, ReportsEveryIterationInOrder) {
     }
 }
 
-// Whatever an iteration that was cut short has done is lost, and nothing else: the result is that of a run that ends
-// before it. Seen to fail when the elements that a step made are kept, and when no batch looks at the request.
+// An interrupted iteration is discarded completely: the result is that of a run that ends before it. Seen to fail if
+// the elements made by a step are kept, or if no batch checks for the request.
 TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
     const Scene scene = furnished_room();
     for (const char* name : {"ihsrr", "hwdrs", "random-walk", "global-lines", "pr"})
@@ -268,7 +266,7 @@ TEST(Solve, CarriesEnormousAndTinyLights) {
 }
 
 TEST(Solve, RefusesLightsBeyondSinglePrecision) {
-    // Their variances are beyond it, and of the last the light of all bounces together.
+    // Their variances exceed single precision; for the last, the sum of all bounces does too.
     for (const Rgb& exitance : {Rgb(1e-30f), Rgb(1e30f), Rgb(3e38f, 1, 1)}) {
         const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.9f), exitance}});
         EXPECT_THROW(solve(scene, with_rays(10'000)), InputError) << exitance;

@@ -1,7 +1,7 @@
-// Textures in the solver: scenes with an exact answer, and scenes that can be had without a texture.
+// Textures in the solver: scenes with an exact answer, and scenes that can be modelled without a texture.
 //
-// Seen to fail when elements have their patch's means, when exitance ignores its texture, and when the means of new
-// elements are not found.
+// Seen to fail if elements have the means of their patch, if exitance ignores its texture, or if the means of new
+// elements are not computed.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -35,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfMethod, testing::Values("srr", "hsrr
                              return name;
                          });
 
-/// H is 2 1 3 everywhere. One that is 2% off would be noticed.
+/// H is 2 1 3 everywhere. A deviation of 2% would be noticed.
 TEST_P(TexturesOfMethod, FurnaceHasTheIrradianceOfItsRadiosity) {
     constexpr int runs = 12;
     const Rgb expected(2, 1, 3);
@@ -59,7 +59,7 @@ TEST_P(TexturesOfMethod, FurnaceHasTheIrradianceOfItsRadiosity) {
     EXPECT_LT(t_test(means, 1.02), false_alarm);
 }
 
-/// A texel of one value all over is a factor of the material: the solution has the same bits.
+/// A texture of constant value is a factor of the material: the solution is the same to rounding.
 TEST_P(TexturesOfMethod, OfOneValueAreAsTheMaterial) {
     Scene plain = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.25f), Rgb(2)}}), textured = plain;
     textured.materials[0] = {"wall", Rgb(0.5f), Rgb(4), 0, 0};
@@ -72,7 +72,7 @@ TEST_P(TexturesOfMethod, OfOneValueAreAsTheMaterial) {
             EXPECT_NEAR(a.irradiance[e][c], b.irradiance[e][c], 1e-6f * a.irradiance[e][c]) << "element " << e;
 }
 
-/// Mean irradiance of the ceiling, patches 24 to 31 of the half dark rooms: the floor lights it.
+/// Returns the mean irradiance of the ceiling, patches 24 to 31 of the half dark rooms. The floor lights it.
 double ceiling_irradiance(const Solution& s) {
     double sum = 0, area = 0;
     for (std::uint32_t i = 24; i < 32; ++i) {
@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(MethodsThatRefine, HalfDarkFloor,
                          testing::Combine(testing::Values("hsrr", "hwdrs", "hr"),
                                           testing::Values(Halves::reflect, Halves::emit)));
 
-/// The dark half of the floor is under no lamp, or dark itself: were the mean spread over both halves, or dark where
-/// there is light, the light on the ceiling would be another.
+/// The dark half of the floor is under no lamp, or is dark itself. If the mean covered both halves, or the lit half
+/// were dark, the ceiling would receive different light.
 TEST_P(HalfDarkFloor, IsAsTwoPatches) {
     const Solution textured = solved(half_dark_floor(halves()), method());
     const Solution two = solved(half_dark_floor_of_two_patches(halves()), method());
@@ -113,7 +113,7 @@ TEST(Textures, EmittedPowerIsTheIntegral) {
     EXPECT_NEAR(s.emitted_power.x, 4.0 * 2 * 100 / 2, 1e-3);  // half of 4 x 2 m, 100 lm/m^2
 }
 
-/// What elements of any depth emit together is what their patches do.
+/// The elements of a patch, at any depth, emit the same total power as the patch.
 TEST(Textures, ElementsEmitWhatTheirPatchesDo) {
     const Scene scene = textured_furnace(Rgb(2, 1, 3));
     Materials materials(scene);
@@ -126,7 +126,7 @@ TEST(Textures, ElementsEmitWhatTheirPatchesDo) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c] / expected[c], 1, 1e-5);
 }
 
-/// They depend on the patch and the cell, not on when the elements were made.
+/// Means depend on the patch and the cell, not on the order in which the elements were made.
 TEST(Textures, MeansDoNotDependOnTheOrderOfElements) {
     const Scene scene = textured_furnace(Rgb(2, 1, 3));
     Materials at_once(scene), step_by_step(scene);
@@ -143,11 +143,11 @@ TEST(Textures, MeansDoNotDependOnTheOrderOfElements) {
     }
 }
 
-/// A patch that another covers in part emits from what is left, also where it has a texture.
+/// A partly covered patch emits from its uncovered area, with or without a texture.
 TEST(Textures, OfCoveredEmittersAreReduced) {
     Scene scene = half_dark_floor(Halves::emit);
     const auto floor = static_cast<std::uint32_t>(scene.patches.size() - 1);
-    add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 1, 0}, 0);  // half of it, as the smaller one
+    add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 1, 0}, 0);  // half of it; the smaller face covers
     scene.texture_coordinates.resize(scene.vertices.size(), V2f(0));
     const RayCaster ray_caster(scene);
     EXPECT_NEAR(Materials(scene, ray_caster).exitance(floor).x, 25, 1e-3);

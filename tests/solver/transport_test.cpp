@@ -1,7 +1,7 @@
-// One transport step: nothing is lost, nothing depends on the threads, streams go on where they ended; with a mesh and
-// with an oracle that refines as well.
-// Seen to fail (scripts/mutation-test) when a quantum lacks q, rays are allocated uniformly, 0.5% of the power is lost,
-// streams do not advance, all patches share one sequence of points.
+// One transport step, also with a mesh and an oracle that refines it: no power is lost, the result does not depend on
+// the threads, and streams continue where they ended. Seen to fail (scripts/mutation-test) if a payload lacks q, rays
+// are allocated uniformly, 0.5% of the power is lost, streams do not advance, or all patches share one sequence of
+// points.
 
 #include "interflect/solver/transport.h"
 
@@ -23,16 +23,16 @@ using namespace testing_support;
 
 constexpr std::int64_t rays = 50'000;
 
-/// A scene with what transport steps need; H = 1 everywhere. The mesh is its patches, until somebody refines it.
+/// A scene with the state of transport steps; H = 1 everywhere. The mesh initially consists of its patches.
 struct Room {
     explicit Room(Scene s, std::size_t capacity = 1 << 18) : scene(std::move(s)), forest(scene, capacity) {}
 
-    /// What leaves the elements that there are now.
+    /// Returns the radiosity of the current elements.
     Radiosity light() {
         irradiance.assign(forest.size(), Rgb(1));
         return Radiosity(materials, irradiance);
     }
-    /// A step that shoots by power (Eq. 3).
+    /// Returns a step that samples by power (Eq. 3).
     TransportStep step() {
         TransportStep step;
         step.light = light();
@@ -40,7 +40,7 @@ struct Room {
         step.rays = rays;
         return step;
     }
-    /// One that divides everything as far as it may.
+    /// Returns a step that divides all elements down to the smallest area.
     TransportStep refining_step(float min_area) {
         TransportStep s = step();
         s.oracle.refines = true;
@@ -62,7 +62,7 @@ struct Room {
 
 SampleStreams streams_of(std::uint64_t seed) { return {PointSet::sobol, seed}; }
 
-/// That all which was shot arrived or escaped, and that it was what the room radiates.
+/// Expects that all shot power is received or escapes, and that the shot power is that radiated by the room.
 void expect_balance(const Room& room, const Received& received, const RgbD& radiated) {
     const RgbD arrived = integral(room.forest, received.irradiance) + received.escaped_power;
     for (int channel = 0; channel < 3; ++channel) {
@@ -141,7 +141,7 @@ TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
     }
 
     const FormFactors f = exact_form_factors(room.scene);
-    std::vector<double> p_values, p_values_off;  // of the right answer and of one that is two percent off
+    std::vector<double> p_values, p_values_off;  // of the right answer, and of one that is wrong by two per cent
     for (std::size_t i = 0; i < patches; ++i) {
         double expected = 0;  // R_i / A_i = sum_s F_si P_s / A_i = sum_s F_is B_s
         for (std::uint32_t s = 0; s < patches; ++s) expected += f(i, s) * step.light.of(room.forest, s).y;
@@ -201,12 +201,12 @@ TEST(Transport, BringsImportanceToTheLeavesWhereverPowerEnds) {
 }
 
 TEST(Transport, FindsTheImportanceOfASourceByTheRaysThatLeaveIt) {
-    // Importance 1 everywhere: one bounce of it brings rho psi, and every ray that leaves a patch finds just that.
+    // Importance is 1 everywhere: one bounce transports rho psi, and every ray that leaves a patch gathers this value.
     Room room(closed_box({1, 2, 3}, 4, {{"wall", Rgb(0.5f), Rgb(1)}}));
     const std::vector<float> importance(room.forest.size(), 1.0f);
     TransportStep step = room.step();
     step.importance = Importance(importance);
-    step.rays = 300;  // three a patch, and as many arrive
+    step.rays = 300;  // three per patch; equally many arrive
     step.q.assign(step.q.size(), 1.0f);
     step.q[7] = 200;
     SampleStreams streams = streams_of(1);
@@ -268,7 +268,7 @@ TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
     EXPECT_LT(smallest, 4 * min_area) << "everything is divided as far as it may";
 }
 
-/// Elements after a step in a box that radiates so much.
+/// Returns the number of elements after a step in a box with this exitance.
 std::uint32_t elements_under(const Rgb& exitance, float threshold) {
     Room room(closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), exitance}}));
     const std::vector<Rgb> darkness(room.forest.size(), Rgb(0));
@@ -312,7 +312,7 @@ TEST(TransportRays, DrawFromASequenceOfItsOwnForEachElement) {
     for (const std::uint32_t leaf : leaves) step.q[leaf] = 1;
     step.rays = rays_per_leaf * static_cast<std::int64_t>(leaves.size());
     const std::vector<Ray> traced = transport_rays(room.forest, room.ray_caster, step, streams_of(1));
-    // The first wall's elements are congruent: with the same numbers they would shoot in the same directions.
+    // The elements of the first wall are congruent: equal random numbers would give equal directions.
     for (std::size_t leaf = 1; leaf < leaves.size() && room.forest.patch(leaves[leaf]) < 9; ++leaf)
         EXPECT_GT((traced[leaf * rays_per_leaf].direction - traced[0].direction).length(), 1e-4f) << leaf;
 }
@@ -326,7 +326,7 @@ TEST(TransportRays, AreThoseThatTransportTraces) {
     std::vector<Hit> hits(traced.size());
     room.ray_caster.trace(traced, hits);
 
-    // With q in proportion to the sum of the channels every ray carries the same sum: count hits and compare.
+    // With q proportional to the sum of the channels, every ray carries the same sum, so hits can be counted.
     std::vector<double> hit_count(room.forest.size(), 0.0);
     for (const Hit& hit : hits)
         if (hit.patch != none) ++hit_count[hit.patch];

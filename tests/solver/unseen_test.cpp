@@ -1,7 +1,6 @@
-// Where importance is small, few rays are shot and the mesh is coarse. There the flat method gets noisy, while the
-// hierarchical one is only coarse (Prikryl et al. 2000, on their maze). In the chambers below, after 300,000 rays, the
-// errors in the one farthest from the eye are a quarter (at most 215%) against 144% (1,490%).
-// Seen to fail when Eq. 15 forgets psi.
+// Where importance is small, few rays are shot and the mesh is coarse. The flat method is noisy there, the hierarchical
+// one only coarse (Prikryl et al. 2000, in their maze). In the chambers below, after 300,000 rays, the errors in the
+// chamber farthest from the camera are 25% (at most 215%) against 144% (1,490%). Seen to fail if Eq. 15 lacks psi.
 
 #include <gtest/gtest.h>
 
@@ -19,10 +18,10 @@ namespace {
 using namespace testing_support;
 
 constexpr float length = 6, width = 3, height = 2.5f, gap = 0.6f;  // [m]
-constexpr float last_chamber = 4;                                  // it begins at this x [m]
+constexpr float last_chamber = 4;                                  // its lowest x [m]
 
-/// Three chambers in a row, a lamp in each; light and sight go from one to the next through gaps at opposite ends.
-/// Every rectangle is divided into n x n patches.
+/// Returns three chambers in a row, each with a lamp. Gaps at alternating ends connect them. Every rectangle is divided
+/// into n x n patches.
 Scene chambers(int n) {
     Scene scene = closed_box({length, width, height}, n, {{"wall", Rgb(0.6f), Rgb(0)}});
     const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(100));
@@ -51,15 +50,15 @@ SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t see
     options.views = {{first_chamber}};
     options.refinement.criterion = RefinementCriterion::power;
     options.experimental.epsilon_decay = 0;
-    options.experimental.epsilon = 2e-6;  // what the bounds below were found with
+    options.experimental.epsilon = 2e-6;  // used for the bounds below
     options.limits.rays = rays;
     options.seed = seed;
     return options;
 }
 
-constexpr int cells = 12;  // in which solutions are compared, each way on each rectangle
+constexpr int cells = 12;  // comparison cells in each direction on each rectangle
 
-/// Irradiance in the cells, rectangle by rectangle; the solution's patches are n x n on each.
+/// Returns the irradiance in the cells, by rectangle. Each rectangle has n x n patches in the solution.
 std::vector<double> in_cells(const Solution& s, int n) {
     std::vector<double> values;
     const auto patches_each = static_cast<std::uint32_t>(n * n);
@@ -74,7 +73,7 @@ std::vector<double> in_cells(const Solution& s, int n) {
     return values;
 }
 
-/// How far values are from the right ones, relative to these.
+/// Errors relative to the reference.
 struct Errors {
     double root_mean_square = 0, largest = 0;
 };
@@ -111,7 +110,7 @@ class Unseen : public testing::Test {
     }
 
     std::vector<double> reference_;  // of the cells
-    std::vector<bool> unseen_;       // those in the last chamber
+    std::vector<bool> unseen_;       // whether a cell is in the last chamber
 };
 
 TEST_F(Unseen, RegionsAreCoarseWhereTheFlatMethodIsNoisy) {

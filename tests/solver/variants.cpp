@@ -23,7 +23,7 @@ Variant flat(bool separate) {
     return variant;
 }
 
-/// One of the paper's eight, by its names for the options (METHOD.md section 4).
+/// Returns one of the paper's eight variants, with the names of docs/method.md.
 Variant hierarchical(bool separate, bool deferred, bool at_elements) {
     Variant variant = plain("ihsrr");
     variant.name += std::string(separate ? "_si" : "_ci") + (deferred ? "_dr" : "") + (at_elements ? "_hi" : "");
@@ -98,7 +98,7 @@ std::vector<Variant> extreme_variants() {
     add("inherited_trust_0", [](SolveOptions& o) { o.experimental.inherited_weight = 0; });
     add("inherited_trust_1", [](SolveOptions& o) { o.experimental.inherited_weight = 1; });
     add("total_importance", [](SolveOptions& o) { o.experimental.total_importance = true, o.experimental.beta = 0; });
-    // Flat: to what is not seen nothing is important, so it receives as a whole.
+    // Flat mesh: invisible patches have no importance, so they would receive as a whole.
     const auto direct = [](SolveOptions& o) { o.method.importance = ImportanceUse::direct; };
     add("direct_importance", direct, "isrr");
     return variants;
@@ -113,7 +113,7 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     SolveOptions options = variant.options;
     options.views = {{into_the_corner}};
     options.seed = seed;
-    // A kept ray has the colour that it was shot with, before any warm-up.
+    // A kept ray has the colour of its shooting, before any warm-up.
     options.experimental.one_bounce = !keeps_every_ray(variant);
     options.experimental.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
     options.experimental.iterations = 4;

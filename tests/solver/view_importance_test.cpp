@@ -1,7 +1,7 @@
-// Where eyes look, V, and what of importance the oracle is told.
+// View importance V, and the importance used by the oracle.
 //
-// Seen to fail when a second look replaces the first one's weights, when points stay with the elements that they were
-// first found in, and when the oracle is given importance as it was estimated.
+// Seen to fail if a second set of camera rays replaces the weights of the first, if points stay with the elements in
+// which they were first found, or if the oracle uses unsmoothed importance.
 
 #include "interflect/solver/view_importance.h"
 
@@ -34,7 +34,7 @@ TEST(ViewImportance, IsTheViewsByTheirWeightsHoweverOftenTheyAreLookedAt) {
     const std::vector<WeightedView> views{{at_x0, 3, 1}, {at_x2, 1, 1}};
     ViewImportance view(views, 1);
     EXPECT_TRUE(view.empty());
-    for (const int rays : {100, 2500}) {  // squares, so that there are exactly as many
+    for (const int rays : {100, 2500}) {  // squares, which give exactly this number of rays
         view.trace_view_rays(box.forest, box.ray_caster, box.panes, rays);
         const std::vector<float> v = view.per_area(box.forest, false);
         EXPECT_NEAR(box.share(v, wall_x0), 0.75, 1e-6);
