@@ -1,5 +1,4 @@
-# Installs `build` below `work`, moves that elsewhere, builds the project `consumer` against it and nothing else of ours,
-# runs that.
+# Installs `build` below `work`, moves the installation, builds the project `consumer` against it alone, and runs it.
 # cmake -D build=... -D consumer=... -D work=... -D generator=... -D compiler=... -D configuration=... -P check_package.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -9,7 +8,7 @@ endfunction()
 
 file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${work}/first --config ${configuration})
-set(prefix ${work}/moved)  # what is installed works from any folder
+set(prefix ${work}/moved)  # the installation works from any folder
 file(RENAME ${work}/first ${prefix})
 
 file(GLOB_RECURSE package_files ${prefix}/lib*/cmake/*.cmake)

@@ -1,4 +1,4 @@
-// Prints what the Khronos validator says of glTF files, as JSON: {FILE: report}.
+// Prints the Khronos validator's reports on glTF files as JSON: {FILE: report}.
 import { readFileSync } from "node:fs";
 import validator from "gltf-validator";
 
