@@ -53,13 +53,11 @@ SolveOptions paper_options(std::uint64_t seed) {
     return options;
 }
 
-/// Returns the mean irradiance over all surfaces, from the roots of the forest.
 double area_weighted_mean(const Solution& solution) {
     const std::vector<Rgb> ones(solution.irradiance.size(), Rgb(1));
     return integral(*solution.forest, solution.irradiance).x / integral(*solution.forest, ones).x;
 }
 
-/// Solutions of one furnace with many seeds.
 struct Runs {
     std::vector<std::vector<double>> irradiance;  // [patch][run]
     std::vector<double> area_mean, plain_mean;    // [run], over the patches

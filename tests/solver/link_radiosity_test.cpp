@@ -324,7 +324,6 @@ TEST(LinkRadiosity, ClosedBoxLosesNoPowerOnAnyMesh) {
     }
 }
 
-/// Solves with at most this number of links.
 void solve_with_links(const Scene& scene, const SolveOptions& options, std::size_t link_limit) {
     const RayCaster ray_caster(scene);
     SolverState state(scene, ray_caster, options);

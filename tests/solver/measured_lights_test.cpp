@@ -111,7 +111,6 @@ const std::vector<OpeningCase> openings{{"rectangle", {Shape::box, {1.2f, 0.5f, 
                                         {"tube_along_c90", {Shape::cylinder, {0.2f, 1.2f, 0.3f}, 1}},
                                         {"ellipsoid", {Shape::ellipsoid, {0.9f, 0.5f, 0.7f}, 2}}};
 
-/// A point on the surface of an opening, with outward normal and area.
 struct SurfacePoint {
     V3d position, normal;
     double area;

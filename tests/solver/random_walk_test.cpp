@@ -46,7 +46,6 @@ SolveOptions walk_options(ImportanceUse importance, std::uint64_t seed) {
     return options;
 }
 
-/// Solutions of one scene with many seeds.
 struct Runs {
     std::vector<Solution> solutions;
 

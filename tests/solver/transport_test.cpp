@@ -27,7 +27,6 @@ constexpr std::int64_t rays = 50'000;
 struct Room {
     explicit Room(Scene s, std::size_t capacity = 1 << 18) : scene(std::move(s)), forest(scene, capacity) {}
 
-    /// Returns the radiosity of the current elements.
     Radiosity light() {
         irradiance.assign(forest.size(), Rgb(1));
         return Radiosity(materials, irradiance);
@@ -268,7 +267,6 @@ TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
     EXPECT_LT(smallest, 4 * min_area) << "everything is divided as far as it may";
 }
 
-/// Returns the number of elements after a step in a box with this exitance.
 std::uint32_t elements_under(const Rgb& exitance, float threshold) {
     Room room(closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), exitance}}));
     const std::vector<Rgb> darkness(room.forest.size(), Rgb(0));

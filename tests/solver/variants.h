@@ -10,7 +10,6 @@
 
 namespace interflect::testing_support {
 
-/// A method with options.
 struct Variant {
     std::string name;  ///< Letters, digits and underscores.
     SolveOptions options{.method = find_method("srr")};
@@ -24,9 +23,7 @@ std::vector<Variant> variants_that_keep_every_ray();
 std::vector<Variant> stochastic_variants();
 /// Returns the stochastic methods of neither kind, without options. Each traces light to its end.
 std::vector<Variant> variants_of_other_methods();
-/// Returns the variants that use importance.
 std::vector<Variant> variants_with_importance();
-/// Returns the variants that refine the mesh.
 std::vector<Variant> variants_that_refine();
 
 /// Returns importance-driven variants with options at the ends of their ranges.

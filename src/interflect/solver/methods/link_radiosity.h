@@ -25,7 +25,6 @@ struct Link {
     double mean_area() const { return channel_sum(area()) / 3; }
 };
 
-/// Two elements to link.
 struct LinkCandidate {
     ElementPair ends;
     Effort effort;

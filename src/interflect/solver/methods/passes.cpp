@@ -203,7 +203,6 @@ std::vector<float> power_sampling(const SolverState& state) {
     return q;
 }
 
-/// Returns the total importance of every patch.
 std::vector<float> patch_importance(const SolverState& state) {
     const Importance psi = importance_of(state.solution);
     std::vector<float> values;

@@ -84,18 +84,13 @@ void replace_shot(std::vector<T>& unshot, const std::vector<float>& chosen, cons
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
-/// Progressive refinement (Cohen et al. 1988) with rays in place of form factors. Patches hold unshot received power,
-/// and each step shoots the patches with the most. With a view, power is weighted by importance, as in ihsrr (Bekaert
-/// and Willems 1994, 1995). The first step shoots the emitters. Importance is computed by the same steps in dual order:
-/// the patches with the most unshot importance shoot it, initially the view importance.
+/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995) with rays in place of form factors, see
+/// docs/method.md. Each step shoots the patches with the most unshot power, weighted by importance if there is a view.
+/// The first step shoots the emitters. Importance is computed by the same steps in dual order. A step is a batch of all
+/// patches with at least half of the largest amount, so transport() traces long batches.
 ///
-/// An iteration is a solution from darkness until little is left to shoot. The mean of many iterations, Eq. 6, reduces
-/// the error. Random walks complete the last step of power. If there are few rays, they carry most of the power.
-///
-/// A step is a batch of all patches with at least half of the largest unshot amount. Thus order is kept to a factor of
-/// two, ties need no rule, and transport() traces long batches.
-///
-/// Constant on patches: no refinement. The same seed gives the same bits for any number of threads.
+/// An iteration is a solution from darkness. Random walks complete its last step of power, and carry most of the power
+/// if rays are few. Constant on patches: no refinement. The same seed gives the same bits for any number of threads.
 class ProgressiveRefinement final : public IterationMethod {
   public:
     /// Computes importance, which guides the first power rays.

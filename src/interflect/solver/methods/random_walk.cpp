@@ -16,7 +16,6 @@ namespace {
 /// Paths of the pilot, which measures the length of paths; minimum rays of the batch per pilot path.
 constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 
-/// Result of one batch.
 struct BatchResult {
     std::vector<Rgb> irradiance;  ///< Per patch; importance is per area too.
     RgbD escaped{0, 0, 0};
