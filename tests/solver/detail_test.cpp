@@ -151,7 +151,7 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     options.views.push_back({{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}});
     interflect::SolverState state(scene, ray_caster, options);
     state.solution.view_importance.assign(state.forest->size(), 1.0f);
-    state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // luminance 0.02, but that of the reflected light is 0.4
+    state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // luminance 0.02; the reflected light has 0.4
     EXPECT_LE(error_weight(state, ErrorMeasure::pictures, 0), 0.8 * 0.8);
     EXPECT_GE(error_weight(state, ErrorMeasure::pictures, 0), 0.1 * 0.1);
 }

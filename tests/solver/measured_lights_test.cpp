@@ -116,7 +116,7 @@ struct SurfacePoint {
     double area;
 };
 
-/// Returns the surface in small pieces. That of a line is empty.
+/// Returns the surface in small pieces. A line has no pieces.
 std::vector<SurfacePoint> surface_of(const LuminousOpening& o) {
     constexpr int n = 40;
     const V3d half = V3d(o.size) / 2;

@@ -21,9 +21,9 @@ using namespace testing_support;
 /// A room of 4 x 3 x 2.5 m with a table under a lamp, above a cellar that exchanges no light with it.
 struct Room {
     float metre = 1;            ///< In units of the file.
-    float brightness = 1;       ///< Of all lights.
+    float brightness = 1;       ///< Factor of all exitances.
     int lamp_divisions = 1;     ///< In each direction.
-    float cellar_exitance = 0;  ///< That of the lamp is 100.
+    float cellar_exitance = 0;  ///< The lamp has 100.
     double epsilon = 1e-5, epsilon_decay = 0;
     std::int64_t rays = 200'000;
     std::uint64_t seed = 1;

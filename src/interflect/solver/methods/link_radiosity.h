@@ -47,10 +47,9 @@ struct RefinementCandidate;
 /// With importance (Smits et al.), psi is transported backwards over the same links, so sum v P = sum psi W on any
 /// mesh. The error bound is weighted by psi_i / psi_max as in Eq. 15.
 ///
-/// An independent check of the Monte Carlo methods: it has discretisation error and, from sampled visibility, little
-/// noise. The error depends on the mesh. It is largest in the smallest elements along edges where surfaces meet,
-/// because the errors of many good links have the same sign there. Intended for a few thousand patches: all pairs are
-/// tested.
+/// An independent check of the Monte Carlo methods, with discretisation error and, from sampled visibility, little
+/// noise. The error is largest in the smallest elements along edges where surfaces meet, because the errors of many
+/// good links have the same sign there. Intended for a few thousand patches: all pairs are tested.
 ///
 /// The run ends when a sweep changes almost nothing and no link needs refinement. Refinement stays within
 /// options.limits.rays, max_elements and min_area; the first links may exceed the limit of rays.

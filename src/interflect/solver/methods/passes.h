@@ -21,7 +21,7 @@ struct Pass {
     StartPoints start_points;                             ///< Origins of the next bounce.
     ImportanceWeights weights;
     BounceBudget budget;
-    double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce; see PowerStep.
+    double first_power = 0, first_weighted_power = 0;  ///< See PowerStep; of the first bounce.
 };
 
 /// Transport of importance from the views, before the first pass.

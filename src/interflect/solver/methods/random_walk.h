@@ -12,7 +12,7 @@ struct PathSeries {
     std::uint64_t key;  ///< Key of their random numbers.
     std::uint64_t batches = 0;
     std::int64_t pilot_rays = 0;  ///< Rays of the pilot of the first batch.
-    double rays_per_path = 0;     ///< Of the last batch or the pilot; 0: not measured.
+    double rays_per_path = 0;     ///< In the last batch or the pilot; 0: not measured.
 };
 
 /// Random walks of particles that solve Eq. 1 of Prikryl et al. 2000 (Pattanaik and Mudur 1992). A particle leaves an
