@@ -37,7 +37,7 @@ class Scale:
     size: tuple[int, int] = (1280, 720)  # the size that the solver's estimate assumes
     samples: int | None = None  # paths per pixel of each reference picture; None: Scene.samples
     most_rays: int = 64_000_000  # for runs with an error limit
-    total_rays: int = 60_000_000  # random walks for the total power
+    total_rays: int = 20_000_000  # random walks for the total power
 
 
 QUICK = Scale(50_000, (160, 90), 4, 100_000, 200_000)
@@ -163,7 +163,7 @@ class Bench:
         with tempfile.TemporaryDirectory() as folder:
             solution, stats = f"{folder}/solved.h5", Path(folder) / "stats"
             said = program.run(self.command, ["solve", str(path), *options.split(), "-o", solution, "--stats", str(stats)]).messages
-            pictures = [self.picture(solution, scene, shading) for shading in ("smooth --samples 8", "flat --samples 16", "gather --no-mirrors --samples 2")]
+            pictures = [self.picture(solution, scene, shading) for shading in ("smooth --samples 4", "flat --samples 4", "gather --no-mirrors --samples 2")]
             header, last = program.read_stats(stats)
         smooth, flat, gathered = (luminance(p) for p in pictures)
         error, noise, among = reference.pixel_error(flat)
@@ -197,8 +197,9 @@ class Bench:
             return read_exr(Path(file.name))
 
     def total(self, path: Path, scene: Scene) -> float:
-        """Estimates the total over emitted power by random walks, which need no mesh."""
-        options = f"{scene.options} --method random-walk --rays {self.scale.total_rays} --seed 97"
+        """Returns total over emitted power by random walks on fixed patches of 3 cm, on each of which radiosity is constant.
+        The bias is about 0.1% with lamps 2 cm from a ceiling (0.5% for patches of 10 cm)."""
+        options = f"{scene.options} --method random-walk --mesh-size 0.03 --rays {self.scale.total_rays} --seed 97"
         key = hashlib.sha256(scene.text.encode() + options.encode()).hexdigest()[:16]
         kept = self.folder / f"{path.stem}-{key}.total"
         if not kept.is_file():

@@ -104,7 +104,8 @@ SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std
         return mean_along_edge(forest, irradiance, patch, edge, forest.geometry(patch).is_triangle());
     };
     Imath::M33d squares(0, 0, 0, 0, 0, 0, 0, 0, 0);
-    Gradient products{};
+    Gradient products;
+    products.fill(Imath::V3d(0));
     for (const Neighbour& n : neighbours(curved)) {
         const Imath::V3d turn(forest.geometry(n.patch).normal() - forest.geometry(curved.patch).normal());
         const Rgb step = along(n.patch, n.other_edge) - along(curved.patch, n.edge);
@@ -113,7 +114,7 @@ SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std
         for (std::size_t c = 0; c < 3; ++c) products[c] += turn * static_cast<double>(step[static_cast<int>(c)]);
     }
     const double trace = squares[0][0] + squares[1][1] + squares[2][2];
-    if (!(trace > 0)) return {};
+    if (!(trace > 0)) return products;
     for (int i = 0; i < 3; ++i) squares[i][i] += relative_ridge * trace;
     const Imath::M33d inverse = squares.inverse();
     for (Imath::V3d& g : products) g = g * inverse;
