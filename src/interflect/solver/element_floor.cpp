@@ -11,7 +11,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Surfaces seen at a grazing angle are taken to be seen at this cosine: a pixel's share of them is long and narrow.
+/// Minimum cosine: at grazing angles, the area of a pixel on a surface is long and narrow.
 constexpr float least_cosine = 0.1f;
 
 }  // namespace

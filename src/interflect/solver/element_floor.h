@@ -7,26 +7,25 @@
 
 namespace interflect::inline detail {
 
-/// The smallest area that elements are divided to. Depends on the views and on how large the scene's surfaces are, not
-/// on the size of the world.
+/// Minimum area of elements. Depends on the views and the size of the scene's surfaces, not on the size of the world.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// The area that a pixel of the nearest view shows of a surface there [m^2]; infinite where there is no view.
+    /// Smallest area that a pixel of any view covers on a surface there [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// @param is_seen  By a view: then the area that a pixel of the nearest view shows there; else as below.
+    /// @param is_seen  Visible to a view: the result is pixel_area(), else unseen().
     /// @return         [m^2]; RefinementOptions::min_area wherever that is given.
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// Where no view looks: the square of default_element_size().
+    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
     float unseen() const { return unseen_; }
 
   private:
     struct Eye {
         V3f position;
-        float pixel;  // width at distance 1
+        float pixel;  // width of a pixel at distance 1
     };
     std::vector<Eye> eyes_;
     float unseen_;

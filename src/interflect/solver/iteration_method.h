@@ -5,31 +5,32 @@
 
 namespace interflect::inline detail {
 
-/// How one family of methods does its iterations, with the state that is its own. What throws Interrupted may be called
-/// again, and goes on with the step of rays that was cut short.
+/// Iterations of one family of methods, with their own state. A function that threw Interrupted may be called again and
+/// resumes with the interrupted step.
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
 
-    /// What comes before the first iteration. @throws Interrupted
+    /// Runs the steps before the first iteration. @throws Interrupted
     virtual void prepare(SolverState&) {}
-    /// Whether all is done that the options ask for.
+    /// Whether the run has reached the limits of its options.
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
-    /// The next iteration; of 0 rays where there is none.
+    /// Plans the next iteration; 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
-    /// Does an iteration. @param plan  Its rays become those that were traced. @return The power that leaves the
-    /// scene, averaged as irradiance is. @throws Interrupted
+    /// Runs an iteration. @param plan  Receives the number of rays traced. @return Escaped power, averaged like
+    /// irradiance.
+    /// @throws Interrupted
     virtual RgbD iterate(SolverState& state, IterationPlan& plan) = 0;
-    /// Completes the solution: what is known of each element beside its irradiance.
+    /// Completes the solution: computes the other results of each element.
     virtual void finish(SolverState& state) const;
-    /// Looks at the views that the options have now; importance is found anew.
+    /// Recomputes the view importance for the current views, and resets the indirect importance.
     virtual void retarget(SolverState& state);
 
-    /// The sources of a light group emit `factor` times what they did when light of it was last found.
+    /// Scales the stored light of a group. Its sources emit `factor` times the light for which it was computed.
     virtual void scale_group(SolverState&, std::size_t /*group*/, float /*factor*/) {}
 
     virtual void archive(StateArchive& archive) = 0;
-    /// Whether what archive() has read can belong to this run.
+    /// Whether the state read by archive() fits this run.
     virtual bool fits(const SolverState&) const { return true; }
 };
 

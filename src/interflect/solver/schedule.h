@@ -7,38 +7,38 @@
 
 namespace interflect::inline detail {
 
-/// One iteration to come.
+/// Plan of the next iteration.
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
-    bool warms_up = false;  ///< It is not averaged: the next one takes its place.
-    bool is_final = false;  ///< It has all rays that are left, and the run ends with it, even if light runs out first.
+    bool warms_up = false;  ///< Not averaged: the next iteration replaces it.
+    bool is_final = false;  ///< Has all remaining rays and ends the run, even if it traces fewer.
 };
 
-/// How many rays the next iteration gets. Iterations are averaged by their ray counts, tau = N_m / (N_1 + ... + N_m) in
-/// Eq. 6, which is the paper's 1/m when all have the same; without a fixed size they grow with what was averaged
-/// before, so that early iterations, which still lack late bounces and a fine mesh, soon weigh little. A size beyond
-/// 2^24 rays holds from the second iteration on, unless their number is asked for.
+/// Ray counts of the iterations. The weight of an iteration is its ray count, tau = N_m / (N_1 + ... + N_m) in Eq. 6,
+/// Prikryl et al. 2000; equal counts give the paper's 1/m. Without a fixed size, iterations grow with the rays averaged
+/// before. So early iterations, which lack late bounces and a fine mesh, soon have little weight. A fixed size above
+/// 2^24 rays applies from the second iteration on, unless a number of iterations is given.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays of each pass before the first iteration: no more than an eighth of all, but one; nor more than take a
-    /// moment, whatever the size of an iteration.
+    /// Rays of each pass before the first iteration: at least one, at most an eighth of all, and few enough to take a
+    /// short time for any size of iterations.
     std::int64_t start_rays() const;
-    /// Enters the rays of those passes; those that carried power are the first term of the average.
+    /// Records the rays of these passes. Rays that carried power are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// With a limit of time an iteration is planned to end before it, since one that does not is lost.
+    /// Plans the next iteration. With a time limit it should end in time, because an interrupted iteration is lost.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
-    /// Whether there is no next one, however much time is left.
+    /// Whether the run is complete, even if time remains.
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
-    /// Iterations begin small again, and grow with what is averaged from now on.
+    /// Makes the next iterations small; they grow with the rays averaged from now on.
     void restart() { averaged_at_restart_ = averaged_rays_; }
-    /// Enters rays that are averaged with none.
+    /// Adds rays that are not averaged.
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// Replaces SolveOptions::limits; what they made of the first iterations stays.
+    /// Replaces SolveOptions::limits. The size of the first iterations, derived from the old limits, does not change.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 
@@ -49,15 +49,15 @@ class Schedule {
     std::int64_t affordable_rays(double seconds);
 
     SolveOptions options_;
-    std::int64_t first_rays_;         // of the first iteration, unless its size was asked for
-    std::int64_t smallest_;           // iteration [rays]
+    std::int64_t first_rays_;         // of the first iteration, unless a size is given
+    std::int64_t smallest_;           // iteration size [rays]
     std::int64_t rays_ = 0;           // traced so far
-    std::int64_t averaged_rays_ = 0;  // of them in the running mean
+    std::int64_t averaged_rays_ = 0;  // rays in the running mean
     std::int64_t averaged_at_restart_ = 0;
-    int finished_ = 0;                // iterations
-    bool is_over_ = false;            // the final one is done
-    double planned_at_ = 0;           // when the last iteration was planned [s],
-    std::int64_t planned_after_ = 0;  // and after how many rays
+    int finished_ = 0;                // number of finished iterations
+    bool is_over_ = false;            // the final iteration is done
+    double planned_at_ = 0;           // time at which the last iteration was planned [s]
+    std::int64_t planned_after_ = 0;  // rays traced before that
 };
 
 }  // namespace interflect::inline detail

@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A number in [0, 1] as every second bit of 32.
+/// Converts a number in [0, 1] to 16 bits, which are the even bits of the result.
 std::uint32_t spread_bits(float x) {
     auto bits = static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1.0f) * 65535.0f);
     bits = (bits | bits << 8) & 0x00ff00ffu;
@@ -18,7 +18,7 @@ std::uint32_t spread_bits(float x) {
     return (bits | bits << 1) & 0x55555555u;
 }
 
-/// Position along a Morton curve: points that follow each other are close, so stratified samples are spread evenly.
+/// Position along a Morton curve. Successive points are close, so stratified samples are spread evenly.
 std::uint32_t position_on_curve(const Parameters& p) { return spread_bits(p.u) | spread_bits(p.v) << 1; }
 
 bool is_before(const StartPoint& a, const StartPoint& b) {

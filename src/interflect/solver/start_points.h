@@ -13,7 +13,7 @@ namespace interflect::inline detail {
 /// A point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< Sum of the channels [any unit]; in StartPoints: of this point and those before it on the leaf.
+    float power;    ///< Sum of the channels [any unit]; in StartPoints: cumulative over the points of the leaf.
     Parameters at;  ///< On the leaf's patch.
 };
 
@@ -23,10 +23,10 @@ struct StartPoint {
 class StartPoints {
   public:
     StartPoints() = default;
-    /// @param points  In any order, which changes no bit. Cost: O(n log n) on all threads, 16 bytes a point.
+    /// @param points  In any order, with the same bits. Cost: O(n log n) on all threads, 16 bytes per point.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// The points of a leaf; empty for a leaf that starts its rays anywhere. Cost: O(log n).
+    /// Returns the points of a leaf; empty if its rays start uniformly. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
@@ -34,7 +34,7 @@ class StartPoints {
     static Parameters choose(std::span<const StartPoint> points, float u);
 
     void archive(StateArchive& archive, const std::string& name) { archive(name, points_); }
-    /// Whether all points lie on leaves of a forest of so many elements.
+    /// Whether all points lie on leaves of a forest with this number of elements.
     bool fit(std::size_t elements) const { return points_.empty() || points_.back().leaf < elements; }
 
   private:

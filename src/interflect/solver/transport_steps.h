@@ -11,61 +11,60 @@
 
 namespace interflect::inline detail {
 
-/// What steers a run: what its method asks for, and nothing where there is no view.
+/// Use of importance: as requested by the method, or off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// Whether the mesh of a run is refined between its passes, by what they tell of its elements.
+/// Whether variance refines the mesh between passes.
 bool refines_by_variance(const SolveOptions& options);
 
-/// psi of every element, which refers to the solution; empty where there is no view.
+/// psi of every element; refers to the solution. Empty without a view.
 Importance importance_of(const Solution& so_far);
-/// The same, added up.
+/// Same, as a sum.
 std::vector<float> total_importance(const Solution& so_far);
 
-/// The importance that drives the rays of power, as the method and the options ask for; empty where none does.
+/// Importance for sampling rays with power, by method and options; empty if not used.
 struct ImportanceWeights {
     std::vector<float> elements;
-    std::vector<float> nearby;  ///< Of patches, as it is in their neighbourhoods; empty where it is taken as it is.
-    std::vector<float> parts, parts_nearby;  ///< The same of the luminaires' parts; empty without luminaires.
+    std::vector<float> nearby;               ///< By patch, from its neighbourhoods; empty without smoothing.
+    std::vector<float> parts, parts_nearby;  ///< Same, for luminaire parts; empty without luminaires.
 };
-/// @param found  By the rays of the luminaires' parts so far.
+/// @param found  Importance found by the rays of luminaire parts so far.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
-/// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
-/// drives rays (Eq. 9, 10; 0 where none does).
+/// Step with its sampling sums over the leaves: P_s (Eq. 3), and P_s times the sampling importance (Eq. 9, 10; 0 if not
+/// used).
 struct PowerStep {
     TransportStep step;
     double power = 0, weighted_power = 0;
-    std::int64_t lost_leaves = 0;  ///< Those of which nothing can be shot, since it is not finite.
+    std::int64_t lost_leaves = 0;  ///< Leaves with non-finite radiosity; they shoot no rays.
 };
 
-/// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
-/// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
-/// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
-/// taken for unimportant the few rays that start there carry much. No oracle is set.
+/// Makes a step that carries power and, if `combined`, importance too (Eq. 11, Prikryl et al. 2000). The method selects
+/// the weights of leaves: power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). A share beta
+/// of the rays is sampled by power alone, and another by neighbourhood importance. Few rays with importance hit a small
+/// lamp. If its importance is underestimated, the few rays that start there have large weights. Sets no oracle.
 /// @param weights  importance_weights(so_far).
-/// @param emission  Of the luminaires: it is shot where `light` emits.
-/// @param light    What is to be shot. The step refers to what `so_far`, `emission` and `light` do.
+/// @param emission  Luminaires; they shoot if `light` emits.
+/// @param light    Radiosity to shoot. The step refers to the data of `so_far`, `emission` and `light`.
 PowerStep power_step(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
-/// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
-/// it.
+/// Makes a step that carries importance only (Eq. 8). @param importance  To reflect; the step refers to it.
 TransportStep importance_step(const Materials& materials, const Solution& so_far, const Importance& importance,
                               std::int64_t rays);
 
-/// The oracle of the run's method, Eq. 14 or 15, with the references below.
-/// @param rays  That irradiance is the mean of, after this step; > 0. The more, the lower the threshold.
+/// Makes the oracle of the method (Eq. 14 or 15), relative to the references below.
+/// @param rays  Number of averaged rays after this step, > 0. The threshold falls as it grows.
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 
-/// The power that the oracle's threshold is relative to [lm or W]. With a view: what arrives at the surfaces it sees,
-/// as if all were lit as they are on average; so it depends neither on lamps in the picture nor on lights elsewhere,
-/// nor on how an emitter is divided, nor (times a length squared on both sides of Eq. 14) on the unit of length.
-/// Without a view, and as long as what it sees is dark: all emitted power.
+/// Reference of the oracle's threshold [lm or W]. With a view: the power that visible patches would receive if all had
+/// the mean irradiance of the picture. It does not depend on lamps in the picture, lights elsewhere or the tessellation
+/// of emitters. Both sides of Eq. 14 scale with the square of length, so the unit of length does not matter. Without a
+/// view, or while the visible patches are dark: all emitted power.
 double reference_power(const Solution& so_far);
 
-/// psi_max of Eq. 15: the area-weighted mean of psi over the patches that the view sees [1/m^2].
+/// psi_max of Eq. 15: the area-weighted mean of psi over the visible patches [1/m^2].
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);
 
 }  // namespace interflect::inline detail

@@ -5,14 +5,14 @@
 
 namespace interflect::inline detail {
 
-/// Splits every leaf within which irradiance is expected to vary by more than the noise that its children will have:
-/// the variation is extrapolated from how the leaf and its siblings differ, beyond their noise (detail.h). Not where
-/// that matters nothing to the error of the whole, nor below the smallest area (ElementFloor). New elements inherit
-/// what their parents have; how they differ is measured by later rays alone, so it is not biased by the choice.
-/// To be called between iterations.
+/// Splits every leaf in which irradiance is expected to vary by more than the noise of its children. The variation is
+/// extrapolated from the differences between the leaf and its siblings, less their noise (detail.h). Leaves with a
+/// negligible share of the total error, and the smallest elements (ElementFloor), are not split. New elements inherit
+/// from their parents. Only later rays measure their differences, so the choice does not bias them. Call between
+/// iterations.
 void refine_by_variance(SolverState& state);
 
-/// Leaves that reflect light where they receive it (StartPoints), one entry an element; empty unless
+/// Marks leaves that reflect light where they receive it (StartPoints), one entry per element. Empty unless
 /// refine_by_variance() makes the mesh.
 std::vector<std::uint8_t> leaves_that_blur(const SolverState& state);
 

@@ -14,27 +14,26 @@
 
 namespace interflect::inline detail {
 
-/// The points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
-/// that they can be handed to elements anew whenever the mesh has changed.
+/// Hit points of camera rays, spread evenly over the pictures. Stored as points, 20 bytes each, to be assigned to the
+/// new elements when the mesh changes.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Traces more camera rays on all threads, jittered, one to a cell of the picture plane; about so many for each
-    /// view.
+    /// Traces about `rays_per_view` more camera rays per view on all threads, jittered, one per cell of the picture.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
-    bool empty() const { return points_.empty(); }  ///< No view shows anything.
-    std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
+    bool empty() const { return points_.empty(); }  ///< No view shows a surface.
+    std::int64_t rays() const { return rays_; }     ///< Total number requested for all views.
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces, in [0, 1].
     double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
-    /// v = V / A of every element [1/m^2]: V is the share of the picture that shows the element,
-    /// weighted over the views; sum of V over what all views hit = 1, and what is seen through panes of glass counts
-    /// as much as comes through. Inner elements have the mean of their children.
-    /// @param at_patches  Spread each patch's V evenly over it.
+    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element, weighted
+    /// over the views, and sums to 1 over the hit surfaces. Surfaces behind glass panes add their transmitted share.
+    /// Inner elements have the mean of their children.
+    /// @param at_patches  Spread the V of each patch evenly over it.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
     void archive(StateArchive& archive);
@@ -42,15 +41,15 @@ class ViewImportance {
     bool fits(const ElementForest& forest) const;
 
   private:
-    /// @param share  Of each ray.
+    /// @param share  Weight of each ray.
     void add_points_behind(const ElementForest& forest, const Panes& panes, std::span<const Ray> rays,
                            std::span<const Hit> hits, float share);
 
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;         // of all pictures, times shares_
-        std::uint32_t leaf;  // that holds it, when last looked up
+        float share;         // share of all pictures, times shares_
+        std::uint32_t leaf;  // that contains the point, at the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;

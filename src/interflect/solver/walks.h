@@ -16,14 +16,14 @@ namespace interflect::inline detail {
 /// Power that a leaf is about to reflect.
 struct ReflectedPower {
     std::uint32_t leaf, patch;
-    Parameters at;  ///< Where the leaf received it.
+    Parameters at;  ///< Point where the leaf received it.
     RgbD power;     ///< [lm or W]
 };
 
-/// The particles of one task; one a thread, reused.
+/// Particles of one task; one object per thread, reused.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
-    std::vector<RgbD> received_groups, reflected_groups;  ///< The power of each light group, particle by particle.
+    std::vector<RgbD> received_groups, reflected_groups;  ///< Power by light group, [particle][group].
     std::vector<Ray> rays;
     std::vector<Hit> hits;
     std::vector<Panes::HitBehind> behind;
@@ -35,8 +35,8 @@ struct Walkers {
 /// probability equal to its reflectance. Unlike a bounce, a walk costs no time for elements that it does not visit.
 class Walks {
   public:
-    /// @param elements  Of the forest when the step began: deeper ones receive through their ancestors.
-    /// @param key       Of the random numbers of the step's walks.
+    /// @param elements  Size of the forest at the start of the step. Newer elements receive through their ancestors.
+    /// @param key       Key of the random numbers.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const Units& units, std::uint32_t elements, std::uint64_t key);
 
