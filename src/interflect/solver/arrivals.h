@@ -12,35 +12,30 @@
 
 namespace interflect::inline detail {
 
-/// Sums of the contributions that each element receives in a step: three channels of power, the squared luminance of
-/// each ray's power, and importance. They are fixed-point integers, so the order of additions does not matter. Each
-/// thread collects contributions in its own ScatterBuffer, binned by region of the forest. A full bin is flushed under
-/// the lock of its region, so no addition is atomic, and nearby elements are added together.
+/// Sums of the contributions to each element in a step: three channels of power, squared luminance of each ray's power,
+/// and importance. Fixed-point integers make the order of additions irrelevant. Each thread bins contributions by
+/// region of the forest in its own ScatterBuffer. Full bins are flushed under the lock of their region.
 class Arrivals {
   public:
-    static constexpr std::size_t power_terms = 4,
-                                 importance_term = 4;  // number of power terms; index of the importance term
+    static constexpr std::size_t power_terms = 4, importance_term = 4;
     using Contribution = std::array<std::int64_t, 5>;
-    /// Reserved address space of one element [bytes].
+    /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element(std::size_t groups) {
         return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
     }
 
     /// @param capacity  Maximum number of elements.
-    /// @param groups    Number of light groups; each adds three sums of power per element.
     explicit Arrivals(std::size_t capacity, std::size_t groups = 0)
         : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
-    /// Call before a step. @param elements  Current size of the forest.
+    /// @param elements  Current size of the forest.
     void begin(std::size_t elements);
-    /// Clears the sums of the first `elements` elements.
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
         for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;
     }
-    /// Returns the sum of an element and resets it to zero.
+    /// Returns the sum of an element and resets it.
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
-    /// Same, for the power of a light group.
     std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
         std::array<std::int64_t, 3> power{};
         for (std::size_t c = 0; c < 3; ++c) power[c] = std::exchange(group_sum(element, group)[c], 0);
@@ -53,8 +48,8 @@ class Arrivals {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Frees the memory of elements whose sums were taken. Small forests keep it, because clearing new pages takes
-    /// longer than the additions.
+    /// Frees the memory of collected elements. Small forests keep it: clearing new pages takes longer than the
+    /// additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= most_kept) return;
         sums_.release(begin, end);
@@ -82,11 +77,11 @@ class Arrivals {
             bin.arrivals[bin.count++] = {element, source & (most_sources - 1), power, importance};
             if (bin.count == bin.arrivals.size()) flush(region);
         }
-        /// Call regularly, while no source index is in use. Keeps the table of sources small.
+        /// Limits the table of sources. Call while no source index is in use.
         void release_sources() {
             if (contributions_.size() >= enough_sources) flush_all();
         }
-        /// Call after the last addition. Source indices start at 0 again.
+        /// Restarts source indices at 0.
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();
@@ -97,7 +92,7 @@ class Arrivals {
         struct Arrival {
             std::uint32_t element;
             std::uint32_t source : 30;
-            std::uint32_t power : 1, importance : 1;  // parts of the contribution to add
+            std::uint32_t power : 1, importance : 1;
         };
         struct Bin {
             std::size_t count = 0;

@@ -26,7 +26,6 @@ class Carried {
           q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
 
     RgbD power(std::uint32_t source) const { return per_ray(source, radiated(source)); }
-    /// Share of a light group in that power.
     RgbD power(std::uint32_t source, std::size_t group) const {
         if (source < elements_) {
             const Rgb share = step_.groups.of(materials_, forest_, source, group);
@@ -40,7 +39,6 @@ class Carried {
     RgbD radiated(std::uint32_t source) const {
         return source < elements_ ? RgbD(step_.light.of(forest_, source)) : step_.emission->power(source - elements_);
     }
-    /// Scales radiosity of a leaf, or power of a luminaire part, to the payload of one ray.
     RgbD per_ray(std::uint32_t source, const RgbD& light) const {
         if (!step_.equal_quanta) return light * (source < elements_ ? area_per_ray(source) : per_ray(source));
         const double sum = channel_sum(radiated(source));
@@ -59,7 +57,7 @@ class Carried {
     double q_sum_over_rays_;
 };
 
-/// Sums over the payloads of all rays of a step.
+/// Sums over all rays of a step.
 struct Totals {
     RgbD power{0, 0, 0};  ///< [lm or W]
     double square = 0;    ///< Squared luminance of each ray's power.
@@ -86,7 +84,7 @@ struct Units {
     Units(const Totals& all, double visits)
         : power(channel_sum(all.power) * visits), square(all.square * visits), importance(all.importance) {}
 
-    /// Contribution of a particle without importance.
+    /// Contribution without importance.
     Arrivals::Contribution contribution_of(const RgbD& particle) const {
         Arrivals::Contribution contribution{};
         const FixedPoint::Value of_power = power.from(particle);
@@ -95,7 +93,7 @@ struct Units {
         return contribution;
     }
 
-    /// @param transmittance  Product over the panes that the ray has passed.
+    /// @param transmittance  Of the panes passed.
     Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source,
                                         const Rgb& transmittance = Rgb(1)) const {
         Arrivals::Contribution contribution{};
@@ -106,7 +104,7 @@ struct Units {
         return contribution;
     }
 
-    /// Replaces `terms` by the power of each light group in that contribution.
+    /// Replaces `terms` by the power of each light group.
     void add_groups(const TransportStep& step, const Carried& carried, std::uint32_t source,
                     std::vector<std::int64_t>& terms, const Rgb& transmittance = Rgb(1)) const {
         terms.clear();

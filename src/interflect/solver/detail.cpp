@@ -15,38 +15,37 @@ namespace {
 
 constexpr float unknown = std::numeric_limits<float>::infinity();
 
-/// Assumed variation of irradiance within a leaf without measurements, relative to its mean.
+/// Assumed relative variation of irradiance in an unmeasured leaf.
 constexpr float assumed_variation = 0.1f;
 
-/// The mean squared difference falls per level to a quarter where irradiance is smooth, and to a half at edges. The
-/// measured decay is clamped to these bounds.
+/// Bounds of the mean squared difference relative to the next coarser level. It is a quarter for smooth irradiance, a
+/// half at edges.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
-/// Siblings count as under-sampled until they have received this fraction of their parent's rays.
+/// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float young = 0.125f, highest_expected_decay = 0.5f;
 
 bool uses_shrinkage(const SolverState& state) {
     return state.options.experimental.shrinkage && refines_by_variance(state.options);
 }
 
-/// Mean square errors of an element in addition to those of its parent.
+/// Mean square errors in addition to the parent's.
 struct AddedError {
     float noise = 0, bias = 0;
 };
 
 AddedError added_error(const SolverState& state, std::uint32_t first) {
     const Detail detail = detail_of(state, first);
-    if (detail.noise == unknown) return {};  // siblings equal their parent
+    if (detail.noise == unknown) return {};  // equal to the parent
     if (!uses_shrinkage(state)) return {detail.noise, 0};
     const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
-    // Four non-negative numbers have a variance of at most three times their squared mean. Without this limit, a few
-    // elements that received a ray with a large weight would dominate the sum.
+    // Maximum variance of four non-negative numbers. Without it, rays with a large weight would dominate the sum.
     const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(detail.risk() - noise, -most, most)};
 }
 
-/// Fraction of a signal's variance that remains after a box filter of width 1 (one pixel). left_of_steps(): independent
-/// constant pieces of length `a`. left_of_pairs(): pairs of pieces of length `a` with opposite values.
+/// Fraction of variance that remains after a box filter of width 1 (a pixel). Steps: independent constant pieces of
+/// length `a`. Pairs: adjacent pieces with opposite values.
 float left_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
 float left_of_pairs(float a) {
     if (a > 1) return 1 - 1 / (2 * a);
@@ -55,8 +54,7 @@ float left_of_pairs(float a) {
     return a / 2 - beyond / a;
 }
 
-/// Same in two dimensions, for patches and for the differences of four siblings from their mean. The differences change
-/// sign along one side, the other, or both.
+/// Same for patches, and for siblings' differences, which change sign along one side, the other, or both.
 float left_of_patches_by_pixels(float area, float pixel_area) {
     return std::pow(left_of_steps(std::sqrt(area / pixel_area)), 2.0f);
 }
@@ -65,20 +63,18 @@ float left_of_siblings_by_pixels(float area, float pixel_area) {
     return opposite * (2 * left_of_steps(2 * a) + opposite) / 3;
 }
 
-/// Fraction of the squared error of siblings' differences that counts.
 float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
     if (measure == ErrorMeasure::surfaces) return 1;
     return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
-/// Mean square errors of every element; bias may be negative.
+/// bias may be negative
 struct ElementErrors {
     std::vector<float> noise, bias;
-    std::vector<float> noise_of_patch;  // part of the noise: that of the patch mean
+    std::vector<float> noise_of_patch;  // variance of the patch mean
 };
 
-/// Ratio of an element's noise to the mean noise of its siblings; its area-weighted mean is 1. Bright siblings are
-/// noisier than dark ones unless shrinkage suppresses their differences.
+/// Ratio of an element's noise to the area-weighted mean noise of its siblings. Shrinkage moves it towards 1.
 float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_t e) {
     const ElementForest& forest = *state.forest;
     if (state.history[first] == 0) return 1;
@@ -92,7 +88,6 @@ float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_
     return variance > 0 ? 1 + kept * (variance_of(e) * area / variance - 1) : 1;
 }
 
-/// @param measure  Errors of the pixels that show an element, or of the element itself.
 ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     const ElementForest& forest = *state.forest;
     ElementErrors errors;
@@ -120,25 +115,24 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     return errors;
 }
 
-/// Returns the first of an element's siblings.
 std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
     return forest.first_child(forest.parent(e));
 }
 
-/// Signal of an element's siblings; 0 if unknown.
+/// 0 if unknown.
 float signal_beside(const SolverState& state, std::uint32_t e) {
     if (e < state.forest->patch_count()) return 0;
     const Detail detail = detail_of(state, first_sibling(*state.forest, e));
     return detail.noise == unknown ? 0 : detail.signal();
 }
 
-/// Weighted sums over the leaves.
+/// Weighted sums over leaves.
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
-    double noise_of_patches = 0;              // noise of the patch means; part of `noise`
+    double noise_of_patches = 0;              // part of `noise`
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
-    double assumed = 0;                       // variation within leaves without siblings
-    double within = 0;  // signal of the leaves' siblings, in proportion to the area that pixels resolve
+    double assumed = 0;                       // within leaves without siblings
+    double within = 0;                        // `signal` that pixels resolve
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
@@ -148,10 +142,9 @@ struct ErrorSums {
     }
 };
 
-/// Measures the squared error after shrinkage with the next iteration, which is independent of the shrinkage. y:
-/// averaged differences, k: their shrinkage, d: true differences, z: differences in the next iteration. The expected
-/// value of |k y - d|^2 equals that of k^2 |y|^2 + (1 - 2 k) y z. Unlike Stein's estimate, this needs no noise model,
-/// but it exists for earlier iterations only.
+/// Measures the squared error after shrinkage k by the next iteration. With averaged differences y, true differences d
+/// and new differences z, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z). This needs no noise model, unlike Stein's
+/// estimate, but only exists for earlier iterations.
 RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
@@ -209,7 +202,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             }
             const std::uint32_t parent = forest.parent(e);
             const double signal_of_parent = signal_beside(state, parent);
-            const bool is_new = state.history[e] == 0;  // no measurement: extrapolate from the parent's siblings
+            const bool is_new = state.history[e] == 0;  // extrapolate from the parent's siblings
             const double signal = is_new ? least_decay * signal_of_parent : signal_beside(state, e);
             sums.within += w * resolved * signal;
             if (is_new) continue;
@@ -232,7 +225,7 @@ float Detail::risk() const {
         const float kept = shrinkage();
         return kept * kept * noise + (1 - kept) * (1 - kept) * assumed;
     }
-    // y = signal + noise in d = 3 dimensions, multiplied by max(0, 1 - d sigma^2 / |y|^2).
+    // James-Stein: y = signal + noise in d = 3 dimensions, multiplied by max(0, 1 - d sigma^2 / |y|^2).
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
 
@@ -249,8 +242,7 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     Detail detail{spread / area, variance / area};
-    // Under-sampled siblings have few rays. Shrinkage by their own differences would leave more noise than the largest
-    // plausible signal. So the signal is extrapolated from the parent's siblings.
+    // The shrunk noise of few rays could exceed any plausible signal, so extrapolate that from the parent's siblings.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < young * state.history[parent])
         detail.assumed =
@@ -290,7 +282,7 @@ SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
     const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
     const double all = sums.noise_of_patches + of_details + within_leaves;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
-    // Pixels without a surface have no error, but they count in the mean of the picture.
+    // Pixels without a surface count in the mean of the picture.
     const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * shown));
     return {std::sqrt(sums.noise) * scale, std::sqrt(discretisation) * scale};
@@ -323,7 +315,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
     if (measure == ErrorMeasure::surfaces) return 1;
     const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
     Rgb h = state.solution.irradiance[element];
-    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences may be negative
+    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
     return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
@@ -331,7 +323,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
 
 namespace {
 
-/// Clamps the irradiance of each group to zero, then rescales the groups to sum to the total.
+/// Clamps groups to zero, then rescales them to sum to the total.
 void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) {
     for (std::size_t e = 0; e < irradiance.size() && !groups.empty(); ++e)
         for (int c = 0; c < 3; ++c) {
@@ -350,7 +342,7 @@ void finish_solution(SolverState& state) {
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // 1/4 + 1/16 + ... of the signal
+        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // 1/4 + 1/16 + ...
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }
@@ -366,7 +358,7 @@ void finish_solution(SolverState& state) {
         for (std::uint32_t k = 0; k < 4; ++k)
             difference[k] = kept * (solution.irradiance[first + k] - solution.irradiance[parent]);
         for (int c = 0; c < 3; ++c) {
-            // Irradiance is non-negative. If a child would become negative, scale all four differences equally.
+            // If a child would become negative, scale all four differences equally.
             float lowest = 0;
             for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
             const float mean = reduced[parent][c], factor = -lowest > mean ? mean / -lowest : 1;

@@ -11,7 +11,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Minimum cosine: at grazing angles, the area of a pixel on a surface is long and narrow.
+/// Limits the area of a pixel at grazing angles, where it is long and narrow.
 constexpr float least_cosine = 0.1f;
 
 }  // namespace

@@ -7,25 +7,25 @@
 
 namespace interflect::inline detail {
 
-/// Minimum area of elements. Depends on the views and the size of the scene's surfaces, not on the size of the world.
+/// Minimum area of elements, by the views and the size of surfaces, not of the world.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// Smallest area that a pixel of any view covers on a surface there [m^2]; infinite without views.
+    /// Smallest area that a pixel of any view covers there [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// @param is_seen  Visible to a view: the result is pixel_area(), else unseen().
-    /// @return         [m^2]; RefinementOptions::min_area wherever that is given.
+    /// @param is_seen  Selects pixel_area(), else unseen().
+    /// @return         [m^2]; RefinementOptions::min_area if given.
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
+    /// default_element_size() squared [m^2].
     float unseen() const { return unseen_; }
 
   private:
     struct Eye {
         V3f position;
-        float pixel;  // width of a pixel at distance 1
+        float pixel;  // width at distance 1
     };
     std::vector<Eye> eyes_;
     float unseen_;

@@ -12,11 +12,10 @@
 
 namespace interflect::inline detail {
 
-/// Reflectance, exitance and transmittance of surfaces, by patch and, if textured, by element (means of the textures).
-/// Refers to the scene, which must outlive it.
+/// Reflectance, exitance and transmittance, by patch and for textures by element (means). Refers to the scene.
 ///
-/// If faces coincide, one receives all rays. The exitance of a covered emitter is scaled by its uncovered share of area
-/// (RayCaster::uncovered_share), so no place emits light twice.
+/// Of coincident faces, one receives all rays. The exitance of a covered emitter is scaled by its uncovered share
+/// (RayCaster::uncovered_share), so that no place emits twice.
 class Materials {
   public:
     /// Ignores coincident faces.
@@ -24,20 +23,17 @@ class Materials {
     Materials(const Scene& scene, const RayCaster& ray_caster);
 
     const Scene& scene() const { return *scene_; }
-    /// Whether any material transmits light.
     bool has_panes() const { return has_panes_; }
     const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
     const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
-    /// Reflectance for importance, a scalar; exact for grey surfaces.
+    /// For importance, a scalar; exact for grey surfaces.
     float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
-    /// Prefetches the patch's material.
     void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
     const Material& material(std::uint32_t patch) const {
         if (!own_materials_.empty() && has_own_[patch]) return own_materials_[has_own_.rank(patch)];
         return scene_->materials[scene_->patches[patch].material];
     }
 
-    /// Mean surface of an element of `patch`.
     MeanSurface surface(std::uint32_t patch, std::uint32_t element) const {
         if (!elements_.empty() && element != patch)
             if (const MeanSurface* known = elements_.find(element)) return *known;
@@ -47,9 +43,8 @@ class Materials {
     float mean_reflectance(std::uint32_t patch, std::uint32_t element) const {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
-    /// Whether elements of one patch may differ.
     bool has_textures() const { return !elements_.empty(); }
-    /// Call after the forest has grown. Until then, new elements have the mean of their patch.
+    /// New elements have the mean of their patch until this call.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
@@ -59,23 +54,23 @@ class Materials {
     const Scene* scene_;
     bool has_panes_;
     TexturedElements elements_;
-    RankedBits has_own_;                   // patches that are textured or have a reduced exitance
-    std::vector<Material> own_materials_;  // one for each of these patches
+    RankedBits has_own_;                   // textured or partly covered patches
+    std::vector<Material> own_materials_;  // of these patches
 };
 
-/// Emission lost to faces that coincide with emitters.
+/// Emission lost to coincident faces.
 struct CoveredEmission {
-    std::int64_t wholly = 0, partly = 0;  ///< Number of emitting patches that are covered.
-    RgbD power{0, 0, 0};                  ///< Power that the covered areas would emit [lm or W].
+    std::int64_t wholly = 0, partly = 0;  ///< numbers of emitting patches
+    RgbD power{0, 0, 0};                  ///< lost power [lm or W]
 };
 /// @throws InputError if the ray caster belongs to another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Computes B = M + rho H of every element [lm/m^2 or W/m^2]. With textures, B of an inner element is the mean of its
-/// children. @param irradiance  H; size forest.size().
+/// Computes B = M + rho H of every element [lm/m^2 or W/m^2]; with textures, the mean of the children for inner
+/// elements.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
-/// Sums area times value over the roots, in index order and double precision, independent of the number of threads.
+/// Sums area times value over the roots, in fixed order and double precision.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
 }  // namespace interflect::inline detail

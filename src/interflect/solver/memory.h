@@ -11,26 +11,24 @@ namespace interflect::inline detail {
 struct MemoryNeed {
     std::size_t scene = 0;       ///< Vertices, patches, materials, textures and names.
     std::size_t ray_tracer = 0;  ///< Embree's structures, and the list of coincident faces.
-    std::size_t patches = 0;     ///< Data per patch, for any number of elements.
-    std::size_t rest = 0;        ///< Program, threads, and the hits of camera rays.
+    std::size_t patches = 0;     ///< Forest without elements.
+    std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
-    /// Per element, while the results of a bounce are collected: tree 11, H 12, importance 8, history and noise 8,
-    /// consumed points 8, result of the pass 16, unshot radiosity 12, its importance 4, contributions 40 or received
-    /// values 16, and contributions not collected yet. With textures, 37 more: the mean surface 36 and its index 1.
+    /// Per element: tree 11, H 12, importance 8, history and noise 8, consumed points 8, result of the pass 16, unshot
+    /// radiosity and its importance 16, contributions 40 or received values 16. Textures add 37.
     std::size_t per_element = 128;
-    /// Per element and light group: H, unshot light and result of the pass, 12 each; contributions 24 or received light
-    /// 12.
+    /// H, unshot light and result of the pass, 12 each; contributions 24 or received light 12.
     static constexpr std::size_t per_element_and_group = 60;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
 };
 
-/// Computes the memory that solving a scene needs. Methods with links (hr) need 24 more bytes per link.
+/// Methods with links (hr) need 24 more bytes per link.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
 
-/// Returns the number of elements that fit into `bytes`.
-/// @throws InputError with the required memory if not even the patches fit.
+/// @return Number of elements that fit.
+/// @throws InputError with the required memory if the patches do not fit.
 std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
 
 }  // namespace interflect::inline detail

@@ -10,7 +10,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Scales children to their parent's mean: factor * child + offset. Children that are all 0 are set to the mean.
+/// factor * child + offset has the parent's mean.
 template <class T>
 struct Scaling {
     T factor, offset;
@@ -26,7 +26,6 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
     return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
-/// @param most_history  Maximum history [rays].
 template <class T>
 void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
                 const IterationPlan& plan, float most_history = std::numeric_limits<float>::infinity()) {

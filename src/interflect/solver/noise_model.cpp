@@ -9,9 +9,8 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Decay of earlier iterations per iteration, because mesh and sampling weights change.
+/// Decay per iteration, because mesh and sampling weights change.
 constexpr double memory = 0.75;
-/// The scale is clamped to within this factor of 1.
 constexpr double largest_scale = 100;
 
 }  // namespace

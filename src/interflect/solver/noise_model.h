@@ -14,41 +14,38 @@
 
 namespace interflect::inline detail {
 
-/// Estimate of irradiance by one iteration, before it is merged.
+/// Irradiance by one iteration, before merging.
 struct FreshEstimate {
-    std::vector<Rgb> irradiance;  ///< H of every element [lm/m^2 or W/m^2].
-    std::vector<float> variance;  ///< Variance of its luminance for independent rays.
-    GroupLight groups = {};       ///< Share of each light group in `irradiance`.
+    std::vector<Rgb> irradiance;  ///< H by element [lm/m^2 or W/m^2].
+    std::vector<float> variance;  ///< of its luminance, for independent rays
+    GroupLight groups = {};       ///< shares in `irradiance`
 };
 
-/// Noise of the running mean of irradiance. It stores each element's variance per ray, assuming independent rays; few
-/// rays suffice to estimate it. Low-discrepancy points reduce the true variance, and reflected noise increases it. The
-/// squared differences between iterations give a correction factor, which all elements with similar numbers of rays
-/// share. More points are better distributed, and elements hit by a single ray with a large weight must not affect
-/// elements hit by thousands.
+/// Noise of the running mean of irradiance. Each element stores its variance per ray for independent rays; few rays
+/// suffice to estimate it. Low-discrepancy points reduce variance and reflected noise increases it, by a factor
+/// estimated from differences between iterations. Elements with similar numbers of rays share one factor. Points of
+/// many rays are better distributed, and a single ray with a large weight must not affect other elements.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Variance of the luminance of a mean over `rays` rays: irradiance of a root, or difference of another element
-    /// from its parent. @param mean  Running mean of every element.
+    /// Variance of the luminance of a mean over `rays` rays: irradiance of a root, or else the difference from the
+    /// parent.
+    /// @param mean  Running mean of every element.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
-    /// Whether two iterations have been compared.
     bool is_known() const { return iterations_ > 1; }
 
-    /// Initialises new elements (index >= first) with a quarter of their parents' rays on a quarter of the area.
+    /// New elements (index >= first) get a quarter of their parents' rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
-    /// Adds an iteration of `rays` rays, before it is merged.
-    /// @param mean     Running mean.
-    /// @param history  Number of rays in the mean of each element; 0: no measured difference from the parent.
-    /// @param weight   Weight of a leaf's squared error; for an inner element, the sum over its leaves.
+    /// Adds an iteration before merging.
+    /// @param history  Rays in the mean, by element; 0: the difference from the parent is unknown.
+    /// @param weight   Of the squared error, by element.
     void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
-    /// Multiplies the variance per ray by a factor per patch.
     void scale_by_patch(const ElementForest& forest, std::span<const float> factor) {
         for (std::uint32_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] *= factor[forest.patch(e)];
     }
@@ -63,13 +60,13 @@ class NoiseModel {
 
   private:
     static constexpr std::size_t rarities = 48;
-    /// Squared differences between an iteration and the mean, by rarity.
+    /// Squared differences between iterations and the mean.
     struct Spread {
         std::array<double, rarities> observed{}, independent{};
         Spread& operator+=(const Spread& other);
     };
 
-    /// Class n of elements that about one in 2^n rays hits. Siblings have the same n, even if one was hit by chance.
+    /// Class n: hit by about one in 2^n rays. Siblings share a class, even if one was hit by chance.
     std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
@@ -77,7 +74,7 @@ class NoiseModel {
         const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// The differences of siblings from their mean have three quarters of the siblings' independent variance.
+    /// Share of siblings' independent variance in their differences from the mean.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }
@@ -87,7 +84,7 @@ class NoiseModel {
 
     std::vector<float> per_ray_;  // [irradiance^2]
     std::array<float, rarities> scale_;
-    Spread spread_;  // over all iterations, with decay
+    Spread spread_;  // with decay over iterations
     int iterations_ = 0;
 };
 

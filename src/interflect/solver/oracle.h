@@ -10,20 +10,20 @@
 
 namespace interflect::inline detail {
 
-/// One end of an interaction, as seen by the oracle.
+/// End of an interaction, as seen by the oracle.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};  ///< Unit length.
     float area = 0;       ///< [m^2]
-    /// Minimum cosine; 1 for a source that shines equally in all directions.
+    /// 1 for a source that shines equally in all directions.
     float least_cosine = 0;
 };
 
-/// Computes a cheap upper estimate of the form factor from receiver to shooter: that of a disk of the shooter's area, f
-/// = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between the centres. Cosines are at least 2 f:
-/// some parts of close elements face each other more directly than the centres.
+/// Approximate upper bound of the form factor from receiver to shooter: disk f = A_j / (pi d^2 + A_j), times both
+/// cosines between the centres. Cosines are at least 2 f, because parts of close elements face each other more
+/// directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
-    // By value and without branches, for vectorisation over pairs.
+    // By value and without branches, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
     const auto larger = [](float x, float y) { return x < y ? y : x; };
     const V3f d = receiver.centre - shooter.centre;
@@ -37,23 +37,21 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Decides for each ray whether two elements may exchange light without refinement. The result depends only on the
-/// state at the start of the step, never on other rays.
+/// Decides whether a ray's two elements interact without refinement. Depends on the state before the step only, never
+/// on other rays.
 struct Oracle {
-    bool refines = false;  ///< False: the leaves connected by the ray exchange light.
+    bool refines = false;  ///< False: leaves interact.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
-    float min_area = 0;  ///< Elements smaller than four times this area are not subdivided [m^2].
-    /// Maximum number of elements. At the end of a step, excess elements are dropped, the last in the forest's order
-    /// first. So the mesh does not depend on the order of threads.
+    float min_area = 0;  ///< Minimum area of children [m^2].
+    /// Excess elements are dropped at the end of a step, in an order independent of threads.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
-    /// psi of every element at the start of the step; empty unless by_importance.
+    /// psi of every element before the step; empty unless by_importance.
     std::vector<float> importance;
 
-    /// Eq. 14 (by_importance == false) and Eq. 15, Prikryl et al. 2000, for the largest channel.
-    /// @param reflected  The largest channel of rho_i B_j, the receiver's reflectance times the shooter's radiosity
-    ///                   [lm/m^2 or W/m^2].
+    /// Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.
+    /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2].
     /// @param psi        psi_i of the receiver; 1 unless by_importance.
     bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {
         const double power = static_cast<double>(reflected) * receiver.area;

@@ -11,7 +11,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Weights of one leaf.
 struct Weights {
     double power = 0, importance = 0;
 };
@@ -29,7 +28,7 @@ struct WeightSums {
     }
 };
 
-/// Computes the weights of every leaf and sums them in double precision and fixed order.
+/// Sums in double precision and fixed order.
 WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, StableArray<Weights>& weights) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
@@ -52,7 +51,6 @@ WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, 
     });
 }
 
-/// Adds the weights of the luminaire parts to the sums over the leaves.
 void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightSums& sums) {
     for (std::size_t i = 0; i < s.part_count(); ++i) {
         const double power = channel_sum(s.emission->power(i));
@@ -63,7 +61,7 @@ void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightS
     }
 }
 
-/// Raises non-negative numbers to a power.
+/// @param numbers  >= 0.
 void raise(std::span<float> numbers, float exponent) {
     if (exponent == 0.75f) {  // the default; square roots vectorise
         for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));
@@ -96,7 +94,7 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (sampled.part_importance.empty())  // unknown: as for mean importance
+        if (sampled.part_importance.empty())  // unknown: use the mean
             by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
         else
             by_power += for_driven * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];

@@ -9,9 +9,9 @@
 
 namespace interflect::inline detail {
 
-/// Both ends of every ray in flight, as a structure of arrays. The oracle evaluates all pairs at once.
+/// Both ends of every ray in flight, as a structure of arrays.
 struct alignas(64) RayPairs {
-    static constexpr std::size_t lanes = 64;  // their data fit into the first-level cache
+    static constexpr std::size_t lanes = 64;  // data fit into the first-level cache
     using Floats = std::array<float, lanes>;
     using Numbers = std::array<std::uint32_t, lanes>;
     struct Vectors {
@@ -20,34 +20,34 @@ struct alignas(64) RayPairs {
         V3f operator[](std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
     };
 
-    // The patch that was hit (PatchGeometry::Shape), and the hit point on it.
+    // The patch that was hit (PatchGeometry::Shape), and the hit point.
     Vectors origin, edge_u, edge_v, twist;
     Numbers is_triangle;
     Floats hit_u, hit_v;
-    // The receiver: the element above the hit that the descent has reached.
-    Numbers receiver, children;  // children: the first of four at the last lookup, or none
+    // The receiver: element above the hit that was reached.
+    Numbers receiver, children;  // children: first of four, or none
     Floats u, v, size;           // its cell
     Vectors normal;
     Floats area, importance;  // psi_i
-    // The shooter: the element above the origin that the descent has reached.
-    Numbers shooter, lowest_shooter;  // indices in Shooters; the lowest is the ray's leaf or a new element
+    // The shooter: element above the origin that was reached.
+    Numbers shooter, lowest_shooter;  // in Shooters; the lowest is the ray's leaf or a new element
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;  // the largest channel of rho_i B_j
-    // Results of the oracle, and the resulting actions.
-    Numbers settled;    // the pair is accepted or cannot be divided
-    Numbers of_power;   // element that receives the power; until settled, the receiver
-    Numbers on_demand;  // the element to divide has no children yet, or is the shooter
+    // Results of the oracle.
+    Numbers settled;    // accepted, or not divisible
+    Numbers of_power;   // receiver of the power, once settled
+    Numbers on_demand;  // divide the shooter, or create children
     Numbers goes_on;    // the ray is still in flight
-    Numbers next;       // first of the children to descend to; none: stay at the receiver
+    Numbers next;       // first of the children to descend to; none: stay
 
-    /// Settles each pair that the oracle accepts or whose larger end is too small to divide (Eq. 14, 15, Prikryl et al.
+    /// Settles pairs that the oracle accepts or whose larger end is too small to divide (Eq. 14, 15, Prikryl et al.
     /// 2000).
     void evaluate_oracle(const Oracle& oracle);
-    /// Chooses the next action for all pairs except those to be divided on demand.
-    /// @param needs_leaf  Rays continue below the settled element to the leaf among the first `old_size` elements.
+    /// Chooses the next action for pairs that are not divided on demand.
+    /// @param needs_leaf  Rays descend to the leaf among the first `old_size` elements.
     void choose_next(bool needs_leaf, std::uint32_t old_size);
-    /// Moves each receiver with `next` to its child that contains the hit.
+    /// Moves receivers to the child that contains the hit.
     void go_down();
 };
 

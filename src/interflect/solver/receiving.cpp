@@ -56,7 +56,6 @@ Escaped Receiver::finish() {
     return std::exchange(escaped_, {});
 }
 
-/// Starts the descent at the patches of both ends.
 void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start,
                      const Hit& hit) {
     const std::size_t i = open_[open_count_++];
@@ -82,9 +81,8 @@ void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, c
     shooters_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Moves all rays in flight one level down (Eq. 14, 15, Prikryl et al. 2000). If the oracle rejects a pair, its larger
-/// end is divided. If it accepts, the element for the power is settled, and importance descends to the leaf. No branch
-/// depends on results of the oracle.
+/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). Rejected pairs are divided at their larger end.
+/// Accepted pairs settle the power, and importance descends to the leaf. Branches do not depend on the oracle.
 void Receiver::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
@@ -110,7 +108,7 @@ void Receiver::advance() {
     }
 }
 
-/// Collects the lanes in use that satisfy `condition` in `found`, without branches.
+/// Collects lanes in use that satisfy `condition`, without branches.
 template <class Condition>
 inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, const Condition& condition) const {
     std::size_t count = 0;
@@ -121,17 +119,15 @@ inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, cons
     return std::span(found).first(count);
 }
 
-/// Loads the receiver's data for the oracle.
 inline void Receiver::look_up_receiver(std::size_t i) {
     const std::uint32_t element = pairs_.receiver[i];
     pairs_.area[i] = forest_.area(element);
     pairs_.children[i] = forest_.first_child(element);
-    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit it
+    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
-/// Divides the larger end of a rejected pair: a shooter that is the lowest of its path, or a receiver without children.
-/// Settles a pair that cannot be divided.
+/// Divides the lowest shooter of a path, or a receiver without children. Settles a pair that cannot be divided.
 void Receiver::subdivide_on_demand(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {
@@ -145,7 +141,6 @@ void Receiver::subdivide_on_demand(std::size_t i) {
     if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
 }
 
-/// Deposits power at the accepted receiver, and importance at the leaf or patch that was hit.
 void Receiver::send(std::size_t i) {
     const auto& [source, patch, left, start, reflectance] = rays_[i];
     std::uint32_t leaf = pairs_.receiver[i];

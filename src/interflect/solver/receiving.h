@@ -19,7 +19,6 @@
 
 namespace interflect::inline detail {
 
-/// Power and rays that left the scene.
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
@@ -31,13 +30,13 @@ struct Escaped {
     }
 };
 
-/// Receiving end of a step, for one thread: finds the elements that receive the payload of each ray.
-/// Structure-of-arrays traversal with lane refill: many rays descend the quadtrees together, level by level. A new ray
-/// takes the lane of a finished one. This hides memory latency and vectorises.
+/// Finds the elements that receive the payload of each ray, for one thread. Structure-of-arrays traversal with lane
+/// refill: many rays descend the quadtrees level by level, and a new ray takes the lane of a finished one. This hides
+/// memory latency and vectorises.
 class Receiver {
   public:
-    /// @param old_size  Size of the forest at the start of the step. All other arguments must outlive this.
-    /// @param gathered  Collects the importance that rays find; null: it is not needed.
+    /// @param old_size  Size of the forest before the step. All other arguments must outlive this.
+    /// @param gathered  Collects importance found by rays; may be null.
     Receiver(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
              Arrivals& arrivals, GatheredImportance* gathered)
         : materials_(materials),
@@ -54,40 +53,35 @@ class Receiver {
         pairs_.next.fill(none);
     }
 
-    /// Adds rays of one source.
-    /// @param source        Leaf, or size of the forest at the start of the step + luminaire part.
-    /// @param contribution  Payload of each ray. @param of_groups  Its power by light group.
-    /// @param origins       Parameters on the leaf's patch; unused for luminaire parts.
-    /// @param transmitted   Share of the found importance that returns to the source.
+    /// @param source        Leaf, or old_size + luminaire part; the payload of each of its rays is `contribution`.
+    /// @param of_groups     Power by light group.
+    /// @param origins       On the leaf's patch; unused for luminaire parts.
+    /// @param transmitted   Share of found importance that returns to the source.
     void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const std::int64_t> of_groups,
               std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
               float transmitted = 1);
-    /// Prefetches the data for a ray that will be added soon.
     void prefetch(const Hit& hit) const;
-    /// Finishes all rays in flight. Call at the end of a task, whose rays must not wait for the next.
+    /// Finishes all rays in flight. Call at the end of a task.
     void finish_batch();
-    /// Deposits power at a leaf directly.
     void deposit(std::uint32_t leaf, const Arrivals::Contribution& contribution,
                  std::span<const std::int64_t> of_groups) {
         buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
     }
-    /// Adds escaped power.
     void count_escaped(const Arrivals::Contribution& contribution) {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
         ++escaped_.rays;
     }
     /// Points of the leaves that reflect where they receive, in any order.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// Call after the last task. @return Escaped power and rays of this thread.
+    /// @return Escaped power and rays of this thread.
     Escaped finish();
 
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
-    /// Data of a ray in flight besides its pair.
     struct RayState {
-        std::uint32_t source, patch;  // patch: the one that was hit
+        std::uint32_t source, patch;  // patch: hit by the ray
         std::uint32_t left;           // index in left_
-        Parameters start;             // on the patch where the ray starts
+        Parameters start;             // on the source's patch
         Rgb reflectance{0, 0, 0};     // rho_i
     };
 
@@ -114,16 +108,16 @@ class Receiver {
     GatheredImportance* gathered_;
     struct Left {
         std::uint32_t source;
-        double found;  // importance found by its rays so far
+        double found;  // importance
         float transmitted;
     };
-    std::vector<Left> left_;  // sources of the rays in this task
+    std::vector<Left> left_;  // sources of this task
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
-    Lanes open_;  // lanes in use first, then free lanes
+    Lanes open_;  // lanes in use, then free lanes
     std::size_t open_count_ = 0;
     Shooters shooters_;
-    Shooters::Path path_;  // of the rays being added
+    Shooters::Path path_;
 };
 
 }  // namespace interflect::inline detail

@@ -12,13 +12,12 @@ struct RiskCheck {
         expected += o.expected, measured += o.measured;
         return *this;
     }
-    /// Adds an iteration. Each addition multiplies earlier ones by 1 - weight / 2.
-    /// @param weight  In [0, 1]; smaller for iterations that are too short for a precise measurement.
+    /// @param weight  In [0, 1]; less for short iterations. Earlier ones decay by 1 - weight / 2.
     void add(const RiskCheck& fresh, double weight) {
         expected = expected * (1 - weight / 2) + weight * fresh.expected;
         measured = measured * (1 - weight / 2) + weight * fresh.measured;
     }
-    /// Factor that corrects expected errors; 1 without data.
+    /// Correction of expected errors; 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 };
 

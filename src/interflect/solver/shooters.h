@@ -11,11 +11,10 @@
 
 namespace interflect::inline detail {
 
-/// Shooters of the rays in flight, as seen by the oracle: the ancestor path of every leaf that shot them. Each pair
-/// uses the element of the path that suits its receiver.
+/// Ancestor paths of the leaves that shot the rays in flight. Each pair uses the element that suits its receiver.
 class Shooters {
   public:
-    /// Range of shooters, from the largest to the smallest.
+    /// From the largest to the smallest shooter.
     struct Path {
         std::uint32_t first = 0, last = 0;
     };
@@ -23,13 +22,12 @@ class Shooters {
     /// Both arguments must outlive this.
     Shooters(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
-    /// Appends a leaf and its ancestors, from the root down.
     Path append_leaf(std::uint32_t leaf);
-    /// Appends a proxy of a luminaire part for one of its rays.
+    /// Appends a proxy for one ray of the part.
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { shooters_.clear(); }
 
-    /// Starts with the first shooter of the path. @param reflectance  rho_i of the patch that was hit.
+    /// @param reflectance  rho_i of the patch that was hit.
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, shooters_[path.first].normal);
@@ -43,16 +41,15 @@ class Shooters {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter of the path that is not larger than the receiver, or the lowest. The oracle skips
-    /// larger ones, because they give the same received power.
+    /// Selects the largest shooter of the path that is not larger than the receiver, or the lowest. Larger ones give
+    /// the same received power, so the oracle skips them.
     void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && shooters_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);
     }
 
-    /// Replaces the pair's shooter, the lowest of its path, by its child that contains the start of the ray.
-    /// @return False if there are no children and none can be created.
+    /// Replaces the lowest shooter of a path by its child at the start of the ray. @return False if it has none.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
@@ -78,7 +75,7 @@ class Shooters {
     std::vector<Shooter> shooters_;
 };
 
-/// Returns the first child. Creates the children if the element is a leaf and the forest may grow, else returns none.
+/// Creates the children if the element has none and the forest may grow. @return The first, or none.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

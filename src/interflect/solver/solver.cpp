@@ -28,16 +28,16 @@ struct Solver::Run {
           known_dimming(state.groups.size(), 1) {}
 
     const std::shared_ptr<const Scene> undimmed_scene;
-    std::shared_ptr<const Scene> scene = undimmed_scene;  // with the current exitance of its sources
+    std::shared_ptr<const Scene> scene = undimmed_scene;  // with current exitances
     const std::shared_ptr<const RayCaster> ray_caster;
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
     bool is_prepared = false, is_finished = false;
-    double error = std::numeric_limits<double>::infinity();  // estimate for the current views
+    double error = std::numeric_limits<double>::infinity();  // for the current views
     int iteration = 0;
-    IterationPlan plan;                // iteration in progress; 0 rays: none
-    std::optional<Solution> finished;  // cached result of solution()
-    std::vector<float> known_dimming;  // factor of each light group for which its light was computed
+    IterationPlan plan;                // in progress; 0 rays: none
+    std::optional<Solution> finished;  // cached solution()
+    std::vector<float> known_dimming;  // factors for which the stored light was computed
 
     void iterate_until(const Limits& limits);
     IterationPlan next_plan(std::int64_t rays_asked_for);
@@ -50,7 +50,7 @@ struct Solver::Run {
 void Solver::Run::dim_sources() {
     const bool is_dimmed = std::any_of(state.solution.dimming.begin(), state.solution.dimming.end(),
                                        [](float factor) { return factor != 1; });
-    const std::shared_ptr<const Scene> before = scene;  // keeps it alive while referenced
+    const std::shared_ptr<const Scene> before = scene;  // keep it alive while referenced
     scene = is_dimmed ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.groups, state.solution.dimming))
                       : undimmed_scene;
     set_sources(state, *scene);
@@ -58,21 +58,21 @@ void Solver::Run::dim_sources() {
 
 void Solver::Run::dim(std::size_t group, float factor) {
     Solution& solution = state.solution;
-    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // the light of a dark group is kept
+    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // keep the light of a dark group
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     method->scale_group(state, group, change);
     dim_sources();
-    state.escaped_power_rays = 0;  // unknown until the next iteration ends
+    state.escaped_power_rays = 0;  // unknown until the next iteration
 }
 
 void Solver::Run::limit_time() {
     state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
 }
 
-/// @param rays_asked_for  Total number; extends a plan that is fulfilled.
+/// @param rays_asked_for  In total; extends a completed plan.
 IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     const IterationPlan next = method->plan(state);
     const bool is_more_asked_for = rays_asked_for < std::numeric_limits<std::int64_t>::max() &&
@@ -83,7 +83,7 @@ IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     return method->plan(state);
 }
 
-/// @throws Interrupted in the middle of an iteration.
+/// @throws Interrupted
 void Solver::Run::iterate_until(const Limits& limits) {
     const std::int64_t all = std::numeric_limits<std::int64_t>::max(), before = state.schedule.rays();
     const std::int64_t rays_asked_for = limits.rays < all - before ? before + limits.rays : all;
@@ -106,7 +106,7 @@ void Solver::Run::iterate_until(const Limits& limits) {
     is_finished = plan.rays == 0 && (error <= state.options.limits.until || method->is_fulfilled(state));
 }
 
-/// Copies the forest, because that of the run grows.
+/// Copies the forest, which grows.
 Solution Solver::Run::snapshot() {
     Solution copy = state.solution;
     method->finish(state);  // modifies irradiance
@@ -156,7 +156,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     run.finished.reset();
     state.begin_work(monitor, limits.time);
     state.solution.interrupted = false;
-    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // otherwise zero is the exact solution
+    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else the solution is 0
     try {
         if (is_lit) run.iterate_until(limits);
     } catch (const Interrupted&) {

@@ -21,16 +21,15 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A step may create more elements than it keeps at its end (Oracle::max_elements). Reserves addresses for more than a
-/// step of one or two seconds creates, within half of the address space that is free.
+/// A step may create more elements than it keeps (Oracle::max_elements). Reserves addresses for more than one or two
+/// seconds of that, within half of the free address space.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
     const std::size_t groups = std::min(scene.light_groups.size() + 1, most_light_groups);
     const std::size_t per_element =
         ElementForest::reserved_per_element + Arrivals::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
-    if (!options.method.is_stochastic)
-        return options.refinement.max_elements;  // the number of elements never exceeds the limit
+    if (!options.method.is_stochastic) return options.refinement.max_elements;  // never exceeded
     const std::size_t fitting = free_address_space() / 2 / per_element;
     return std::min(largest, options.refinement.max_elements +
                                  std::min(excess, fitting - std::min(fitting, options.refinement.max_elements)));
@@ -117,7 +116,7 @@ void look(SolverState& state) {
 
 namespace {
 
-/// Archived form of a report.
+/// As archived.
 using ReportNumbers = std::array<double, 19>;
 
 ReportNumbers numbers_of(const IterationReport& r) {

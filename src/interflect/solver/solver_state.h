@@ -24,7 +24,6 @@
 
 namespace interflect::inline detail {
 
-/// State of a run that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
@@ -33,7 +32,7 @@ struct SolverState {
     const Scene& scene;
     const Scene* lit = &scene;  // the same scene with dimmed sources
     Materials materials;
-    std::vector<Imath::Box3f> targets;  // of light from outside, for the current views
+    std::vector<Imath::Box3f> targets;  // of light from outside
     Emission emission;                  // of the luminaires
     const RayCaster& ray_caster;
     const SourceGroups groups;
@@ -43,7 +42,7 @@ struct SolverState {
     ViewImportance view;
     ElementFloor floor;
     Neighbourhoods neighbourhoods;                // empty without a view
-    std::vector<PartImportance> part_importance;  // importance found by luminaire rays for the current views
+    std::vector<PartImportance> part_importance;  // found for the current views
     SampleStreams streams;
     Arrivals arrivals;
     Schedule schedule;
@@ -52,61 +51,60 @@ struct SolverState {
     RiskCheck risk_check;
     Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
-    RgbD escaped_power{0, 0, 0};           // mean over the iterations, averaged like irradiance
-    double escaped_power_rays = 0;         // number of rays averaged into it
+    std::int64_t rays_of_other_views = 0;  // averaged before
+    RgbD escaped_power{0, 0, 0};           // averaged like irradiance
+    double escaped_power_rays = 0;         // averaged rays
 
     // The work in progress:
     std::function<void(const IterationReport&)> on_report;
-    StopRequest stop;  // by the caller; after a first estimate, also by the time limit
+    StopRequest stop;  // after a first estimate, also due by the time limit
     StopRequest::Clock::time_point start;
-    StopRequest::Clock::time_point last_step =
-        StopRequest::Clock::time_point::max();  // only the first step may start later
+    StopRequest::Clock::time_point last_step = StopRequest::Clock::time_point::max();  // except for the first step
     bool has_traced_step = false;
-    double earlier_seconds = 0;  // duration of earlier work
+    double earlier_seconds = 0;
 
     /// @param step_seconds  Period in which steps may start.
     void begin_work(const Monitor& monitor, double step_seconds);
     void end_work() { earlier_seconds = seconds(); }
-    /// Duration of all work so far.
+    /// Including earlier work.
     double seconds() const {
         return earlier_seconds + std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
     bool may_begin_step() const { return !has_traced_step || StopRequest::Clock::now() < last_step; }
 
-    /// @throws std::runtime_error if the data read are inconsistent.
+    /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);
 };
 
-/// Replaces the exitance of the sources by that of another scene, which is otherwise equal and must outlive the state.
+/// @param lit  The scene with other exitances; must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Replaces the targets of light from outside, and resets the importance of the luminaire parts.
+/// Also resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
 /// Computes the view importance of every element. Resets the indirect importance.
 void look(SolverState& state);
 
-/// Traces the rays of a step, then grows all data per element with the forest. @throws Interrupted
+/// Traces a step, then grows all data per element with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);
 
-/// Returns the light that each group shoots from `irradiance`, with its exitance if `emits`. Refers to the arguments.
+/// Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
-/// Total power of surfaces and luminaires [lm or W].
+/// Of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
-/// Minimum area of an element's children, and area of a pixel at the element [m^2]; see ElementFloor.
+/// Minimum area of children, and area of a pixel [m^2]; see ElementFloor.
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 
 /// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the averaged rays, because a finer mesh needs a more precise view importance.
+/// Adds camera rays in proportion to averaged rays, for a finer mesh.
 void refine_view_importance(SolverState& state);
 
-/// Adds a report of the current state. @param escaped_power  Averaged like irradiance.
+/// @param escaped_power  Averaged like irradiance.
 void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
 }  // namespace interflect::inline detail

@@ -13,12 +13,11 @@
 
 namespace interflect::inline detail {
 
-/// State of a run that can be resumed, as named arrays of bytes. Each class with state lists its members once, in its
-/// archive(), for writing and reading. The arrays have the native layout of the machine. Only the version of Interflect
-/// that wrote them reads them.
+/// State of a run, as named arrays of bytes in native layout. Each class lists its members once, in archive(), for
+/// writing and reading. Only the same version of Interflect can read them.
 class StateArchive {
   public:
-    /// For writing. Refers to the given values, which must not change until they are written.
+    /// For writing. Refers to values, which must not change until written.
     StateArchive() = default;
     /// For reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
@@ -45,7 +44,7 @@ class StateArchive {
         }
     }
 
-    /// For data stored in another form: writes a copy of `values`, or returns the data read.
+    /// For data stored in another form. Writes `values`, or returns the data read.
     template <class T>
     std::vector<T> by_value(const std::string& name, std::vector<T> values) {
         if (!reads_) {
@@ -59,7 +58,7 @@ class StateArchive {
     }
 
     bool reads() const { return reads_; }
-    /// Arrays to write, in order.
+    /// In order.
     const std::vector<std::pair<std::string, std::span<const std::byte>>>& written() const { return spans_; }
 
   private:
@@ -81,7 +80,7 @@ class StateArchive {
     std::map<std::string, std::vector<std::byte>> arrays_;
 };
 
-/// Archives data of each light group, [group][element]. Reads the number of groups that was written.
+/// By light group, [group][element]. Reads the number of groups that was written.
 template <class T>
 void archive_groups(StateArchive& archive, const std::string& name, std::vector<std::vector<T>>& groups) {
     constexpr std::uint64_t most = 256;

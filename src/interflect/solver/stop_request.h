@@ -9,15 +9,15 @@
 
 namespace interflect::inline detail {
 
-/// Thrown if a run must stop during an iteration; the current step is lost.
+/// Thrown if a run must stop; the current step is lost.
 struct Interrupted {};
 
-/// Condition for stopping a run immediately. All threads check it before each batch of rays.
+/// Checked on all threads before each batch of rays.
 class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// @param flag  Set by the caller, by another thread or a signal handler; may be null.
+    /// @param flag  Set by another thread or a signal handler; may be null.
     explicit StopRequest(const std::atomic<bool>* flag = nullptr) : flag_(flag) {}
 
     void limit_time(Clock::time_point start, double seconds) {
@@ -37,7 +37,7 @@ class StopRequest {
     double seconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// Same as parallel_for_ranges() without `stop`, but starts no further range if the run must stop. @throws Interrupted
+/// Starts no further range once the run must stop. @throws Interrupted
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
     std::atomic<bool> is_over{false};

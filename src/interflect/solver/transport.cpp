@@ -23,18 +23,17 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Key of the random numbers of a step's walks.
 std::uint64_t walk_key(const SampleStreams& streams) {
-    constexpr std::uint64_t purpose = 0x77616c6b;  // unique among the streams of a run
+    constexpr std::uint64_t purpose = 0x77616c6b;  // unique among random streams
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Rays per task: enough to hide the cost of a task, and few enough for the second-level cache.
+/// Amortises the cost of a task within the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Distance of prefetching, in rays.
+/// Prefetching distance.
 constexpr std::size_t rays_ahead = 32;
 
-/// Updates the number of points that each leaf and luminaire part has consumed.
+/// Counts the consumed points.
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
     constexpr std::size_t blocks_at_once = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
@@ -50,8 +49,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Upper bound of the number of visits of a random walk. The expected number is at most 1 / (1 - rho); the factor
-/// covers chance and panes, and leaves 2^49 units for the expected power.
+/// Upper bound of the visits of a random walk. The expected number is at most 1 / (1 - rho); the factor covers chance
+/// and panes, and leaves 2^49 units for the expected power.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -59,7 +58,7 @@ double most_visits(const Scene& scene) {
     return headroom / (1 - rho);
 }
 
-/// Rays of a step and their payload. Refers to the step.
+/// Rays and payloads of a step. Refers to the step.
 struct Shooting {
     Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
              const TransportStep& step, const SampleStreams& streams)
@@ -76,7 +75,7 @@ struct Shooting {
     Panes panes;
 };
 
-/// Data of one task; one object per thread, reused.
+/// One object per thread, reused for all tasks.
 struct Batch {
     explicit Batch(const Receiver& r) : receiver(r) {}
 
@@ -88,7 +87,7 @@ struct Batch {
     Receiver receiver;
 };
 
-/// Contributions of a step after new elements (index >= old_size) have been renumbered.
+/// Contributions after elements from `old_size` on were renumbered.
 class Arrived {
   public:
     Arrived(Arrivals& arrivals, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
@@ -96,7 +95,6 @@ class Arrived {
 
     Arrivals::Contribution take(std::uint32_t e) { return arrivals_.take(number(e)); }
     std::array<std::int64_t, 3> take(std::uint32_t e, std::size_t group) { return arrivals_.take(number(e), group); }
-    /// Moves the contributions of an element to another one.
     void move(std::uint32_t from, std::uint32_t to) {
         arrivals_.add(number(to), take(from));
         for (std::size_t g = 0; g < arrivals_.groups(); ++g) arrivals_.add(number(to), g, take(from, g));
@@ -113,7 +111,7 @@ class Arrived {
     std::vector<std::uint32_t> old_numbers_;
 };
 
-/// Enforces the oracle's limit of elements. Parents receive the contributions of dropped elements.
+/// Enforces the oracle's limit. Parents receive the contributions of dropped elements.
 void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
@@ -126,7 +124,7 @@ void forget_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Empty if the step carries no importance, or if patches receive it and no luminaire shoots.
+/// Empty if only patches receive importance and no luminaire shoots, or without importance.
 std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Materials& materials,
                                               const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -136,12 +134,11 @@ std::optional<GatheredImportance> gathered_by(const TransportStep& step, const M
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // hits per ray
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // per ray
     return std::optional<GatheredImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
                                              step.rays, forest.size() + step.part_count());
 }
 
-/// Returns the importance found by the rays of each luminaire part.
 std::vector<PartImportance> found_by_parts(const TransportStep& step, const RayAllocation& allocation,
                                            const GatheredImportance& gathered, std::size_t elements) {
     std::vector<PartImportance> parts(step.part_count());
@@ -153,9 +150,9 @@ std::vector<PartImportance> found_by_parts(const TransportStep& step, const RayA
     return parts;
 }
 
-/// Averages the importance that a leaf received with the importance that its own rays gathered. A gathering ray has the
-/// weight 1. The received estimate has the expected number of contributing rays, assuming equal payloads. These weights
-/// do not depend on the estimates, so the mean is unbiased.
+/// Averages received importance with that gathered by the leaf's own rays. A gathering ray has the weight 1, the
+/// received estimate its expected effective number of rays. Both are independent of the estimates, so the mean is
+/// unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const GatheredImportance& gathered, const Totals& carried, std::size_t elements,
            std::vector<float>& received) {
@@ -175,10 +172,10 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
     });
 }
 
-/// Converts sums of contributions to received values per area.
+/// Converts sums to received values per area.
 void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
-    constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums exceed a large page of 2 MiB
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // more than a page of 2 MiB
     if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
@@ -199,7 +196,6 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
     });
 }
 
-/// Pushes values received by ancestors, then sets inner elements to the mean of their children.
 void balance(const ElementForest& forest, const TransportStep& step, Received& received) {
     if (step.carries_power() && !step.leaves_only) {
         push(forest, received.irradiance), pull(forest, received.irradiance);
@@ -218,10 +214,8 @@ Received nothing_received(const TransportStep& step, std::size_t elements) {
     return received;
 }
 
-// The three phases of a step. After the second, the result is a set of integer sums in Arrivals. Sums of several
-// machines could be added there.
+// The three phases of a step. After the second, Arrivals contain integers that could be summed over several machines.
 
-/// Generates the rays begin ... end - 1 and traces them.
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
     batch.hits.resize(batch.shot.rays.size());
@@ -229,7 +223,7 @@ void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t be
     shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
 }
 
-/// Deposits the filtered payload of rays behind the panes that they pass.
+/// Deposits the filtered payload behind panes.
 void receive_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
                     std::span<const Panes::HitBehind> behind, Batch& batch) {
     const std::uint32_t source = rays.source;
@@ -242,7 +236,7 @@ void receive_behind(const TransportStep& step, const Shooting& shooting, const S
     }
 }
 
-/// Deposits the payload of a batch of rays; the oracle may create elements.
+/// Deposits the payload of a batch, with new elements on demand.
 void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) {
     auto& [shot, hits, all_behind, group_terms, walkers, receiver] = batch;
     std::span<const Panes::HitBehind> behind = all_behind;
@@ -264,7 +258,7 @@ void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) 
     receiver.finish_batch();
 }
 
-/// Continues the rays of a batch as random walks. @param task  Index of the first ray.
+/// Continues a batch as random walks. @param task  Index of the first ray.
 void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
@@ -282,14 +276,14 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
     walks.follow(task, walkers, batch.receiver);
 }
 
-/// Joins the points of all threads, in any order.
+/// @param of_threads  In any order.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
     return StartPoints(std::move(all));
 }
 
-/// Converts contributions to received values. @param step  Its buffers are reused.
+/// Completes a step. @param step  Its buffers are reused.
 Received commit(TransportStep& step, const Shooting& shooting, ElementForest& forest, SampleStreams& streams,
                 Arrivals& arrivals, const std::optional<GatheredImportance>& gathered, const Escaped& escaped) {
     const RayAllocation& allocation = shooting.rays.allocation();

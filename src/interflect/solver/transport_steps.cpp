@@ -11,14 +11,14 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Number of rays at which ExperimentalOptions::epsilon is the threshold.
+/// Rays at which ExperimentalOptions::epsilon is the threshold.
 constexpr double rays_at_epsilon = 20e6;
-/// Share of neighbourhood importance in the importance-driven rays.
+/// Share of importance-driven rays.
 constexpr double share_of_nearby = 0.2;
-/// Share of the next larger neighbourhood (Neighbourhoods::smooth).
+/// For Neighbourhoods::smooth().
 constexpr float taken_over = 0.3f;
 
-/// Shares of the sampling weights in a step with power: Eq. 3, 9, 10, or Eq. 11 with importance.
+/// Eq. 3, 9, 10; Eq. 11 if combined.
 MixtureWeights power_step_shares(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
@@ -53,15 +53,15 @@ std::vector<float> total_importance(const Solution& so_far) {
 
 namespace {
 
-/// Mean importance of the parts of a box of light from outside, and the factor that compensates for the exponent.
+/// Mean importance of a box of light from outside, and the factor for its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The exponent below 1 allows for parts with few valuable rays among many. Boxes already separate these, so importance
-/// has the exponent 1 between boxes. The factor is 1 for a box of the typical importance, which keeps the unit.
+/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores the
+/// exponent 1 between boxes. It is 1 for a box of typical importance.
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -83,8 +83,7 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     return boxes;
 }
 
-/// Computes the importance of luminaire parts, and its mean over the parts of each emitter. A part has few rays, so the
-/// mean is added with the weight of `rays_of_mean` rays.
+/// Importance of parts, and means over similar parts (of one emitter). The mean has the weight of a few rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;
@@ -161,8 +160,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
     oracle.threshold = so_far.options.experimental.epsilon * fall * reference_power(so_far);
     if (oracle.by_importance) {
-        // An element with underestimated importance would stay coarse, so a share of its parent's importance is mixed
-        // in.
+        // An element with underestimated importance would stay coarse.
         oracle.importance =
             importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance.smoothing, 1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
@@ -175,7 +173,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
 double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
-    double seen = 0, area = 0;  // sum of V H: mean irradiance of the picture; area of the patches in it [m^2]
+    double seen = 0, area = 0;  // mean irradiance of the picture; visible area [m^2]
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         seen += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *

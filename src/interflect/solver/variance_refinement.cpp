@@ -14,27 +14,23 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Expected mean square of the children's differences relative to that of a leaf and its siblings: a quarter if
-/// irradiance is linear, a half at an edge.
+/// Mean squared difference of children relative to siblings: a quarter for linear irradiance, a half at an edge.
 constexpr float expected_decay = 0.3f;
-/// Same, relative to squared irradiance, for a leaf without siblings.
+/// Relative to squared irradiance, for a leaf without siblings.
 constexpr float assumed_square = 0.04f;
-/// Splits if the expected squared differences exceed this share of the children's noise at the current number of rays.
-/// More rays follow, and shrinkage suppresses the noise until then.
+/// Minimum signal relative to the children's noise. More rays follow, and shrinkage suppresses noise until then.
 constexpr float least_signal = 0.12f;
-/// Minimum reduction of the squared error for which a leaf is split, relative to the total.
+/// Relative to the total squared error.
 constexpr double negligible_gain = 2e-7;
-/// Minimum power from wrong places for which a leaf is split, relative to all light. For example, light from a bright
-/// corner of a lamp's housing leaves it less easily than light from all of the housing.
+/// Share of all light that starts at wrong places. For example, light escapes less easily from a bright corner of a
+/// lamp's housing.
 constexpr double negligible_misplacement = 1e-7;
-/// A leaf reflects light where it receives it if more than this share of all light would leave from wrong places. At
-/// 1e-5, total power is within 0.05% in rooms with lights 2 cm from a ceiling, and runs take 3% longer. Without this (a
-/// value of 1) the error is 5%; at 1e-6 it is 0.03%, for 20% more time.
+/// Above this share of all light, leaves reflect where they receive. At 1e-5, total power is within 0.05% in rooms with
+/// lights 2 cm from a ceiling (5% at 1), and runs take 3% longer. 1e-6: 0.03%, 20%.
 constexpr double tolerable_misplacement = 1e-5;
-/// Relative weight of the squared error of irradiance on invisible surfaces; its effect on the view is blurred.
+/// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
 
-/// Decides which leaves to split.
 class VarianceOracle {
   public:
     explicit VarianceOracle(const SolverState& state)
@@ -62,14 +58,14 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// Whether the leaf may reflect a relevant amount of light from wrong places; true while its error is unknown.
+    /// Whether reflection from wrong places matters; true if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
     }
 
   private:
-    /// Expected mean squares of the children's differences from a leaf.
+    /// Mean squared differences of children.
     struct Expected {
         float signal, noise;
     };
@@ -82,7 +78,7 @@ class VarianceOracle {
         const Detail detail = detail_of(state_, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * detail.signal(), 4 * detail.noise};
     }
-    /// Weight of the squared error of the leaf's irradiance (luminance).
+    /// Of the squared error of irradiance (luminance).
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
@@ -91,7 +87,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Power that the leaf reflects from wrong places, times its importance.
+    /// Power reflected from wrong places, times importance.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -104,7 +100,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Power received by all surfaces, weighted by importance.
+    /// By all surfaces, weighted by importance.
     double received_power() const {
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
@@ -116,8 +112,8 @@ class VarianceOracle {
     const SolverState& state_;
     const ElementForest& forest_;
     ErrorMeasure measure_;
-    std::span<const float> psi_;  // indirect importance; empty unless the run follows it
-    double least_gain_ = 0;       // [weight times irradiance^2]
+    std::span<const float> psi_;                                   // indirect; empty unless followed
+    double least_gain_ = 0;                                        // [weight times irradiance^2]
     double least_misplaced_power_ = 0, most_misplaced_power_ = 0;  // [lm or W, times importance]
 };
 

@@ -14,48 +14,45 @@
 
 namespace interflect::inline detail {
 
-/// Hit points of camera rays, spread evenly over the pictures. Stored as points, 20 bytes each, to be assigned to the
-/// new elements when the mesh changes.
+/// Hit points of camera rays, spread evenly over the pictures. 20 bytes each, reassigned when the mesh changes.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Traces about `rays_per_view` more camera rays per view on all threads, jittered, one per cell of the picture.
+    /// Adds about `rays_per_view` jittered camera rays per view, on all threads.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
-    bool empty() const { return points_.empty(); }  ///< No view shows a surface.
-    std::int64_t rays() const { return rays_; }     ///< Total number requested for all views.
+    bool empty() const { return points_.empty(); }  ///< no view shows a surface
+    std::int64_t rays() const { return rays_; }     ///< requested for all views
     std::int64_t views() const { return std::ssize(views_); }
-    /// Share of the pictures that shows surfaces, in [0, 1].
+    /// Of the pictures, in [0, 1].
     double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
-    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element, weighted
-    /// over the views, and sums to 1 over the hit surfaces. Surfaces behind glass panes add their transmitted share.
-    /// Inner elements have the mean of their children.
-    /// @param at_patches  Spread the V of each patch evenly over it.
+    /// v = V / A [1/m^2]; V is the share of the pictures that shows an element, weighted over the views. V sums to 1
+    /// over hit surfaces; surfaces behind panes add their transmitted share. Inner elements have the mean of their
+    /// children.
+    /// @param at_patches  Spread V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
     void archive(StateArchive& archive);
-    /// Whether all points lie on elements of this forest.
     bool fits(const ElementForest& forest) const;
 
   private:
-    /// @param share  Weight of each ray.
     void add_points_behind(const ElementForest& forest, const Panes& panes, std::span<const Ray> rays,
                            std::span<const Hit> hits, float share);
 
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;         // share of all pictures, times shares_
-        std::uint32_t leaf;  // that contains the point, at the last lookup
+        float share;         // of all pictures, times shares_
+        std::uint32_t leaf;  // at the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;
     std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
-    double shares_ = 0, hit_shares_ = 0;  // total weight of the camera rays, and of the rays that hit a surface
+    double shares_ = 0, hit_shares_ = 0;  // total weight of camera rays, and of hits
     std::vector<Point> points_;
 };
 
