@@ -28,7 +28,7 @@ class Arrivals {
     explicit Arrivals(std::size_t capacity, std::size_t groups = 0)
         : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
-    /// @param elements  Current size of the forest.
+    /// Starts a step. @param elements  Current size of the forest.
     void begin(std::size_t elements);
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
@@ -77,11 +77,11 @@ class Arrivals {
             bin.arrivals[bin.count++] = {element, source & (most_sources - 1), power, importance};
             if (bin.count == bin.arrivals.size()) flush(region);
         }
-        /// Limits the table of sources. Call while no source index is in use.
+        /// Limits the size of the table of sources. Call while no source index is in use.
         void release_sources() {
             if (contributions_.size() >= enough_sources) flush_all();
         }
-        /// Restarts source indices at 0.
+        /// Adds all collected contributions to the sums. Source indices start at 0 again.
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();

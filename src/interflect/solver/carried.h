@@ -93,7 +93,7 @@ struct Units {
         return contribution;
     }
 
-    /// @param transmittance  Of the panes passed.
+    /// @param transmittance  Product over the panes that the ray has passed.
     Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source,
                                         const Rgb& transmittance = Rgb(1)) const {
         Arrivals::Contribution contribution{};
@@ -104,7 +104,7 @@ struct Units {
         return contribution;
     }
 
-    /// Replaces `terms` by the power of each light group.
+    /// Replaces `terms` by the power of each light group in the contribution.
     void add_groups(const TransportStep& step, const Carried& carried, std::uint32_t source,
                     std::vector<std::int64_t>& terms, const Rgb& transmittance = Rgb(1)) const {
         terms.clear();

@@ -18,8 +18,8 @@ constexpr float unknown = std::numeric_limits<float>::infinity();
 /// Assumed relative variation of irradiance in an unmeasured leaf.
 constexpr float assumed_variation = 0.1f;
 
-/// Bounds of the mean squared difference relative to the next coarser level. It is a quarter for smooth irradiance, a
-/// half at edges.
+/// Bounds of the mean squared difference relative to that of the next coarser level. It falls to a quarter where
+/// irradiance is smooth, and to a half at edges.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
@@ -36,16 +36,17 @@ struct AddedError {
 
 AddedError added_error(const SolverState& state, std::uint32_t first) {
     const Detail detail = detail_of(state, first);
-    if (detail.noise == unknown) return {};  // equal to the parent
+    if (detail.noise == unknown) return {};  // the siblings equal their parent
     if (!uses_shrinkage(state)) return {detail.noise, 0};
     const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
-    // Maximum variance of four non-negative numbers. Without it, rays with a large weight would dominate the sum.
+    // Largest variance of four non-negative numbers. Without this limit, rays with a large weight would dominate the
+    // sum.
     const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(detail.risk() - noise, -most, most)};
 }
 
-/// Fraction of variance that remains after a box filter of width 1 (a pixel). Steps: independent constant pieces of
-/// length `a`. Pairs: adjacent pieces with opposite values.
+/// Fraction of the variance of a signal that remains after a box filter of width 1 (a pixel). Steps: independent
+/// constant pieces of length `a`. Pairs: adjacent pieces of length `a` with opposite values.
 float left_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
 float left_of_pairs(float a) {
     if (a > 1) return 1 - 1 / (2 * a);
@@ -54,7 +55,7 @@ float left_of_pairs(float a) {
     return a / 2 - beyond / a;
 }
 
-/// Same for patches, and for siblings' differences, which change sign along one side, the other, or both.
+/// The same in two dimensions. Differences of four siblings change sign along one side, the other, or both.
 float left_of_patches_by_pixels(float area, float pixel_area) {
     return std::pow(left_of_steps(std::sqrt(area / pixel_area)), 2.0f);
 }
@@ -68,13 +69,14 @@ float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint
     return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
-/// bias may be negative
+/// Mean square errors of every element; bias may be negative.
 struct ElementErrors {
     std::vector<float> noise, bias;
-    std::vector<float> noise_of_patch;  // variance of the patch mean
+    std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
 };
 
-/// Ratio of an element's noise to the area-weighted mean noise of its siblings. Shrinkage moves it towards 1.
+/// Ratio of an element's noise to the area-weighted mean noise of its siblings. Bright siblings are noisier; shrinkage
+/// of their differences moves the ratio towards 1.
 float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_t e) {
     const ElementForest& forest = *state.forest;
     if (state.history[first] == 0) return 1;
@@ -119,20 +121,20 @@ std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
     return forest.first_child(forest.parent(e));
 }
 
-/// 0 if unknown.
+/// Returns the signal of an element's siblings; 0 if unknown.
 float signal_beside(const SolverState& state, std::uint32_t e) {
     if (e < state.forest->patch_count()) return 0;
     const Detail detail = detail_of(state, first_sibling(*state.forest, e));
     return detail.noise == unknown ? 0 : detail.signal();
 }
 
-/// Weighted sums over leaves.
+/// Weighted sums over the leaves.
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
-    double noise_of_patches = 0;              // part of `noise`
+    double noise_of_patches = 0;              // variance of patch means, part of `noise`
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
-    double assumed = 0;                       // within leaves without siblings
-    double within = 0;                        // `signal` that pixels resolve
+    double assumed = 0;                       // variation within leaves without siblings
+    double within = 0;                        // part of `signal` that pixels resolve
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
@@ -142,9 +144,9 @@ struct ErrorSums {
     }
 };
 
-/// Measures the squared error after shrinkage k by the next iteration. With averaged differences y, true differences d
-/// and new differences z, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z). This needs no noise model, unlike Stein's
-/// estimate, but only exists for earlier iterations.
+/// Measures the squared error after shrinkage k with the next iteration. For averaged differences y, true differences d
+/// and new differences z, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z). Unlike Stein's estimate, this needs no noise
+/// model, but only earlier iterations can be measured.
 RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
@@ -242,7 +244,7 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     Detail detail{spread / area, variance / area};
-    // The shrunk noise of few rays could exceed any plausible signal, so extrapolate that from the parent's siblings.
+    // Shrinkage of few rays would leave more noise than any plausible signal, which the parent's siblings bound.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < young * state.history[parent])
         detail.assumed =
@@ -282,7 +284,7 @@ SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
     const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
     const double all = sums.noise_of_patches + of_details + within_leaves;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
-    // Pixels without a surface count in the mean of the picture.
+    // Pixels without a surface have no error, but count in the mean.
     const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * shown));
     return {std::sqrt(sums.noise) * scale, std::sqrt(discretisation) * scale};
@@ -315,7 +317,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
     if (measure == ErrorMeasure::surfaces) return 1;
     const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
     Rgb h = state.solution.irradiance[element];
-    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences
+    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // may be negative as a sum of noisy differences
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
     return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
@@ -323,7 +325,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
 
 namespace {
 
-/// Clamps groups to zero, then rescales them to sum to the total.
+/// Clamps the irradiance of each group to zero, then rescales the groups to sum to the total.
 void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) {
     for (std::size_t e = 0; e < irradiance.size() && !groups.empty(); ++e)
         for (int c = 0; c < 3; ++c) {
@@ -342,7 +344,7 @@ void finish_solution(SolverState& state) {
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // 1/4 + 1/16 + ...
+        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // 1/4 + 1/16 + ... of the signal
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }

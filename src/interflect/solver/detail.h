@@ -13,27 +13,26 @@ namespace interflect::inline detail {
 struct Detail {
     float spread = 0;  ///< Area-weighted mean square difference from the parent: signal plus noise.
     float noise = 0;   ///< Expected noise in `spread`; infinite if unknown.
-    /// Assumed signal of under-sampled siblings; negative for others.
+    /// Assumed signal of under-sampled siblings; negative for all others.
     float assumed = -1;
 
     bool is_young() const { return assumed >= 0; }
     /// Unbiased and possibly negative, unless assumed.
     float signal() const { return is_young() ? assumed : spread - noise; }
-    /// Wiener filter of the differences, with the siblings' own signal: about 1 without noise, 0 if noise explains
-    /// them.
+    /// Wiener filter with the siblings' own signal. About 1 if differences exceed the noise by far, 0 if by nothing.
     float shrinkage() const;
     /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions
-    /// because four differences sum to zero).
+    /// because the four differences sum to zero).
     float risk() const;
 };
 
-/// @param first  First of the siblings.
+/// @param first  Index of the first of four siblings.
 Detail detail_of(const SolverState& state, std::uint32_t first);
 
-/// Updates the noise model with an iteration. Call before merging it.
+/// Updates the noise model with an iteration that has not been merged yet.
 void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t rays);
 
-/// Relative to error_reference(); see IterationReport.
+/// Estimated errors, relative to error_reference(); see IterationReport.
 struct SolutionError {
     double noise = 0, discretisation = 0;
 
@@ -42,7 +41,7 @@ struct SolutionError {
 
 /// Domain of the error: the pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
-/// Pictures if a view shows a surface.
+/// Returns pictures if a view shows a surface, else surfaces.
 ErrorMeasure default_measure(const SolverState& state);
 
 /// @return Infinite until two iterations have been compared, or if nothing relevant is lit.
@@ -56,7 +55,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
 /// Weighted mean luminance of reflected light (pictures) or irradiance (surfaces).
 double error_reference(const SolverState& state, ErrorMeasure measure);
 
-/// Shrinks differences of siblings if enabled, and computes errors and ray counts of elements.
+/// Completes the solution: shrinks differences of siblings if enabled, and computes errors and ray counts of elements.
 void finish_solution(SolverState& state);
 
 }  // namespace interflect::inline detail

@@ -11,7 +11,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Limits the area of a pixel at grazing angles, where it is long and narrow.
+/// Minimum cosine. At grazing angles, the surface area of a pixel is long and narrow.
 constexpr float least_cosine = 0.1f;
 
 }  // namespace

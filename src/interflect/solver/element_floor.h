@@ -7,19 +7,19 @@
 
 namespace interflect::inline detail {
 
-/// Minimum area of elements, by the views and the size of surfaces, not of the world.
+/// Minimum area of elements. It depends on the views and on the size of surfaces, not of the world.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// Smallest area that a pixel of any view covers there [m^2]; infinite without views.
+    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// @param is_seen  Selects pixel_area(), else unseen().
+    /// @param is_seen  Visible to a view: the result is pixel_area(), else unseen().
     /// @return         [m^2]; RefinementOptions::min_area if given.
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// default_element_size() squared [m^2].
+    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
     float unseen() const { return unseen_; }
 
   private:

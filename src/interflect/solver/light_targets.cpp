@@ -29,8 +29,8 @@ struct LineFinder {
     const Panes& panes;
     std::uint64_t key;
 
-    /// Appends the lines of rays that escape, also through panes.
-    /// @param importance  Payloads. @param sun  The target; none: skies.
+    /// Appends the lines of rays that escape, directly or through panes.
+    /// @param importance  Payload of each ray. @param sun  Target of the rays, or none for skies.
     void keep_escaping(std::span<const Ray> rays, std::span<const double> importance, std::uint32_t sun,
                        std::vector<OutdoorLine>& lines) const {
         std::vector<Hit> hits(rays.size());
@@ -46,7 +46,7 @@ struct LineFinder {
             if (b.hit.patch == none) keep(b.ray, static_cast<double>(channel_sum(b.transmittance)) / 3);
     }
 
-    /// Finds lines of light to the origins of rays begin ... end - 1.
+    /// Finds the lines of light to the origins of rays begin ... end - 1.
     std::vector<OutdoorLine> find(std::size_t begin, std::size_t end) const {
         RayBatch batch;
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
@@ -59,7 +59,7 @@ struct LineFinder {
             }
         std::vector<OutdoorLine> lines;
         if (state.emission.has_sky()) {
-            // Directions have density cos(theta) / pi.
+            // Directions have density cos(theta) / pi, so irradiance is pi times the mean radiance.
             std::vector<double> of_radiance;
             for (const double i : importance) of_radiance.push_back(i * std::numbers::pi);
             keep_escaping(batch.rays, of_radiance, none, lines);
@@ -127,7 +127,7 @@ std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Bo
     return found;
 }
 
-/// Weight of the lines that cross a box, larger near its centre.
+/// Sums the weights of the lines that cross a box; lines near its centre count more.
 double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const float farthest = (box.size() / 2).length2();
     double sum = 0;
@@ -139,7 +139,7 @@ double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box
     return sum;
 }
 
-/// The part of a box, halved along its long axes, that most lines cross.
+/// Returns the part of a box, halved along its long axes, that most lines cross.
 Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
@@ -169,9 +169,9 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
     constexpr double share_of_rest = 0.05;  // minimum share of all weight for another place
-    // A quarter of evenly spread lines crosses half a box.
+    // A quarter of evenly spread lines crosses half a box; all lines of a window do.
     constexpr double worthwhile_share = 0.4;
-    // Relative to the scene, whose parts resolve larger boxes.
+    // Relative to the scene, whose own parts resolve larger boxes.
     constexpr float widest_target = 1.0f / 16;
     std::vector<Weighed> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
@@ -212,8 +212,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Light along each line over the square root of its source's total. Lines of a sun are parallel, so the dimmer sky
-/// must locate a window along them.
+/// Returns the light along each line, divided by the square root of its source's total. All lines of a sun are
+/// parallel, so the dimmer sky must locate a window along them.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -229,8 +229,8 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Estimates importance of parts from the lines, with the weight of some rays. A mean line is spread over each box, so
-/// no part starts with zero.
+/// Estimates the importance of the parts from the lines, with the weight of `rays_of_lines` rays. One mean line is
+/// spread over each box, so no part starts with zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
@@ -254,7 +254,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // A small window transmits little importance. These rays are fast and few of all.
+    // A small window transmits little importance. These rays take little time and few of all rays.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

@@ -11,20 +11,20 @@ namespace interflect::inline detail {
 struct MemoryNeed {
     std::size_t scene = 0;       ///< Vertices, patches, materials, textures and names.
     std::size_t ray_tracer = 0;  ///< Embree's structures, and the list of coincident faces.
-    std::size_t patches = 0;     ///< Forest without elements.
+    std::size_t patches = 0;     ///< Data per patch, without elements.
     std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
-    /// Per element: tree 11, H 12, importance 8, history and noise 8, consumed points 8, result of the pass 16, unshot
-    /// radiosity and its importance 16, contributions 40 or received values 16. Textures add 37.
+    /// Bytes per element: tree 11, H 12, importance 8, history and noise 8, consumed points 8, result of the pass 16,
+    /// unshot radiosity and its importance 16, contributions 40 or received values 16. Textures add 37.
     std::size_t per_element = 128;
-    /// H, unshot light and result of the pass, 12 each; contributions 24 or received light 12.
+    /// Bytes for H, unshot light and result of the pass, 12 each, and contributions 24 or received light 12.
     static constexpr std::size_t per_element_and_group = 60;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
 };
 
-/// Methods with links (hr) need 24 more bytes per link.
+/// Excludes the links of hr, 24 bytes each.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
 
 /// @return Number of elements that fit.

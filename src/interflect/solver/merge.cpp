@@ -10,7 +10,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// factor * child + offset has the parent's mean.
+/// Coefficients that scale children to their parent's mean: factor * child + offset.
 template <class T>
 struct Scaling {
     T factor, offset;

@@ -7,25 +7,25 @@
 
 namespace interflect::inline detail {
 
-/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau from each element's history. Newer children have a larger tau,
-/// which only changes how they share their parent's mean. So no light is lost or counted twice. Equal histories give
-/// Eq. 6.
+/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) for each element. Newer children have a
+/// larger tau, which only changes how they share their parent's mean, so no light is lost or counted twice. Equal
+/// histories give Eq. 6 itself.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const IterationPlan& plan);
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan);
 
-/// Same for estimates that are not shot again. Averages differences from the parent, so means may be negative, but stay
-/// unbiased with known noise.
+/// Merges estimates that are not shot again. Differences from the parent are averaged, so means may be negative, but
+/// they are unbiased with known noise.
 void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                    const IterationPlan& plan);
 
-/// The stored light of a group dimmed to 0 does not change.
+/// Merges each light group. The stored light of a group dimmed to 0 does not change.
 void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 void merge_details(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 
-/// Averages escaped power by Eq. 6, to match the mean irradiance. A single iteration does not match, because it also
-/// shoots light of the previous one. @return The mean.
+/// Averages escaped power by Eq. 6 to match the mean irradiance. The power of one iteration does not match, because it
+/// includes light of the previous one. @return The mean.
 RgbD merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
 /// Adds the rays of an iteration. New elements (index >= first_new) inherited a mean that is too smooth, so only

@@ -16,8 +16,9 @@ class Neighbourhoods {
 
     bool empty() const { return patches_.empty(); }
 
-    /// Moves means by `share` towards the next larger neighbourhood, from the root to the patches.
-    /// @param values  Per area, by patch. @param share  In [0, 1].
+    /// Moves the mean of each neighbourhood by `share` towards that of the next larger one, from the root to the
+    /// patches.
+    /// @param values  Per area, one for each patch. @param share  In [0, 1].
     void smooth(const ElementForest& forest, std::span<float> values, float share) const;
 
   private:

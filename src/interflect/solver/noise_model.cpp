@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Decay per iteration, because mesh and sampling weights change.
+/// Decay of earlier iterations, because mesh and sampling weights change.
 constexpr double memory = 0.75;
 constexpr double largest_scale = 100;
 

@@ -14,35 +14,34 @@
 
 namespace interflect::inline detail {
 
-/// Irradiance by one iteration, before merging.
+/// Estimate of irradiance by one iteration, before merging.
 struct FreshEstimate {
-    std::vector<Rgb> irradiance;  ///< H by element [lm/m^2 or W/m^2].
-    std::vector<float> variance;  ///< of its luminance, for independent rays
-    GroupLight groups = {};       ///< shares in `irradiance`
+    std::vector<Rgb> irradiance;  ///< Irradiance H of every element [lm/m^2 or W/m^2].
+    std::vector<float> variance;  ///< Variance of its luminance, for independent rays.
+    GroupLight groups = {};       ///< Shares of the light groups in `irradiance`.
 };
 
-/// Noise of the running mean of irradiance. Each element stores its variance per ray for independent rays; few rays
-/// suffice to estimate it. Low-discrepancy points reduce variance and reflected noise increases it, by a factor
-/// estimated from differences between iterations. Elements with similar numbers of rays share one factor. Points of
-/// many rays are better distributed, and a single ray with a large weight must not affect other elements.
+/// Noise of the running mean of irradiance. Few rays suffice to estimate the variance of one ray for independent rays.
+/// Low-discrepancy points reduce it and reflected noise increases it, by a factor estimated from the differences
+/// between iterations. Elements with similar numbers of rays share one factor: more points are better distributed, and
+/// a single ray with a large weight must not affect other elements.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Variance of the luminance of a mean over `rays` rays: irradiance of a root, or else the difference from the
-    /// parent.
-    /// @param mean  Running mean of every element.
+    /// Returns the luminance variance of a mean over `rays` rays, for a root or the difference of another element from
+    /// its parent. @param mean  Running mean of every element.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     bool is_known() const { return iterations_ > 1; }
 
-    /// New elements (index >= first) get a quarter of their parents' rays on a quarter of the area.
+    /// Initialises new elements (index >= first): a quarter of their parents' rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
-    /// Adds an iteration before merging.
+    /// Adds an iteration that has not been merged yet.
     /// @param history  Rays in the mean, by element; 0: the difference from the parent is unknown.
-    /// @param weight   Of the squared error, by element.
+    /// @param weight   Weight of an element's squared error; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
@@ -60,13 +59,14 @@ class NoiseModel {
 
   private:
     static constexpr std::size_t rarities = 48;
-    /// Squared differences between iterations and the mean.
+    /// Sums of squared differences between iterations and the mean.
     struct Spread {
         std::array<double, rarities> observed{}, independent{};
         Spread& operator+=(const Spread& other);
     };
 
-    /// Class n: hit by about one in 2^n rays. Siblings share a class, even if one was hit by chance.
+    /// Returns class n for elements hit by about one in 2^n rays. Siblings share a class, even if one was hit by
+    /// chance.
     std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
@@ -74,7 +74,7 @@ class NoiseModel {
         const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// Share of siblings' independent variance in their differences from the mean.
+    /// Siblings' differences from their mean have three quarters of their independent variance.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }
@@ -84,7 +84,7 @@ class NoiseModel {
 
     std::vector<float> per_ray_;  // [irradiance^2]
     std::array<float, rarities> scale_;
-    Spread spread_;  // with decay over iterations
+    Spread spread_;  // decays with each iteration
     int iterations_ = 0;
 };
 

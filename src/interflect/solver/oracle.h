@@ -10,18 +10,18 @@
 
 namespace interflect::inline detail {
 
-/// End of an interaction, as seen by the oracle.
+/// One end of an interaction, as seen by the oracle.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};  ///< Unit length.
     float area = 0;       ///< [m^2]
-    /// 1 for a source that shines equally in all directions.
+    /// Minimum cosine, 1 for a source that shines equally in all directions.
     float least_cosine = 0;
 };
 
-/// Approximate upper bound of the form factor from receiver to shooter: disk f = A_j / (pi d^2 + A_j), times both
-/// cosines between the centres. Cosines are at least 2 f, because parts of close elements face each other more
-/// directly.
+/// Estimates an upper bound of the form factor from receiver to shooter: a disk of the shooter's area, f = A_j / (pi
+/// d^2 + A_j), times the cosines at both ends of the line between centres. Cosines are at least 2 f, because parts of
+/// close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // By value and without branches, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
@@ -37,20 +37,20 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Decides whether a ray's two elements interact without refinement. Depends on the state before the step only, never
-/// on other rays.
+/// Refinement test for the two elements of a ray. The result depends on the state before the step, never on other rays.
 struct Oracle {
-    bool refines = false;  ///< False: leaves interact.
+    bool refines = false;  ///< False: leaves exchange light.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
     float min_area = 0;  ///< Minimum area of children [m^2].
-    /// Excess elements are dropped at the end of a step, in an order independent of threads.
+    /// Maximum size of the forest. Excess elements are dropped at the end of a step, in an order independent of
+    /// threads.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
     /// psi of every element before the step; empty unless by_importance.
     std::vector<float> importance;
 
-    /// Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.
+    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.
     /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2].
     /// @param psi        psi_i of the receiver; 1 unless by_importance.
     bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {

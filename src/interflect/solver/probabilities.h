@@ -17,10 +17,10 @@ struct SamplingWeights {
     Radiosity light;                              ///< B [lm/m^2 or W/m^2].
     Importance reflected_importance;              ///< psi of Eq. 8 [1/m^2].
     std::span<const float> importance_weight;     ///< psi of Eq. 9 or 10 by element [1/m^2]
-    std::span<const float> nearby = {};           ///< means of neighbourhoods, by patch
-    const Emission* emission = nullptr;           ///< null: none
-    std::span<const float> part_importance = {};  ///< psi of Eq. 10 by luminaire part; empty: unknown
-    std::span<const float> part_nearby = {};      ///< means of similar parts
+    std::span<const float> nearby = {};           ///< Mean importance of the neighbourhood of each patch.
+    const Emission* emission = nullptr;           ///< Luminaires that shoot, or null.
+    std::span<const float> part_importance = {};  ///< psi of Eq. 10 by luminaire part; empty: unknown.
+    std::span<const float> part_nearby = {};      ///< Mean importance of similar parts.
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
 
     /// Eq. 3: P_s, summed over the channels.
@@ -37,25 +37,25 @@ struct SamplingWeights {
     }
 };
 
-/// Shares of rays (Eq. 11). Others take over the share of a weight that is 0 everywhere.
+/// Shares of rays for the weights above (Eq. 11). A weight that is 0 everywhere leaves its share to the others.
 struct MixtureWeights {
     double power = 0, weighted_power = 0, importance = 0;
-    double power_nearby = 0;  ///< power times neighbourhood importance
+    double power_nearby = 0;  ///< Power times neighbourhood importance.
 };
 
 /// Sampling distribution of the rays.
 struct Mixture {
-    /// By element (0 for inner ones), then luminaire part. Sums to the shares in use.
+    /// Probability of each element (0 for inner ones), then of each luminaire part. Sums to the shares in use.
     std::vector<float> q;
-    std::int64_t lost_leaves = 0;          ///< with non-finite radiosity; not shot
-    double power = 0, weighted_power = 0;  ///< sums before normalisation
+    std::int64_t lost_leaves = 0;          ///< Leaves with non-finite radiosity, which are not shot.
+    double power = 0, weighted_power = 0;  ///< Sums of these weights before normalisation.
 };
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares);
 
-/// Smooths importance for sampling. A leaf has few rays; underestimation gives the rays that start there large weights.
-/// So the result of the parent is mixed in, with the share `from_parent`. The optimal ray density is proportional to
-/// the root mean square of the importance met, which exceeds the mean for light through a doorway; hence an exponent
-/// below 1. The paper uses (0, 1).
+/// Smooths importance for sampling. If the few rays of a leaf underestimate it, rays that start there have large
+/// weights. So a share `from_parent` of the parent's result is mixed in. The optimal ray density is proportional to the
+/// root mean square of the importance met. This exceeds the mean for light through a doorway, hence an exponent below
+/// 1. The paper uses (0, 1).
 std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
                                      double exponent);
 

@@ -7,15 +7,15 @@
 
 namespace interflect::inline detail {
 
-/// Histogram of ray power, in quarters of an octave.
+/// Histogram of the power of rays, in bins of a quarter of an octave.
 class Quanta {
   public:
     /// @param power  Sum of the channels [lm or W].
     void add(double power, std::int64_t rays);
     Quanta& operator+=(const Quanta& other);
 
-    double largest_over_mean() const;  ///< 1 without power
-    /// Power that a share of the rays exceeds, relative to the mean; accurate to 19%.
+    double largest_over_mean() const;  ///< Returns 1 if no power was carried.
+    /// Returns the power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
     double quantile_over_mean(double share) const;
 
     void archive(StateArchive& archive) {

@@ -14,11 +14,11 @@ namespace interflect::inline detail {
 
 /// Rays of one task with the same source: batch.rays[begin ... end - 1].
 struct SourceRays {
-    std::uint32_t source;  ///< leaf, or size of the forest + luminaire part
+    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
     std::uint32_t begin, end;
 };
 
-/// One object per thread, reused for all tasks.
+/// Rays of one task; one object per thread, reused.
 struct RayBatch {
     std::vector<SourceRays> sources;
     std::vector<Ray> rays;
@@ -26,14 +26,14 @@ struct RayBatch {
     PointBlock points;
 };
 
-/// Refers to its arguments.
+/// Generates the rays of a step. Refers to its arguments.
 class RayMaker {
   public:
     RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
              const SampleStreams& streams);
 
     const RayAllocation& allocation() const { return allocation_; }
-    std::uint32_t elements() const { return elements_; }  ///< size of the forest before the step
+    std::uint32_t elements() const { return elements_; }  ///< Size of the forest before the step.
 
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 

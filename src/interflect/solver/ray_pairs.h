@@ -24,22 +24,22 @@ struct alignas(64) RayPairs {
     Vectors origin, edge_u, edge_v, twist;
     Numbers is_triangle;
     Floats hit_u, hit_v;
-    // The receiver: element above the hit that was reached.
+    // The receiver: the current element above the hit.
     Numbers receiver, children;  // children: first of four, or none
     Floats u, v, size;           // its cell
     Vectors normal;
     Floats area, importance;  // psi_i
-    // The shooter: element above the origin that was reached.
-    Numbers shooter, lowest_shooter;  // in Shooters; the lowest is the ray's leaf or a new element
+    // The shooter: the current element above the origin.
+    Numbers shooter, lowest_shooter;  // indices in Shooters; the lowest is the ray's leaf or a new element
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;  // the largest channel of rho_i B_j
-    // Results of the oracle.
-    Numbers settled;    // accepted, or not divisible
-    Numbers of_power;   // receiver of the power, once settled
-    Numbers on_demand;  // divide the shooter, or create children
+    // Results of the oracle, and the next actions.
+    Numbers settled;    // accepted or not divisible
+    Numbers of_power;   // receiver of the power, final if settled
+    Numbers on_demand;  // the shooter must be divided, or the receiver lacks children
     Numbers goes_on;    // the ray is still in flight
-    Numbers next;       // first of the children to descend to; none: stay
+    Numbers next;       // first of the children to descend to, or none
 
     /// Settles pairs that the oracle accepts or whose larger end is too small to divide (Eq. 14, 15, Prikryl et al.
     /// 2000).

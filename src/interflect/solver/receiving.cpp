@@ -81,8 +81,9 @@ void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, c
     shooters_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). Rejected pairs are divided at their larger end.
-/// Accepted pairs settle the power, and importance descends to the leaf. Branches do not depend on the oracle.
+/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). A rejected pair is divided at its larger end. For
+/// an accepted pair, the receiver of power is final, and importance descends to the leaf. No branch depends on the
+/// oracle.
 void Receiver::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
@@ -108,7 +109,7 @@ void Receiver::advance() {
     }
 }
 
-/// Collects lanes in use that satisfy `condition`, without branches.
+/// Returns the lanes in use that satisfy `condition`, without branches.
 template <class Condition>
 inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, const Condition& condition) const {
     std::size_t count = 0;
@@ -123,7 +124,7 @@ inline void Receiver::look_up_receiver(std::size_t i) {
     const std::uint32_t element = pairs_.receiver[i];
     pairs_.area[i] = forest_.area(element);
     pairs_.children[i] = forest_.first_child(element);
-    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit
+    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit it
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 

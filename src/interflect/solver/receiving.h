@@ -30,9 +30,9 @@ struct Escaped {
     }
 };
 
-/// Finds the elements that receive the payload of each ray, for one thread. Structure-of-arrays traversal with lane
-/// refill: many rays descend the quadtrees level by level, and a new ray takes the lane of a finished one. This hides
-/// memory latency and vectorises.
+/// Receiving end of a step for one thread: finds the elements that receive the payload of each ray. Structure-of-arrays
+/// traversal with lane refill: many rays descend the quadtrees level by level, and a new ray takes the lane of a
+/// finished one. This hides memory latency and vectorises.
 class Receiver {
   public:
     /// @param old_size  Size of the forest before the step. All other arguments must outlive this.
@@ -53,15 +53,15 @@ class Receiver {
         pairs_.next.fill(none);
     }
 
-    /// @param source        Leaf, or old_size + luminaire part; the payload of each of its rays is `contribution`.
-    /// @param of_groups     Power by light group.
-    /// @param origins       On the leaf's patch; unused for luminaire parts.
+    /// @param source        Leaf, or old_size + luminaire part. Each of its rays carries `contribution`.
+    /// @param of_groups     Power of each light group in `contribution`.
+    /// @param origins       Parameters on the leaf's patch; unused for luminaire parts.
     /// @param transmitted   Share of found importance that returns to the source.
     void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const std::int64_t> of_groups,
               std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
               float transmitted = 1);
     void prefetch(const Hit& hit) const;
-    /// Finishes all rays in flight. Call at the end of a task.
+    /// Finishes all rays in flight. Call at the end of each task.
     void finish_batch();
     void deposit(std::uint32_t leaf, const Arrivals::Contribution& contribution,
                  std::span<const std::int64_t> of_groups) {
@@ -73,7 +73,7 @@ class Receiver {
     }
     /// Points of the leaves that reflect where they receive, in any order.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// @return Escaped power and rays of this thread.
+    /// Flushes all contributions. @return Escaped power and rays of this thread.
     Escaped finish();
 
   private:
@@ -108,10 +108,10 @@ class Receiver {
     GatheredImportance* gathered_;
     struct Left {
         std::uint32_t source;
-        double found;  // importance
+        double found;  // importance found so far
         float transmitted;
     };
-    std::vector<Left> left_;  // sources of this task
+    std::vector<Left> left_;  // sources of the current task
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
     Lanes open_;  // lanes in use, then free lanes

@@ -12,12 +12,12 @@ struct RiskCheck {
         expected += o.expected, measured += o.measured;
         return *this;
     }
-    /// @param weight  In [0, 1]; less for short iterations. Earlier ones decay by 1 - weight / 2.
+    /// Adds an iteration; earlier ones decay by 1 - weight / 2. @param weight  In [0, 1]; less for short iterations.
     void add(const RiskCheck& fresh, double weight) {
         expected = expected * (1 - weight / 2) + weight * fresh.expected;
         measured = measured * (1 - weight / 2) + weight * fresh.measured;
     }
-    /// Correction of expected errors; 1 without data.
+    /// Factor that corrects expected errors; 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 };
 

@@ -9,34 +9,34 @@ namespace interflect::inline detail {
 
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
-    bool warms_up = false;  ///< the next iteration replaces it
-    bool is_final = false;  ///< ends the run, even if it traces fewer rays
+    bool warms_up = false;  ///< Not averaged: the next iteration replaces it.
+    bool is_final = false;  ///< Ends the run, even if it traces fewer rays.
 };
 
-/// Ray counts of the iterations. tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000; equal counts give the
-/// paper's 1/m. Without a fixed size, iterations grow with the rays averaged before. So early ones, without late
-/// bounces and a fine mesh, soon have little weight. A fixed size above 2^24 applies from the second iteration on,
-/// unless their number is given.
+/// Ray counts of the iterations. Iterations are averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al.
+/// 2000; equal counts give the paper's 1/m. Unless their size is given, iterations grow with the rays averaged before.
+/// So early ones, without late bounces and a fine mesh, soon have little weight. A given size above 2^24 applies from
+/// the second iteration on, unless the number of iterations is given too.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays of each pass before the first iteration: at least one, at most an eighth of all, and few for any size of
-    /// iterations.
+    /// Rays of each pass before the first iteration: at least one, at most an eighth of all, and few even if iterations
+    /// are long.
     std::int64_t start_rays() const;
     /// Records these passes. Rays with power are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// With a time limit, plans an iteration that ends in time, because an interrupted one is lost.
+    /// Plans the next iteration, with a time limit one that ends in time, because an interrupted iteration is lost.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
-    /// Whether the run is complete, apart from time.
+    /// Whether the run is complete, even if time remains.
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
-    /// Makes iterations small again.
+    /// Makes iterations small again; they grow with the rays averaged from now on.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// The size of first iterations, derived from old limits, does not change.
+    /// Replaces SolveOptions::limits. The size of the first iterations does not change.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 
@@ -52,10 +52,10 @@ class Schedule {
     std::int64_t rays_ = 0;
     std::int64_t averaged_rays_ = 0;
     std::int64_t averaged_at_restart_ = 0;
-    int finished_ = 0;  // number of iterations
+    int finished_ = 0;  // number of finished iterations
     bool is_over_ = false;
-    double planned_at_ = 0;           // [s]
-    std::int64_t planned_after_ = 0;  // [rays]
+    double planned_at_ = 0;           // of the last iteration [s]
+    std::int64_t planned_after_ = 0;  // rays traced before it
 };
 
 }  // namespace interflect::inline detail

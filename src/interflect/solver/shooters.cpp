@@ -27,7 +27,7 @@ Shooters::Path Shooters::append_leaf(std::uint32_t leaf) {
     return {first, static_cast<std::uint32_t>(shooters_.size() - 1)};
 }
 
-/// A small disk that causes the same irradiance at the receiver.
+/// The oracle sees a small disk that causes the same irradiance at the receiver.
 Shooters::Path Shooters::append_part(std::uint32_t part, const Ray& ray, const Hit& hit) {
     constexpr float share_of_view = 1e-6f;  // never the larger end of a pair
     constexpr float tiny = std::numeric_limits<float>::min();

@@ -14,7 +14,7 @@ namespace interflect::inline detail {
 /// Ancestor paths of the leaves that shot the rays in flight. Each pair uses the element that suits its receiver.
 class Shooters {
   public:
-    /// From the largest to the smallest shooter.
+    /// Range of shooters, from the largest to the smallest.
     struct Path {
         std::uint32_t first = 0, last = 0;
     };
@@ -23,11 +23,11 @@ class Shooters {
     Shooters(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
     Path append_leaf(std::uint32_t leaf);
-    /// Appends a proxy for one ray of the part.
+    /// Appends a proxy of a luminaire part for one of its rays.
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { shooters_.clear(); }
 
-    /// @param reflectance  rho_i of the patch that was hit.
+    /// Starts with the largest shooter. @param reflectance  rho_i of the patch that was hit.
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, shooters_[path.first].normal);
@@ -49,7 +49,7 @@ class Shooters {
         take(pairs, i, number, reflectance);
     }
 
-    /// Replaces the lowest shooter of a path by its child at the start of the ray. @return False if it has none.
+    /// Replaces the lowest shooter of a path by its child at the start of the ray. @return Whether this was possible.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
@@ -75,7 +75,7 @@ class Shooters {
     std::vector<Shooter> shooters_;
 };
 
-/// Creates the children if the element has none and the forest may grow. @return The first, or none.
+/// Returns the first child, or none. Creates children of a leaf if the forest may grow.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

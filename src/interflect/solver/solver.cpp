@@ -33,9 +33,9 @@ struct Solver::Run {
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
     bool is_prepared = false, is_finished = false;
-    double error = std::numeric_limits<double>::infinity();  // for the current views
+    double error = std::numeric_limits<double>::infinity();  // estimate for the current views
     int iteration = 0;
-    IterationPlan plan;                // in progress; 0 rays: none
+    IterationPlan plan;                // current iteration; 0 rays: none
     std::optional<Solution> finished;  // cached solution()
     std::vector<float> known_dimming;  // factors for which the stored light was computed
 
@@ -58,21 +58,21 @@ void Solver::Run::dim_sources() {
 
 void Solver::Run::dim(std::size_t group, float factor) {
     Solution& solution = state.solution;
-    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // keep the light of a dark group
+    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // the light of a dark group is kept
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     method->scale_group(state, group, change);
     dim_sources();
-    state.escaped_power_rays = 0;  // unknown until the next iteration
+    state.escaped_power_rays = 0;  // unknown until the next iteration ends
 }
 
 void Solver::Run::limit_time() {
     state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
 }
 
-/// @param rays_asked_for  In total; extends a completed plan.
+/// @param rays_asked_for  Total number; extends a completed plan.
 IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     const IterationPlan next = method->plan(state);
     const bool is_more_asked_for = rays_asked_for < std::numeric_limits<std::int64_t>::max() &&
@@ -106,7 +106,7 @@ void Solver::Run::iterate_until(const Limits& limits) {
     is_finished = plan.rays == 0 && (error <= state.options.limits.until || method->is_fulfilled(state));
 }
 
-/// Copies the forest, which grows.
+/// Copies the forest, because that of the run grows.
 Solution Solver::Run::snapshot() {
     Solution copy = state.solution;
     method->finish(state);  // modifies irradiance
@@ -156,7 +156,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     run.finished.reset();
     state.begin_work(monitor, limits.time);
     state.solution.interrupted = false;
-    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else the solution is 0
+    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // otherwise 0 is the exact solution
     try {
         if (is_lit) run.iterate_until(limits);
     } catch (const Interrupted&) {

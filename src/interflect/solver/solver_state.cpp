@@ -116,7 +116,7 @@ void look(SolverState& state) {
 
 namespace {
 
-/// As archived.
+/// Archived form of a report.
 using ReportNumbers = std::array<double, 19>;
 
 ReportNumbers numbers_of(const IterationReport& r) {

@@ -51,22 +51,22 @@ struct SolverState {
     RiskCheck risk_check;
     Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;  // averaged before
-    RgbD escaped_power{0, 0, 0};           // averaged like irradiance
-    double escaped_power_rays = 0;         // averaged rays
+    std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
+    RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
+    double escaped_power_rays = 0;         // rays in this mean
 
     // The work in progress:
     std::function<void(const IterationReport&)> on_report;
-    StopRequest stop;  // after a first estimate, also due by the time limit
+    StopRequest stop;  // after a first estimate, the time limit also stops the run
     StopRequest::Clock::time_point start;
-    StopRequest::Clock::time_point last_step = StopRequest::Clock::time_point::max();  // except for the first step
+    StopRequest::Clock::time_point last_step = StopRequest::Clock::time_point::max();  // for all steps except the first
     bool has_traced_step = false;
     double earlier_seconds = 0;
 
     /// @param step_seconds  Period in which steps may start.
     void begin_work(const Monitor& monitor, double step_seconds);
     void end_work() { earlier_seconds = seconds(); }
-    /// Including earlier work.
+    /// Returns the duration of all work, including earlier calls.
     double seconds() const {
         return earlier_seconds + std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
@@ -76,10 +76,10 @@ struct SolverState {
     void archive(StateArchive& archive);
 };
 
-/// @param lit  The scene with other exitances; must outlive the state.
+/// Changes the exitance of the sources. @param lit  The scene with these exitances; must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Also resets the importance of luminaire parts.
+/// Replaces the targets of outdoor light, and resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
 /// Computes the view importance of every element. Resets the indirect importance.
@@ -88,23 +88,23 @@ void look(SolverState& state);
 /// Traces a step, then grows all data per element with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);
 
-/// Refers to its arguments.
+/// Returns the radiosity of each group. Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
-/// Of surfaces and luminaires [lm or W].
+/// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
-/// Minimum area of children, and area of a pixel [m^2]; see ElementFloor.
+/// Minimum area of an element's children, and area of a pixel at the element [m^2]; see ElementFloor.
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 
 /// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to averaged rays, for a finer mesh.
+/// Adds camera rays in proportion to the averaged rays, because the mesh becomes finer.
 void refine_view_importance(SolverState& state);
 
-/// @param escaped_power  Averaged like irradiance.
+/// Adds a report of the current state. @param escaped_power  Averaged like irradiance.
 void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
 }  // namespace interflect::inline detail

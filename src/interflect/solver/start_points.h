@@ -12,24 +12,24 @@ namespace interflect::inline detail {
 
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< sum of channels [any unit]; in StartPoints cumulative on the leaf
-    Parameters at;  ///< on the leaf's patch
+    float power;    ///< Sum of the channels [any unit]; in StartPoints cumulative over the leaf.
+    Parameters at;  ///< On the leaf's patch.
 };
 
 /// Origins of reflected light. Uniform reflection from a partly lit leaf sends light to wrong surfaces, a bias that
-/// only a finer mesh removes. Leaves with points start rays there, in proportion to received power, as in particle
-/// tracing.
+/// only a finer mesh removes. A leaf with points here starts rays at them, in proportion to received power, as in
+/// particle tracing.
 class StartPoints {
   public:
     StartPoints() = default;
     /// @param points  Their order changes no bit. Cost: O(n log n) on all threads, 16 bytes per point.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// Empty if rays of the leaf start uniformly. Cost: O(log n).
+    /// Returns the points of a leaf; empty if its rays start uniformly. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// Samples in proportion to power. @param points  At least one. @param u  In [0, 1).
+    /// Samples a point in proportion to power. @param points  At least one. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
     void archive(StateArchive& archive, const std::string& name) { archive(name, points_); }

@@ -17,7 +17,7 @@ namespace interflect::inline detail {
 /// writing and reading. Only the same version of Interflect can read them.
 class StateArchive {
   public:
-    /// For writing. Refers to values, which must not change until written.
+    /// For writing. Refers to the values, which must not change until they are written.
     StateArchive() = default;
     /// For reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
@@ -44,7 +44,7 @@ class StateArchive {
         }
     }
 
-    /// For data stored in another form. Writes `values`, or returns the data read.
+    /// For data stored in another form: writes `values`, or returns the data read.
     template <class T>
     std::vector<T> by_value(const std::string& name, std::vector<T> values) {
         if (!reads_) {
@@ -58,7 +58,7 @@ class StateArchive {
     }
 
     bool reads() const { return reads_; }
-    /// In order.
+    /// Arrays to write, in order.
     const std::vector<std::pair<std::string, std::span<const std::byte>>>& written() const { return spans_; }
 
   private:
@@ -80,7 +80,7 @@ class StateArchive {
     std::map<std::string, std::vector<std::byte>> arrays_;
 };
 
-/// By light group, [group][element]. Reads the number of groups that was written.
+/// Archives [group][element] arrays. Reads the number of groups that was written.
 template <class T>
 void archive_groups(StateArchive& archive, const std::string& name, std::vector<std::vector<T>>& groups) {
     constexpr std::uint64_t most = 256;

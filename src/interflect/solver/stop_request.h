@@ -12,7 +12,7 @@ namespace interflect::inline detail {
 /// Thrown if a run must stop; the current step is lost.
 struct Interrupted {};
 
-/// Checked on all threads before each batch of rays.
+/// Condition for stopping a run. All threads check it before each batch of rays.
 class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
@@ -37,7 +37,7 @@ class StopRequest {
     double seconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// Starts no further range once the run must stop. @throws Interrupted
+/// Like parallel_for_ranges() above, but starts no range once the run must stop. @throws Interrupted
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
     std::atomic<bool> is_over{false};

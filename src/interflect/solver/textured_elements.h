@@ -10,7 +10,7 @@
 
 namespace interflect::inline detail {
 
-/// Means over a patch or an element.
+/// Mean surface of a patch or an element.
 struct MeanSurface {
     Rgb reflectance{0, 0, 0};
     Rgb exitance{0, 0, 0};  ///< [lm/m^2 or W/m^2]
@@ -27,14 +27,14 @@ class TexturedElements {
 
     MeanSurface of_patch(std::uint32_t patch, const PatchGeometry& geometry) const { return mean(patch, geometry, {}); }
 
-    /// Null if the patch is not textured, or before grow(). @param element  Not a patch.
+    /// Returns null if the patch is not textured, or before grow(). @param element  Not a patch.
     const MeanSurface* find(std::uint32_t element) const {
         const std::uint32_t block = (element - patch_count_) / 4;
         if (block >= slot_of_block_.size() || slot_of_block_[block] == none) return nullptr;
         return &surfaces_[4 * std::size_t{slot_of_block_[block]} + (element - patch_count_) % 4];
     }
 
-    /// Adds new elements.
+    /// Computes the means of new elements.
     void grow(const ElementForest& forest);
 
   private:
@@ -44,7 +44,7 @@ class TexturedElements {
     std::vector<float> exitance_share_;
     std::unique_ptr<TextureMeans> means_;
     std::uint32_t patch_count_;
-    std::vector<std::uint32_t> slot_of_block_;  // by four siblings; none: not textured
+    std::vector<std::uint32_t> slot_of_block_;  // one per four siblings; none: not textured
     std::vector<MeanSurface> surfaces_;         // four per slot
 };
 

@@ -28,12 +28,12 @@ std::uint64_t walk_key(const SampleStreams& streams) {
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Amortises the cost of a task within the second-level cache.
+/// Rays per task: many enough to amortise it, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Prefetching distance.
+/// Distance of prefetching, in rays.
 constexpr std::size_t rays_ahead = 32;
 
-/// Counts the consumed points.
+/// Counts the points that each source has consumed.
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
     constexpr std::size_t blocks_at_once = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
@@ -75,7 +75,7 @@ struct Shooting {
     Panes panes;
 };
 
-/// One object per thread, reused for all tasks.
+/// Data of one task; one object per thread, reused.
 struct Batch {
     explicit Batch(const Receiver& r) : receiver(r) {}
 
@@ -87,7 +87,7 @@ struct Batch {
     Receiver receiver;
 };
 
-/// Contributions after elements from `old_size` on were renumbered.
+/// Contributions of a step after new elements (index >= old_size) were renumbered.
 class Arrived {
   public:
     Arrived(Arrivals& arrivals, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
@@ -111,7 +111,7 @@ class Arrived {
     std::vector<std::uint32_t> old_numbers_;
 };
 
-/// Enforces the oracle's limit. Parents receive the contributions of dropped elements.
+/// Drops elements beyond the oracle's limit. Their parents receive the contributions.
 void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
@@ -124,7 +124,7 @@ void forget_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Empty if only patches receive importance and no luminaire shoots, or without importance.
+/// Returns nothing without importance, or if patches receive it and no luminaire shoots.
 std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Materials& materials,
                                               const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -134,7 +134,7 @@ std::optional<GatheredImportance> gathered_by(const TransportStep& step, const M
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // per ray
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // hits per ray
     return std::optional<GatheredImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
                                              step.rays, forest.size() + step.part_count());
 }
@@ -150,9 +150,9 @@ std::vector<PartImportance> found_by_parts(const TransportStep& step, const RayA
     return parts;
 }
 
-/// Averages received importance with that gathered by the leaf's own rays. A gathering ray has the weight 1, the
-/// received estimate its expected effective number of rays. Both are independent of the estimates, so the mean is
-/// unbiased.
+/// Averages the importance that a leaf received with that gathered by its own rays. A gathering ray has the weight 1,
+/// and received importance the expected effective number of its rays. The weights do not depend on the estimates, so
+/// the mean is unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const GatheredImportance& gathered, const Totals& carried, std::size_t elements,
            std::vector<float>& received) {
@@ -172,10 +172,10 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
     });
 }
 
-/// Converts sums to received values per area.
+/// Converts sums of contributions to received values per area.
 void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
-    constexpr std::size_t at_once = std::size_t{1} << 16;  // more than a page of 2 MiB
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // sums fill more than a page of 2 MiB
     if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
@@ -214,7 +214,7 @@ Received nothing_received(const TransportStep& step, std::size_t elements) {
     return received;
 }
 
-// The three phases of a step. After the second, Arrivals contain integers that could be summed over several machines.
+// The three phases of a step. After the second, Arrivals contain integers that several machines could sum.
 
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
@@ -223,7 +223,7 @@ void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t be
     shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
 }
 
-/// Deposits the filtered payload behind panes.
+/// Deposits the filtered payload of rays behind panes.
 void receive_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
                     std::span<const Panes::HitBehind> behind, Batch& batch) {
     const std::uint32_t source = rays.source;
@@ -236,7 +236,7 @@ void receive_behind(const TransportStep& step, const Shooting& shooting, const S
     }
 }
 
-/// Deposits the payload of a batch, with new elements on demand.
+/// Deposits the payload of a batch; the oracle may create elements.
 void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) {
     auto& [shot, hits, all_behind, group_terms, walkers, receiver] = batch;
     std::span<const Panes::HitBehind> behind = all_behind;
@@ -276,14 +276,14 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
     walks.follow(task, walkers, batch.receiver);
 }
 
-/// @param of_threads  In any order.
+/// Joins the points of all threads, in any order.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
     return StartPoints(std::move(all));
 }
 
-/// Completes a step. @param step  Its buffers are reused.
+/// Converts contributions to received values. @param step  Its buffers are reused.
 Received commit(TransportStep& step, const Shooting& shooting, ElementForest& forest, SampleStreams& streams,
                 Arrivals& arrivals, const std::optional<GatheredImportance>& gathered, const Escaped& escaped) {
     const RayAllocation& allocation = shooting.rays.allocation();

@@ -11,14 +11,14 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Rays at which ExperimentalOptions::epsilon is the threshold.
+/// Number of rays at which ExperimentalOptions::epsilon is the threshold.
 constexpr double rays_at_epsilon = 20e6;
-/// Share of importance-driven rays.
+/// Share of importance-driven rays that are sampled by neighbourhood importance.
 constexpr double share_of_nearby = 0.2;
-/// For Neighbourhoods::smooth().
+/// Share of the next larger neighbourhood in Neighbourhoods::smooth().
 constexpr float taken_over = 0.3f;
 
-/// Eq. 3, 9, 10; Eq. 11 if combined.
+/// Shares of the weights in Eq. 3, 9, 10, or Eq. 11 if combined.
 MixtureWeights power_step_shares(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
@@ -53,7 +53,7 @@ std::vector<float> total_importance(const Solution& so_far) {
 
 namespace {
 
-/// Mean importance of a box of light from outside, and the factor for its parts.
+/// Mean importance in a box of light from outside, and the factor for its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
@@ -83,7 +83,8 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     return boxes;
 }
 
-/// Importance of parts, and means over similar parts (of one emitter). The mean has the weight of a few rays.
+/// Computes the importance of parts, and its mean over the parts of an emitter. The mean serves as a prior with the
+/// weight of `rays_of_mean` rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;

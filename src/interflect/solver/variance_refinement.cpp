@@ -14,21 +14,22 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Mean squared difference of children relative to siblings: a quarter for linear irradiance, a half at an edge.
+/// Expected squared difference of children relative to siblings: a quarter for linear irradiance, a half at an edge.
 constexpr float expected_decay = 0.3f;
-/// Relative to squared irradiance, for a leaf without siblings.
+/// The same relative to squared irradiance, for a leaf without siblings.
 constexpr float assumed_square = 0.04f;
-/// Minimum signal relative to the children's noise. More rays follow, and shrinkage suppresses noise until then.
+/// Minimum expected signal relative to the children's noise. More rays follow, and shrinkage suppresses noise until
+/// then.
 constexpr float least_signal = 0.12f;
-/// Relative to the total squared error.
+/// Minimum reduction of the total squared error for which a leaf is split.
 constexpr double negligible_gain = 2e-7;
-/// Share of all light that starts at wrong places. For example, light escapes less easily from a bright corner of a
-/// lamp's housing.
+/// Minimum share of all light reflected from wrong places for which a leaf is split. For example, light escapes less
+/// easily from a bright corner of a lamp's housing.
 constexpr double negligible_misplacement = 1e-7;
-/// Above this share of all light, leaves reflect where they receive. At 1e-5, total power is within 0.05% in rooms with
-/// lights 2 cm from a ceiling (5% at 1), and runs take 3% longer. 1e-6: 0.03%, 20%.
+/// Leaves above this share of all light reflect where they receive. At 1e-5, total power is within 0.05% in rooms with
+/// lights 2 cm from a ceiling, and runs take 3% longer. At 1 it is 5%; at 1e-6 it is 0.03% for 20% more time.
 constexpr double tolerable_misplacement = 1e-5;
-/// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
+/// Relative weight of errors on invisible surfaces. Their effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
 
 class VarianceOracle {
@@ -58,14 +59,14 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// Whether reflection from wrong places matters; true if unknown.
+    /// Whether power from wrong places matters; true if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
     }
 
   private:
-    /// Mean squared differences of children.
+    /// Expected mean squared differences of children from the leaf.
     struct Expected {
         float signal, noise;
     };
@@ -78,7 +79,7 @@ class VarianceOracle {
         const Detail detail = detail_of(state_, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * detail.signal(), 4 * detail.noise};
     }
-    /// Of the squared error of irradiance (luminance).
+    /// Returns the weight of the squared luminance error of the leaf's irradiance.
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
@@ -87,7 +88,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Power reflected from wrong places, times importance.
+    /// Returns the power reflected from wrong places, times importance.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -100,7 +101,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// By all surfaces, weighted by importance.
+    /// Returns the power received by all surfaces, weighted by importance.
     double received_power() const {
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
@@ -112,7 +113,7 @@ class VarianceOracle {
     const SolverState& state_;
     const ElementForest& forest_;
     ErrorMeasure measure_;
-    std::span<const float> psi_;                                   // indirect; empty unless followed
+    std::span<const float> psi_;                                   // indirect importance, if used
     double least_gain_ = 0;                                        // [weight times irradiance^2]
     double least_misplaced_power_ = 0, most_misplaced_power_ = 0;  // [lm or W, times importance]
 };

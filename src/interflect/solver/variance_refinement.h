@@ -5,10 +5,10 @@
 
 namespace interflect::inline detail {
 
-/// Splits leaves in which irradiance is expected to vary by more than the noise of children. Extrapolates the
-/// differences of siblings without their noise (detail.h). Skips leaves with negligible errors and the smallest
-/// elements (ElementFloor). Only later rays measure the new differences, so splits cause no bias. Call between
-/// iterations.
+/// Splits leaves in which irradiance is expected to vary by more than the noise of children. The variation is
+/// extrapolated from differences of siblings without their noise (detail.h). Leaves with negligible errors and the
+/// smallest elements (ElementFloor) are not split. Only later rays measure the new differences, so splits cause no
+/// bias. Call between iterations.
 void refine_by_variance(SolverState& state);
 
 /// Marks leaves that reflect where they receive (StartPoints). Empty unless refine_by_variance() makes the mesh.

@@ -14,7 +14,8 @@
 
 namespace interflect::inline detail {
 
-/// Hit points of camera rays, spread evenly over the pictures. 20 bytes each, reassigned when the mesh changes.
+/// Hit points of camera rays, spread evenly over the pictures. Points take 20 bytes each and are reassigned when the
+/// mesh changes.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
@@ -24,14 +25,14 @@ class ViewImportance {
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
-    bool empty() const { return points_.empty(); }  ///< no view shows a surface
-    std::int64_t rays() const { return rays_; }     ///< requested for all views
+    bool empty() const { return points_.empty(); }  ///< No view shows a surface.
+    std::int64_t rays() const { return rays_; }     ///< Requested for all views.
     std::int64_t views() const { return std::ssize(views_); }
-    /// Of the pictures, in [0, 1].
+    /// Returns the share of the pictures that shows surfaces, in [0, 1].
     double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
-    /// v = V / A [1/m^2]; V is the share of the pictures that shows an element, weighted over the views. V sums to 1
-    /// over hit surfaces; surfaces behind panes add their transmitted share. Inner elements have the mean of their
-    /// children.
+    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element, weighted
+    /// over the views. It sums to 1 over hit surfaces, and surfaces behind panes add their transmitted share. Inner
+    /// elements have the mean of their children.
     /// @param at_patches  Spread V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
@@ -45,8 +46,8 @@ class ViewImportance {
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;         // of all pictures, times shares_
-        std::uint32_t leaf;  // at the last lookup
+        float share;         // share of all pictures, times shares_
+        std::uint32_t leaf;  // result of the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;

@@ -45,8 +45,8 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) con
     receiver.finish_batch();
 }
 
-/// Russian roulette with the reflected share p of power (all channels); survivors are divided by p. Systematic sampling
-/// reduces the variance of their number.
+/// Russian roulette: a particle survives with probability p, the reflected share of its power (all channels), and its
+/// reflected power is divided by p. Systematic sampling reduces the variance of the number of survivors.
 void Walks::survive(double offset, Walkers& walkers) const {
     const std::size_t groups = step_.groups.size();
     walkers.reflected.clear();
@@ -67,7 +67,7 @@ void Walks::survive(double offset, Walkers& walkers) const {
     }
 }
 
-/// Starts rays at hit points if the leaf reflects there, else uniformly.
+/// Starts each ray at the hit point if the leaf reflects there, else uniformly on the leaf.
 void Walks::shoot(std::uint64_t key, Walkers& walkers) const {
     walkers.rays.resize(walkers.reflected.size());
     for (std::size_t i = 0; i < walkers.rays.size(); ++i) {

@@ -15,11 +15,11 @@ namespace interflect::inline detail {
 
 struct ReflectedPower {
     std::uint32_t leaf, patch;
-    Parameters at;  ///< where the leaf received it
+    Parameters at;  ///< Where the leaf received it.
     RgbD power;     ///< [lm or W]
 };
 
-/// One object per thread, reused for all tasks.
+/// Particles of one task; one object per thread, reused.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
     std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
@@ -30,8 +30,8 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks complete the transport of a pass (TransportStep::to_the_end). The survival probability is the
-/// reflectance. Unlike bounces, walks cost no time for elements that they do not visit.
+/// Random walks complete the transport of a pass (TransportStep::to_the_end). A particle survives with the probability
+/// of its reflectance. Unlike a bounce, a walk costs no time for elements that it does not visit.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step. Newer elements receive through ancestors.
