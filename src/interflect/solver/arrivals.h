@@ -34,7 +34,6 @@ class Arrivals {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
         for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;
     }
-    /// Returns the sum of an element and resets it.
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
     std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
         std::array<std::int64_t, 3> power{};

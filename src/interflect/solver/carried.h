@@ -84,7 +84,6 @@ struct Units {
     Units(const Totals& all, double visits)
         : power(channel_sum(all.power) * visits), square(all.square * visits), importance(all.importance) {}
 
-    /// Contribution without importance.
     Arrivals::Contribution contribution_of(const RgbD& particle) const {
         Arrivals::Contribution contribution{};
         const FixedPoint::Value of_power = power.from(particle);

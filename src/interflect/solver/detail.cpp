@@ -18,8 +18,8 @@ constexpr float unknown = std::numeric_limits<float>::infinity();
 /// Assumed relative variation of irradiance in an unmeasured leaf.
 constexpr float assumed_variation = 0.1f;
 
-/// Bounds of the mean squared difference relative to that of the next coarser level. It falls to a quarter where
-/// irradiance is smooth, and to a half at edges.
+/// Bounds of the mean squared difference relative to the next coarser level. It is a quarter where irradiance is
+/// smooth, and a half at edges.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
@@ -128,7 +128,6 @@ float signal_beside(const SolverState& state, std::uint32_t e) {
     return detail.noise == unknown ? 0 : detail.signal();
 }
 
-/// Weighted sums over the leaves.
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
     double noise_of_patches = 0;              // variance of patch means, part of `noise`
@@ -146,7 +145,7 @@ struct ErrorSums {
 
 /// Measures the squared error after shrinkage k with the next iteration. For averaged differences y, true differences d
 /// and new differences z, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z). Unlike Stein's estimate, this needs no noise
-/// model, but only earlier iterations can be measured.
+/// model. It measures earlier iterations only.
 RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
@@ -244,7 +243,7 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     Detail detail{spread / area, variance / area};
-    // Shrinkage of few rays would leave more noise than any plausible signal, which the parent's siblings bound.
+    // With few rays, shrinkage would leave more noise than any plausible signal. The parent's siblings bound it.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < young * state.history[parent])
         detail.assumed =

@@ -19,14 +19,13 @@ struct Detail {
     bool is_young() const { return assumed >= 0; }
     /// Unbiased and possibly negative, unless assumed.
     float signal() const { return is_young() ? assumed : spread - noise; }
-    /// Wiener filter with the siblings' own signal. About 1 if differences exceed the noise by far, 0 if by nothing.
+    /// Wiener filter with the siblings' own signal: near 1 if it far exceeds the noise, 0 if differences are noise.
     float shrinkage() const;
     /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions
     /// because the four differences sum to zero).
     float risk() const;
 };
 
-/// @param first  Index of the first of four siblings.
 Detail detail_of(const SolverState& state, std::uint32_t first);
 
 /// Updates the noise model with an iteration that has not been merged yet.
@@ -39,7 +38,6 @@ struct SolutionError {
     double total() const;
 };
 
-/// Domain of the error: the pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
 /// Returns pictures if a view shows a surface, else surfaces.
 ErrorMeasure default_measure(const SolverState& state);

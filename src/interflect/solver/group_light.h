@@ -27,7 +27,7 @@ void scale(GroupLight& light, float factor);
 /// Sums the groups. @param dimming  Solution::dimming; groups with factor 0 are excluded.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
-/// Shares of the light groups in the radiosity of each source; they sum to the total.
+/// Radiosity of each source by light group.
 struct GroupRadiosity {
     const SourceGroups* groups = nullptr;  ///< Null: not separated.
     const GroupLight* irradiance = nullptr;

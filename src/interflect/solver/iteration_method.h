@@ -20,12 +20,11 @@ class IterationMethod {
     /// irradiance.
     /// @throws Interrupted
     virtual RgbD iterate(SolverState& state, IterationPlan& plan) = 0;
-    /// Computes the remaining results of each element.
     virtual void finish(SolverState& state) const;
     /// Updates view importance for the current views, and resets indirect importance.
     virtual void retarget(SolverState& state);
 
-    /// Scales the stored light of a group whose sources now emit `factor` times as much.
+    /// Scales the stored light of a group by `factor`, like its sources.
     virtual void scale_group(SolverState&, std::size_t /*group*/, float /*factor*/) {}
 
     virtual void archive(StateArchive& archive) = 0;

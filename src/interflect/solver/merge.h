@@ -8,7 +8,7 @@
 namespace interflect::inline detail {
 
 /// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) for each element. Newer children have a
-/// larger tau, which only changes how they share their parent's mean, so no light is lost or counted twice. Equal
+/// larger tau. It only changes how they share their parent's mean, so no light is lost or counted twice. Equal
 /// histories give Eq. 6 itself.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const IterationPlan& plan);

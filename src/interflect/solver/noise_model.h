@@ -21,15 +21,15 @@ struct FreshEstimate {
     GroupLight groups = {};       ///< Shares of the light groups in `irradiance`.
 };
 
-/// Noise of the running mean of irradiance. Few rays suffice to estimate the variance of one ray for independent rays.
-/// Low-discrepancy points reduce it and reflected noise increases it, by a factor estimated from the differences
-/// between iterations. Elements with similar numbers of rays share one factor: more points are better distributed, and
-/// a single ray with a large weight must not affect other elements.
+/// Noise of the running mean of irradiance, from the variance of one ray. Few rays suffice to estimate it for
+/// independent rays. Low-discrepancy points reduce it and reflected noise increases it. Differences between iterations
+/// give the factor, which elements with similar numbers of rays share: more points are better distributed. A single ray
+/// with a large weight must not affect elements with many rays.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Returns the luminance variance of a mean over `rays` rays, for a root or the difference of another element from
+    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
     /// its parent. @param mean  Running mean of every element.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;

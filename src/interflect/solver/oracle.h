@@ -19,9 +19,9 @@ struct ElementProxy {
     float least_cosine = 0;
 };
 
-/// Estimates an upper bound of the form factor from receiver to shooter: a disk of the shooter's area, f = A_j / (pi
-/// d^2 + A_j), times the cosines at both ends of the line between centres. Cosines are at least 2 f, because parts of
-/// close elements face each other more directly.
+/// Estimates an upper bound of the form factor from receiver to shooter. It is that of a disk of the shooter's area, f
+/// = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between centres. Cosines are at least 2 f,
+/// because parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // By value and without branches, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };

@@ -7,7 +7,7 @@
 
 namespace interflect::inline detail {
 
-/// Histogram of the power of rays, in bins of a quarter of an octave.
+/// Histogram of ray power, in bins of a quarter of an octave.
 class Quanta {
   public:
     /// @param power  Sum of the channels [lm or W].

@@ -8,8 +8,8 @@
 
 namespace interflect::inline detail {
 
-/// Systematic allocation of N rays to sources, in order. Source s gets N q_s / sum q rays, rounded up or down, and
-/// exactly this number in the mean over `offset`. Stores 16 bytes per 256 sources and recomputes the rest.
+/// Systematic allocation of N rays to sources, in order. Source s gets N q_s / sum q rays, rounded up or down; the mean
+/// over `offset` is exact. Stores 16 bytes per 256 sources and recomputes the rest.
 class RayAllocation {
   public:
     /// @param q       Weights >= 0, not necessarily normalised. Must outlive this.

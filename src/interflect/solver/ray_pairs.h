@@ -47,7 +47,6 @@ struct alignas(64) RayPairs {
     /// Chooses the next action for pairs that are not divided on demand.
     /// @param needs_leaf  Rays descend to the leaf among the first `old_size` elements.
     void choose_next(bool needs_leaf, std::uint32_t old_size);
-    /// Moves receivers to the child that contains the hit.
     void go_down();
 };
 

@@ -109,7 +109,6 @@ void Receiver::advance() {
     }
 }
 
-/// Returns the lanes in use that satisfy `condition`, without branches.
 template <class Condition>
 inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, const Condition& condition) const {
     std::size_t count = 0;

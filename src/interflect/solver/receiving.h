@@ -30,9 +30,9 @@ struct Escaped {
     }
 };
 
-/// Receiving end of a step for one thread: finds the elements that receive the payload of each ray. Structure-of-arrays
-/// traversal with lane refill: many rays descend the quadtrees level by level, and a new ray takes the lane of a
-/// finished one. This hides memory latency and vectorises.
+/// Finds the elements that receive the payload of each ray, for one thread. Structure-of-arrays traversal with lane
+/// refill: many rays descend the quadtrees level by level, and a new ray replaces a finished one in its lane. This
+/// hides memory latency and vectorises.
 class Receiver {
   public:
     /// @param old_size  Size of the forest before the step. All other arguments must outlive this.

@@ -26,10 +26,9 @@ class Schedule {
     std::int64_t start_rays() const;
     /// Records these passes. Rays with power are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// Plans the next iteration, with a time limit one that ends in time, because an interrupted iteration is lost.
+    /// Plans the next iteration. It should end within a time limit, because an interrupted iteration is lost.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
-    /// Whether the run is complete, even if time remains.
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
     /// Makes iterations small again; they grow with the rays averaged from now on.

@@ -116,7 +116,6 @@ void look(SolverState& state) {
 
 namespace {
 
-/// Archived form of a report.
 using ReportNumbers = std::array<double, 19>;
 
 ReportNumbers numbers_of(const IterationReport& r) {

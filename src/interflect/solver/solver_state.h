@@ -66,7 +66,6 @@ struct SolverState {
     /// @param step_seconds  Period in which steps may start.
     void begin_work(const Monitor& monitor, double step_seconds);
     void end_work() { earlier_seconds = seconds(); }
-    /// Returns the duration of all work, including earlier calls.
     double seconds() const {
         return earlier_seconds + std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
@@ -104,7 +103,7 @@ void grow_with_forest(SolverState& state, std::uint32_t first);
 /// Adds camera rays in proportion to the averaged rays, because the mesh becomes finer.
 void refine_view_importance(SolverState& state);
 
-/// Adds a report of the current state. @param escaped_power  Averaged like irradiance.
+/// @param escaped_power  Averaged like irradiance.
 void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
 }  // namespace interflect::inline detail

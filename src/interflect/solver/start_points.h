@@ -29,7 +29,7 @@ class StartPoints {
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// Samples a point in proportion to power. @param points  At least one. @param u  In [0, 1).
+    /// @param points  At least one, sampled by power. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
     void archive(StateArchive& archive, const std::string& name) { archive(name, points_); }

@@ -58,7 +58,6 @@ class StateArchive {
     }
 
     bool reads() const { return reads_; }
-    /// Arrays to write, in order.
     const std::vector<std::pair<std::string, std::span<const std::byte>>>& written() const { return spans_; }
 
   private:

@@ -30,10 +30,8 @@ std::uint64_t walk_key(const SampleStreams& streams) {
 
 /// Rays per task: many enough to amortise it, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Distance of prefetching, in rays.
 constexpr std::size_t rays_ahead = 32;
 
-/// Counts the points that each source has consumed.
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
     constexpr std::size_t blocks_at_once = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);

@@ -56,8 +56,8 @@ TransportStep importance_step(const Materials& materials, const Solution& so_far
 /// @param rays  Number of rays averaged after this step, > 0. The threshold falls as it grows.
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 
-/// Returns the reference of the oracle's threshold [lm or W]: the power that visible patches would receive at the mean
-/// irradiance of the picture. It does not depend on lamps in the picture, light elsewhere, tessellation or unit of
+/// Returns the reference of the oracle's threshold [lm or W]: the power that visible patches receive at the mean
+/// irradiance of the picture. It is independent of lamps in the picture, light elsewhere, tessellation and unit of
 /// length. Without a view, or while the visible patches are dark: all emitted power.
 double reference_power(const Solution& so_far);
 

@@ -27,7 +27,8 @@ constexpr double negligible_gain = 2e-7;
 /// easily from a bright corner of a lamp's housing.
 constexpr double negligible_misplacement = 1e-7;
 /// Leaves above this share of all light reflect where they receive. At 1e-5, total power is within 0.05% in rooms with
-/// lights 2 cm from a ceiling, and runs take 3% longer. At 1 it is 5%; at 1e-6 it is 0.03% for 20% more time.
+/// lights 2 cm from a ceiling, and runs take 3% longer. Without this (at 1) the error is 5%. At 1e-6 it is 0.03%, for
+/// 20% more time.
 constexpr double tolerable_misplacement = 1e-5;
 /// Relative weight of errors on invisible surfaces. Their effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
@@ -66,7 +67,6 @@ class VarianceOracle {
     }
 
   private:
-    /// Expected mean squared differences of children from the leaf.
     struct Expected {
         float signal, noise;
     };
@@ -101,7 +101,6 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Returns the power received by all surfaces, weighted by importance.
     double received_power() const {
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
