@@ -26,6 +26,7 @@ struct Detail {
     float risk() const;
 };
 
+/// Returns the detail of the siblings `first` ... `first` + 3.
 Detail detail_of(const SolverState& state, std::uint32_t first);
 
 /// Updates the noise model with an iteration that has not been merged yet.
@@ -38,6 +39,7 @@ struct SolutionError {
     double total() const;
 };
 
+/// Domain of the error: the pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
 /// Returns pictures if a view shows a surface, else surfaces.
 ErrorMeasure default_measure(const SolverState& state);

@@ -20,6 +20,7 @@ class IterationMethod {
     /// irradiance.
     /// @throws Interrupted
     virtual RgbD iterate(SolverState& state, IterationPlan& plan) = 0;
+    /// Computes the results of each element other than irradiance.
     virtual void finish(SolverState& state) const;
     /// Updates view importance for the current views, and resets indirect importance.
     virtual void retarget(SolverState& state);

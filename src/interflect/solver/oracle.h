@@ -19,9 +19,9 @@ struct ElementProxy {
     float least_cosine = 0;
 };
 
-/// Estimates an upper bound of the form factor from receiver to shooter. It is that of a disk of the shooter's area, f
-/// = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between centres. Cosines are at least 2 f,
-/// because parts of close elements face each other more directly.
+/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j), of a disk of the
+/// shooter's area, times the cosines at both ends of the line between the centres. Cosines are at least 2 f, because
+/// parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // By value and without branches, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
@@ -39,10 +39,10 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
 
 /// Refinement test for the two elements of a ray. The result depends on the state before the step, never on other rays.
 struct Oracle {
-    bool refines = false;  ///< False: leaves exchange light.
+    bool refines = false;  ///< False: the leaves that the ray connects exchange light.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
-    float min_area = 0;  ///< Minimum area of children [m^2].
+    float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
     /// Maximum size of the forest. Excess elements are dropped at the end of a step, in an order independent of
     /// threads.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();

@@ -19,6 +19,7 @@
 
 namespace interflect::inline detail {
 
+/// Power and rays that left the scene.
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;

@@ -7,6 +7,7 @@
 
 namespace interflect::inline detail {
 
+/// Plan of the next iteration.
 struct IterationPlan {
     std::int64_t rays = 0;  ///< 0: the run is over.
     bool warms_up = false;  ///< Not averaged: the next iteration replaces it.

@@ -24,6 +24,7 @@
 
 namespace interflect::inline detail {
 
+/// State of a run that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
@@ -32,7 +33,7 @@ struct SolverState {
     const Scene& scene;
     const Scene* lit = &scene;  // the same scene with dimmed sources
     Materials materials;
-    std::vector<Imath::Box3f> targets;  // of light from outside
+    std::vector<Imath::Box3f> targets;  // of light from outside, for the current views
     Emission emission;                  // of the luminaires
     const RayCaster& ray_caster;
     const SourceGroups groups;
@@ -59,13 +60,15 @@ struct SolverState {
     std::function<void(const IterationReport&)> on_report;
     StopRequest stop;  // after a first estimate, the time limit also stops the run
     StopRequest::Clock::time_point start;
-    StopRequest::Clock::time_point last_step = StopRequest::Clock::time_point::max();  // for all steps except the first
+    StopRequest::Clock::time_point last_step =
+        StopRequest::Clock::time_point::max();  // start of the last step, unless it is the first
     bool has_traced_step = false;
     double earlier_seconds = 0;
 
     /// @param step_seconds  Period in which steps may start.
     void begin_work(const Monitor& monitor, double step_seconds);
     void end_work() { earlier_seconds = seconds(); }
+    /// Duration of all work, including earlier calls.
     double seconds() const {
         return earlier_seconds + std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }

@@ -10,6 +10,7 @@
 
 namespace interflect::inline detail {
 
+/// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
     float power;    ///< Sum of the channels [any unit]; in StartPoints cumulative over the leaf.

@@ -10,6 +10,7 @@
 
 namespace interflect::inline detail {
 
+/// Mean surface of a patch or an element.
 struct MeanSurface {
     Rgb reflectance{0, 0, 0};
     Rgb exitance{0, 0, 0};  ///< [lm/m^2 or W/m^2]
@@ -33,6 +34,7 @@ class TexturedElements {
         return &surfaces_[4 * std::size_t{slot_of_block_[block]} + (element - patch_count_) % 4];
     }
 
+    /// Computes the means of elements created since the last call.
     void grow(const ElementForest& forest);
 
   private:

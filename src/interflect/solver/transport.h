@@ -63,6 +63,7 @@ struct TransportStep {
     bool leaves_only = false;
 };
 
+/// Importance found by the rays of a luminaire part.
 struct PartImportance {
     double found = 0;  ///< Sum over its rays [1/m^2]
     double rays = 0;
@@ -101,6 +102,7 @@ struct Received {
 /// Cost: O(N (log(patches) + levels)) on all threads; 40 bytes per element while rays are traced, then the results.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, Arrivals& arrivals, const StopRequest& stop);
+/// The same without a stop request, and with its own Arrivals.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

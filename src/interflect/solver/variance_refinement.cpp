@@ -33,6 +33,7 @@ constexpr double tolerable_misplacement = 1e-5;
 /// Relative weight of errors on invisible surfaces. Their effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
 
+/// Decides which leaves are split or reflect where they receive.
 class VarianceOracle {
   public:
     explicit VarianceOracle(const SolverState& state)
@@ -67,6 +68,7 @@ class VarianceOracle {
     }
 
   private:
+    /// Expected mean squared differences of the children from their leaf.
     struct Expected {
         float signal, noise;
     };

@@ -13,6 +13,7 @@
 
 namespace interflect::inline detail {
 
+/// Power that a leaf is about to reflect.
 struct ReflectedPower {
     std::uint32_t leaf, patch;
     Parameters at;  ///< Where the leaf received it.
