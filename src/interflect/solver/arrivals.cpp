@@ -17,7 +17,7 @@ void Arrivals::ScatterBuffer::flush(std::size_t region) {
         const Arrival& a = bin.arrivals[i];
         const Contribution& contribution = contributions_[a.source];
         Contribution& sum = arrivals_->sums_[a.element];
-        const std::int64_t power = -static_cast<std::int64_t>(a.power);  // a mask: all ones or all zeros
+        const std::int64_t power = -static_cast<std::int64_t>(a.power);  // all ones or all zeros
         for (std::size_t c = 0; c < power_terms; ++c) sum[c] += contribution[c] & power;
         sum[importance_term] += contribution[importance_term] & -static_cast<std::int64_t>(a.importance);
     }

@@ -12,34 +12,29 @@
 
 namespace interflect::inline detail {
 
-/// What the rays of a step bring to elements, as integers in units of the step's, so that the order of arrival does not
-/// matter: three channels of power, the square of its luminance, then importance. Every thread collects arrivals in a
-/// ScatterBuffer of its own, a scatter buffer binned by region of the forest: a full bin is flushed at once, so no
-/// addition is atomic, and those of one bin are close together.
+/// Sums of the contributions to each element in a step: three channels of power, squared luminance of each ray's power,
+/// and importance. Fixed-point integers make the order of additions irrelevant. Each thread bins contributions by
+/// region of the forest in its own ScatterBuffer. Full bins are flushed under the lock of their region.
 class Arrivals {
   public:
-    static constexpr std::size_t power_terms = 4, importance_term = 4;  // how many come first; which is the last
+    static constexpr std::size_t power_terms = 4, importance_term = 4;
     using Contribution = std::array<std::int64_t, 5>;
-    /// Bytes of addresses.
+    /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element(std::size_t groups) {
         return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
     }
 
-    /// @param capacity  Most elements ever.
-    /// @param groups    Light groups, each of which has three more sums of power an element.
+    /// @param capacity  Maximum number of elements.
     explicit Arrivals(std::size_t capacity, std::size_t groups = 0)
         : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
-    /// To be called before a step. @param elements  Of the forest so far.
+    /// Starts a step. @param elements  Current size of the forest.
     void begin(std::size_t elements);
-    /// Nothing has arrived at the first `elements`.
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
         for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;
     }
-    /// What arrived at an element; nothing has from then on.
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
-    /// The same of a light group's power.
     std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
         std::array<std::int64_t, 3> power{};
         for (std::size_t c = 0; c < 3; ++c) power[c] = std::exchange(group_sum(element, group)[c], 0);
@@ -52,8 +47,8 @@ class Arrivals {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// To be called for elements that were taken. Few keep their memory for the next step, since clearing it anew takes
-    /// longer than adding to it.
+    /// Frees the memory of collected elements. Small forests keep it: clearing new pages takes longer than the
+    /// additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= most_kept) return;
         sums_.release(begin, end);
@@ -64,12 +59,13 @@ class Arrivals {
       public:
         explicit ScatterBuffer(Arrivals& arrivals) : arrivals_(&arrivals) {}
 
-        /// @param contribution  What one ray of the source carries. @param of_groups  Of that, the power of each group.
-        /// @return The source's number.
+        /// @param contribution  Payload of one ray of the source.
+        /// @param of_groups     Its power by light group; empty: 0.
+        /// @return Index of the source.
         std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
             contributions_.push_back(contribution);
             group_contributions_.insert(group_contributions_.end(), of_groups.begin(), of_groups.end());
-            group_contributions_.resize(contributions_.size() * arrivals_->group_terms_);  // rays may carry none
+            group_contributions_.resize(contributions_.size() * arrivals_->group_terms_);
             return static_cast<std::uint32_t>(contributions_.size() - 1);
         }
         const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }
@@ -80,11 +76,11 @@ class Arrivals {
             bin.arrivals[bin.count++] = {element, source & (most_sources - 1), power, importance};
             if (bin.count == bin.arrivals.size()) flush(region);
         }
-        /// To be called now and then, when no source's number is in use any more: the table of sources stays small.
+        /// Limits the size of the table of sources. Call while no source index is in use.
         void release_sources() {
             if (contributions_.size() >= enough_sources) flush_all();
         }
-        /// To be called when all has been added; sources are numbered anew.
+        /// Adds all collected contributions to the sums. Source indices start at 0 again.
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();
@@ -95,7 +91,7 @@ class Arrivals {
         struct Arrival {
             std::uint32_t element;
             std::uint32_t source : 30;
-            std::uint32_t power : 1, importance : 1;  // what of the contribution arrives here
+            std::uint32_t power : 1, importance : 1;
         };
         struct Bin {
             std::size_t count = 0;
@@ -112,7 +108,7 @@ class Arrivals {
 
   private:
     static constexpr std::size_t regions = 64;
-    static constexpr std::uint32_t most_sources = 1u << 30;  // an Arrival has as many bits for them
+    static constexpr std::uint32_t most_sources = 1u << 30;  // width of Arrival::source
     static constexpr std::size_t enough_sources = 8192;  // their contributions fill a quarter of a second-level cache
 
     static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
@@ -123,7 +119,7 @@ class Arrivals {
 
     StableArray<Contribution> sums_;
     std::size_t group_terms_;
-    StableArray<std::int64_t> group_sums_;  // three of each group, element by element
+    StableArray<std::int64_t> group_sums_;  // [element][group][channel]
     std::size_t elements_ = 0;
     int region_shift_ = 0;
     std::array<std::mutex, regions> region_locks_;

@@ -14,8 +14,8 @@
 
 namespace interflect::inline detail {
 
-/// What one ray of each source of a step carries: A_s / (N q_s) of a leaf's radiosity and of its reflected importance,
-/// 1 / (N q_s) of what a part of a luminaire emits.
+/// Payload of one ray of each source of a step. From leaf s: power A_s B_s / (N q_s) and importance A_s rho_s psi_s /
+/// (N q_s). From a luminaire part: its power / (N q_s).
 class Carried {
   public:
     Carried(const Materials& materials, const ElementForest& forest, const TransportStep& step, double q_sum)
@@ -26,7 +26,6 @@ class Carried {
           q_sum_over_rays_(q_sum / static_cast<double>(step.rays)) {}
 
     RgbD power(std::uint32_t source) const { return per_ray(source, radiated(source)); }
-    /// Of that, what a light group brings.
     RgbD power(std::uint32_t source, std::size_t group) const {
         if (source < elements_) {
             const Rgb share = step_.groups.of(materials_, forest_, source, group);
@@ -40,7 +39,6 @@ class Carried {
     RgbD radiated(std::uint32_t source) const {
         return source < elements_ ? RgbD(step_.light.of(forest_, source)) : step_.emission->power(source - elements_);
     }
-    /// What each ray has of something that a source radiates.
     RgbD per_ray(std::uint32_t source, const RgbD& light) const {
         if (!step_.equal_quanta) return light * (source < elements_ ? area_per_ray(source) : per_ray(source));
         const double sum = channel_sum(radiated(source));
@@ -55,16 +53,16 @@ class Carried {
     const Materials& materials_;
     const ElementForest& forest_;
     const TransportStep& step_;
-    std::uint32_t elements_;  // when the step began
+    std::uint32_t elements_;  // size of the forest at the start of the step
     double q_sum_over_rays_;
 };
 
-/// What all rays of a step carry together.
+/// Sums over all rays of a step.
 struct Totals {
     RgbD power{0, 0, 0};  ///< [lm or W]
-    double square = 0;    ///< Of the luminance of each ray's power, summed.
+    double square = 0;    ///< Squared luminance of each ray's power.
     double importance = 0;
-    double importance_square = 0;  ///< Of each ray's importance, summed.
+    double importance_square = 0;  ///< Squared importance of each ray.
     Quanta quanta;
 
     Totals& operator+=(const Totals& other) {
@@ -78,7 +76,7 @@ struct Totals {
 };
 Totals all_carried(const TransportStep& step, const RayAllocation& allocation, const Carried& carried);
 
-/// The units in which arrivals are counted: what all rays carry fits.
+/// Fixed-point units of contributions. The sum over all rays fits.
 struct Units {
     FixedPoint power, square, importance;
 
@@ -86,7 +84,6 @@ struct Units {
     Units(const Totals& all, double visits)
         : power(channel_sum(all.power) * visits), square(all.square * visits), importance(all.importance) {}
 
-    /// Contribution of a particle without importance.
     Arrivals::Contribution contribution_of(const RgbD& particle) const {
         Arrivals::Contribution contribution{};
         const FixedPoint::Value of_power = power.from(particle);
@@ -95,7 +92,7 @@ struct Units {
         return contribution;
     }
 
-    /// @param transmittance  Of what the ray has come through.
+    /// @param transmittance  Product over the panes that the ray has passed.
     Arrivals::Contribution contribution(const TransportStep& step, const Carried& carried, std::uint32_t source,
                                         const Rgb& transmittance = Rgb(1)) const {
         Arrivals::Contribution contribution{};
@@ -106,7 +103,7 @@ struct Units {
         return contribution;
     }
 
-    /// Of that the power of each light group.
+    /// Replaces `terms` by the power of each light group in the contribution.
     void add_groups(const TransportStep& step, const Carried& carried, std::uint32_t source,
                     std::vector<std::int64_t>& terms, const Rgb& transmittance = Rgb(1)) const {
         terms.clear();

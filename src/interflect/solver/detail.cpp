@@ -15,39 +15,38 @@ namespace {
 
 constexpr float unknown = std::numeric_limits<float>::infinity();
 
-/// Irradiance within a leaf about which nothing is known varies by this share of itself.
+/// Assumed relative variation of irradiance in an unmeasured leaf.
 constexpr float assumed_variation = 0.1f;
 
-/// From level to level the mean square of differences falls at least to a quarter where irradiance is smooth, and to a
-/// half where it has edges; bounds for what is measured.
+/// Bounds of the mean squared difference relative to the next coarser level. It is a quarter where irradiance is
+/// smooth, and a half at edges.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
-/// Siblings are young as long as they have met a smaller share of the rays that their parent has.
+/// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float young = 0.125f, highest_expected_decay = 0.5f;
 
 bool uses_shrinkage(const SolverState& state) {
     return state.options.experimental.shrinkage && refines_by_variance(state.options);
 }
 
-/// The mean square errors that an element has beyond those of its parent.
+/// Mean square errors in addition to the parent's.
 struct AddedError {
     float noise = 0, bias = 0;
 };
 
 AddedError added_error(const SolverState& state, std::uint32_t first) {
     const Detail detail = detail_of(state, first);
-    if (detail.noise == unknown) return {};  // they are what their parent is
+    if (detail.noise == unknown) return {};  // the siblings equal their parent
     if (!uses_shrinkage(state)) return {detail.noise, 0};
     const float kept = detail.shrinkage(), noise = kept * kept * detail.noise;
-    // Four numbers of this mean, none below 0, differ by no more, however noisy they are: else a few elements that one
-    // heavy ray met would outweigh all others.
+    // Largest variance of four non-negative numbers. Without this limit, rays with a large weight would dominate the
+    // sum.
     const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(detail.risk() - noise, -most, most)};
 }
 
-/// Pixels are averages. What is left of the mean square of a quantity along a line, averaged over lengths of 1 placed
-/// anywhere: of one that is constant over lengths a and independent from one to the next; and of one that has opposite
-/// values in the halves of lengths 2 a, likewise.
+/// Fraction of the variance of a signal that remains after a box filter of width 1 (a pixel). Steps: independent
+/// constant pieces of length `a`. Pairs: adjacent pieces of length `a` with opposite values.
 float left_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
 float left_of_pairs(float a) {
     if (a > 1) return 1 - 1 / (2 * a);
@@ -56,8 +55,7 @@ float left_of_pairs(float a) {
     return a / 2 - beyond / a;
 }
 
-/// The same of patches, and of four siblings' differences from their mean: these are opposite along one side, along the
-/// other, or along both.
+/// The same in two dimensions. Differences of four siblings change sign along one side, the other, or both.
 float left_of_patches_by_pixels(float area, float pixel_area) {
     return std::pow(left_of_steps(std::sqrt(area / pixel_area)), 2.0f);
 }
@@ -66,7 +64,6 @@ float left_of_siblings_by_pixels(float area, float pixel_area) {
     return opposite * (2 * left_of_steps(2 * a) + opposite) / 3;
 }
 
-/// What is left of the squared error of siblings' differences where it counts.
 float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
     if (measure == ErrorMeasure::surfaces) return 1;
     return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
@@ -75,11 +72,11 @@ float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint
 /// Mean square errors of every element; bias may be negative.
 struct ElementErrors {
     std::vector<float> noise, bias;
-    std::vector<float> noise_of_patch;  // the part of the noise that is there without details
+    std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
 };
 
-/// Ratio of the noise of an element to the mean noise of its siblings: bright siblings are noisier than dark ones unless
-/// their differences are reduced. The area-weighted mean of the ratio is 1.
+/// Ratio of an element's noise to the area-weighted mean noise of its siblings. Bright siblings are noisier; shrinkage
+/// of their differences moves the ratio towards 1.
 float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_t e) {
     const ElementForest& forest = *state.forest;
     if (state.history[first] == 0) return 1;
@@ -93,7 +90,6 @@ float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_
     return variance > 0 ? 1 + kept * (variance_of(e) * area / variance - 1) : 1;
 }
 
-/// @param measure  Errors of the pixels that show an element, or of the element itself.
 ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     const ElementForest& forest = *state.forest;
     ElementErrors errors;
@@ -121,25 +117,23 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     return errors;
 }
 
-/// The first of the siblings that an element is one of.
 std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
     return forest.first_child(forest.parent(e));
 }
 
-/// Signal of an element's siblings, 0 where none is known.
+/// Returns the signal of an element's siblings; 0 if unknown.
 float signal_beside(const SolverState& state, std::uint32_t e) {
     if (e < state.forest->patch_count()) return 0;
     const Detail detail = detail_of(state, first_sibling(*state.forest, e));
     return detail.noise == unknown ? 0 : detail.signal();
 }
 
-/// What is added up over the leaves, weighted by what counts.
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
-    double noise_of_patches = 0;              // as a whole; part of the noise
+    double noise_of_patches = 0;              // variance of patch means, part of `noise`
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
-    double assumed = 0;                       // within leaves without siblings
-    double within = 0;                        // of the leaves' siblings, where pixels resolve what is within a leaf
+    double assumed = 0;                       // variation within leaves without siblings
+    double within = 0;                        // part of `signal` that pixels resolve
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
@@ -149,10 +143,9 @@ struct ErrorSums {
     }
 };
 
-/// How far what is left after reduction is from the truth, by the next iteration, which knows nothing of how it came
-/// about: for an estimate y of a difference d, of which the share k is kept, |k y - d|^2 is in the mean
-/// k^2 |y|^2 + (1 - 2 k) y z with another estimate z that is independent of y. Unlike Stein's estimate it needs no
-/// model of the noise, but it is known of earlier iterations alone.
+/// Measures the squared error after shrinkage k with the next iteration. For averaged differences y, true differences d
+/// and new differences z, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z). Unlike Stein's estimate, this needs no noise
+/// model. It measures earlier iterations only.
 RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
@@ -201,7 +194,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
             sums.noise_of_patches += w * errors.noise_of_patch[e];
-            // What varies within a pixel is no error of the picture.
+            // Variation within a pixel is not an error of the picture.
             const double resolved =
                 measure == ErrorMeasure::surfaces ? 1 : std::max(0.0f, 1 - pixel_area(state, e) / forest.area(e));
             if (e < forest.patch_count()) {
@@ -210,7 +203,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             }
             const std::uint32_t parent = forest.parent(e);
             const double signal_of_parent = signal_beside(state, parent);
-            const bool is_new = state.history[e] == 0;  // then what is known is how its parent's siblings differ
+            const bool is_new = state.history[e] == 0;  // extrapolate from the parent's siblings
             const double signal = is_new ? least_decay * signal_of_parent : signal_beside(state, e);
             sums.within += w * resolved * signal;
             if (is_new) continue;
@@ -233,7 +226,7 @@ float Detail::risk() const {
         const float kept = shrinkage();
         return kept * kept * noise + (1 - kept) * (1 - kept) * assumed;
     }
-    // Of y = signal + noise in d = 3 dimensions, reduced by the factor 1 - d sigma^2 / |y|^2 or to zero.
+    // James-Stein: y = signal + noise in d = 3 dimensions, multiplied by max(0, 1 - d sigma^2 / |y|^2).
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
 
@@ -250,8 +243,7 @@ Detail detail_of(const SolverState& state, std::uint32_t first) {
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     Detail detail{spread / area, variance / area};
-    // Siblings that are much younger than their parent have met few rays. What is left of their noise when it is
-    // reduced by itself would be more than what they can differ by: that is then taken from the parent's siblings.
+    // With few rays, shrinkage would leave more noise than any plausible signal. The parent's siblings bound it.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < young * state.history[parent])
         detail.assumed =
@@ -265,7 +257,7 @@ void estimate_noise(SolverState& state, const FreshEstimate& fresh, std::int64_t
     const ErrorMeasure measure = default_measure(state);
     const auto weight = [&](std::uint32_t e) { return error_weight(state, measure, e) * state.forest->area(e); };
     if (uses_shrinkage(state) && state.noise.is_known()) {
-        constexpr double long_enough = 0.25;  // share of what was averaged before
+        constexpr double long_enough = 0.25;  // share of the rays averaged before
         const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
         state.risk_check.add(check_risk(state, fresh),
                              std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
@@ -291,7 +283,7 @@ SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
     const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
     const double all = sums.noise_of_patches + of_details + within_leaves;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
-    // Pixels that show no surface have no error, but they are part of the picture and of its mean.
+    // Pixels without a surface have no error, but count in the mean.
     const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * shown));
     return {std::sqrt(sums.noise) * scale, std::sqrt(discretisation) * scale};
@@ -324,7 +316,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
     if (measure == ErrorMeasure::surfaces) return 1;
     const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
     Rgb h = state.solution.irradiance[element];
-    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // a sum of noisy differences may be less than none
+    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // may be negative as a sum of noisy differences
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
     return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
@@ -332,7 +324,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
 
 namespace {
 
-/// Lets what each group has be no less than nothing, and all of it sum to what there is.
+/// Clamps the irradiance of each group to zero, then rescales the groups to sum to the total.
 void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) {
     for (std::size_t e = 0; e < irradiance.size() && !groups.empty(); ++e)
         for (int c = 0; c < 3; ++c) {
@@ -351,7 +343,7 @@ void finish_solution(SolverState& state) {
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // a quarter, a sixteenth, ... of it
+        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // 1/4 + 1/16 + ... of the signal
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }
@@ -367,7 +359,7 @@ void finish_solution(SolverState& state) {
         for (std::uint32_t k = 0; k < 4; ++k)
             difference[k] = kept * (solution.irradiance[first + k] - solution.irradiance[parent]);
         for (int c = 0; c < 3; ++c) {
-            // Of light there is none less than none: where noise says so, all four differences are reduced alike.
+            // If a child would become negative, scale all four differences equally.
             float lowest = 0;
             for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
             const float mean = reduced[parent][c], factor = -lowest > mean ? mean / -lowest : 1;

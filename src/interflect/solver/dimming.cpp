@@ -13,7 +13,7 @@ namespace interflect {
 
 void dim(Scene& scene, Solution& solution, const std::string& group, float factor) {
     SourceGroups groups = source_groups(scene);
-    // Where a group is dark, the scene does not tell that there is "other" light.
+    // source_groups() does not find a group "other" that is dimmed to 0.
     if (!groups.empty()) groups.names = solution.group_names;
     const std::size_t g = groups.index_of(group);
     if (!(factor >= 0 && std::isfinite(factor)))

@@ -11,7 +11,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Surfaces seen at a grazing angle are taken to be seen at this cosine: a pixel's share of them is long and narrow.
+/// Minimum cosine. At grazing angles, the surface area of a pixel is long and narrow.
 constexpr float least_cosine = 0.1f;
 
 }  // namespace

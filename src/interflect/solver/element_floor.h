@@ -7,20 +7,19 @@
 
 namespace interflect::inline detail {
 
-/// The smallest area that elements are divided to. Depends on the views and on how large the scene's surfaces are, not
-/// on the size of the world.
+/// Minimum area of elements. It depends on the views and on the size of surfaces, not of the world.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// The area that a pixel of the nearest view shows of a surface there [m^2]; infinite where there is no view.
+    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// @param is_seen  By a view: then the area that a pixel of the nearest view shows there; else as below.
-    /// @return         [m^2]; RefinementOptions::min_area wherever that is given.
+    /// @param is_seen  Visible to a view: the result is pixel_area(), else unseen().
+    /// @return         [m^2]; RefinementOptions::min_area if given.
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// Where no view looks: the square of default_element_size().
+    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
     float unseen() const { return unseen_; }
 
   private:

@@ -11,16 +11,15 @@
 
 namespace interflect::inline detail {
 
-/// Importance that rays find where they arrive, added up for the leaves, or parts of luminaires, that they left: the
-/// mean over a leaf's rays estimates the same transported importance as the rays that bring it there (Eq. 7), but from
-/// where light starts. So it is known of small bright lamps, which few rays from the view ever meet.
+/// Importance that rays find at their hit points, summed for each source. The mean over a leaf's rays estimates its
+/// transported importance (Eq. 7, Prikryl et al. 2000), even for small lamps that few rays from the view hit.
 class GatheredImportance {
   public:
-    /// @param most_per_ray  What a ray can find at most. @param sources  That rays may leave.
+    /// @param most_per_ray  Maximum importance found by one ray. @param sources  Their number.
     GatheredImportance(double most_per_ray, std::int64_t rays, std::size_t sources)
         : unit_(most_per_ray * static_cast<double>(rays)), sums_(sources) {}
 
-    /// Adds what some rays of a source found; other threads may do so at the same time.
+    /// Adds importance found by rays of a source. Thread-safe.
     void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }
     double sum(std::size_t source) const { return unit_.to_number(sums_[source]); }
 

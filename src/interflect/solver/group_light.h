@@ -11,8 +11,7 @@
 
 namespace interflect::inline detail {
 
-/// A colour of every element for each light group, [group][element]: parts of what all light together has. Empty
-/// without groups.
+/// Colours by light group and element, [group][element]. The groups sum to the total. Empty without groups.
 using GroupLight = std::vector<std::vector<Rgb>>;
 
 inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight& light) {
@@ -21,24 +20,22 @@ inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight
 inline void pull(const ElementForest& forest, GroupLight& light) {
     for (std::vector<Rgb>& of_group : light) pull(forest, of_group);
 }
-/// Adds to each group what a step brought; `sum` may be empty.
+/// Adds the light of each group; `sum` may be empty.
 void accumulate(GroupLight& sum, const GroupLight& more);
-/// Multiplies all of it.
 void scale(GroupLight& light, float factor);
 
-/// All groups together. @param dimming  Solution::dimming: those that are dimmed to nothing are left out.
+/// Sums the groups. @param dimming  Solution::dimming; groups with factor 0 are excluded.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
-/// The groups' shares of what leaves elements and luminaires; the shares of one source sum to what it radiates. Refers
-/// to what it is made of.
+/// Radiosity of each source by light group.
 struct GroupRadiosity {
-    const SourceGroups* groups = nullptr;  ///< Null: none are kept apart.
+    const SourceGroups* groups = nullptr;  ///< Null: not separated.
     const GroupLight* irradiance = nullptr;
     const std::vector<float>* dimming = nullptr;  ///< Solution::dimming.
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// B of a leaf by one group [lm/m^2 or W/m^2].
+    /// Radiosity B of a leaf by one group [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

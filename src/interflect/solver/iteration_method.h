@@ -5,31 +5,31 @@
 
 namespace interflect::inline detail {
 
-/// How one family of methods does its iterations, with the state that is its own. What throws Interrupted may be called
-/// again, and goes on with the step of rays that was cut short.
+/// Iterations of one family of methods. If a function throws Interrupted, the next call resumes with the interrupted
+/// step.
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
 
-    /// What comes before the first iteration. @throws Interrupted
+    /// Runs the steps before the first iteration. @throws Interrupted
     virtual void prepare(SolverState&) {}
-    /// Whether all is done that the options ask for.
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
-    /// The next iteration; of 0 rays where there is none.
+    /// Plans the next iteration; 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
-    /// Does an iteration. @param plan  Its rays become those that were traced. @return The power that leaves the
-    /// scene, averaged as irradiance is. @throws Interrupted
+    /// Runs an iteration. @param plan  Receives the number of rays traced. @return Escaped power, averaged like
+    /// irradiance.
+    /// @throws Interrupted
     virtual RgbD iterate(SolverState& state, IterationPlan& plan) = 0;
-    /// Completes the solution: what is known of each element beside its irradiance.
+    /// Computes the results of each element other than irradiance.
     virtual void finish(SolverState& state) const;
-    /// Looks at the views that the options have now; importance is found anew.
+    /// Updates view importance for the current views, and resets indirect importance.
     virtual void retarget(SolverState& state);
 
-    /// The sources of a light group emit `factor` times what they did when light of it was last found.
+    /// Scales the stored light of a group by `factor`, like its sources.
     virtual void scale_group(SolverState&, std::size_t /*group*/, float /*factor*/) {}
 
     virtual void archive(StateArchive& archive) = 0;
-    /// Whether what archive() has read can belong to this run.
+    /// Whether archive() has read a state that fits this run.
     virtual bool fits(const SolverState&) const { return true; }
 };
 

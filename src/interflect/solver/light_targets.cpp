@@ -19,9 +19,8 @@ namespace interflect::inline detail {
 namespace {
 
 constexpr std::size_t rays_at_once = 1024;
-constexpr std::uint64_t purpose = 0x61696d;  // no other stream of a run has this one
+constexpr std::uint64_t purpose = 0x61696d;  // unique among random streams
 
-/// Follows importance out of the scene.
 struct LineFinder {
     const SolverState& state;
     const TransportStep& step;
@@ -30,8 +29,8 @@ struct LineFinder {
     const Panes& panes;
     std::uint64_t key;
 
-    /// Appends the lines of the rays that escape, through panes too.
-    /// @param importance  The importance that each ray carries. @param sun  The target of the rays; none: skies.
+    /// Appends the lines of rays that escape, directly or through panes.
+    /// @param importance  Payload of each ray. @param sun  Target of the rays, or none for skies.
     void keep_escaping(std::span<const Ray> rays, std::span<const double> importance, std::uint32_t sun,
                        std::vector<OutdoorLine>& lines) const {
         std::vector<Hit> hits(rays.size());
@@ -47,7 +46,7 @@ struct LineFinder {
             if (b.hit.patch == none) keep(b.ray, static_cast<double>(channel_sum(b.transmittance)) / 3);
     }
 
-    /// Lines of light that would arrive where the rays begin ... end - 1 of the step start.
+    /// Finds the lines of light to the origins of rays begin ... end - 1.
     std::vector<OutdoorLine> find(std::size_t begin, std::size_t end) const {
         RayBatch batch;
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
@@ -60,7 +59,7 @@ struct LineFinder {
             }
         std::vector<OutdoorLine> lines;
         if (state.emission.has_sky()) {
-            // Directions have the density cos(theta) / pi, irradiance is radiance times cos(theta).
+            // Directions have density cos(theta) / pi, so irradiance is pi times the mean radiance.
             std::vector<double> of_radiance;
             for (const double i : importance) of_radiance.push_back(i * std::numbers::pi);
             keep_escaping(batch.rays, of_radiance, none, lines);
@@ -82,7 +81,7 @@ struct LineFinder {
     }
 };
 
-/// Thins the lines to a fixed number; the rest carry the importance of all.
+/// Thins the lines, keeping their total importance.
 std::vector<OutdoorLine> some_of(const std::vector<OutdoorLine>& lines) {
     constexpr std::size_t enough = 1 << 14;
     const std::size_t stride = (lines.size() + enough - 1) / enough;
@@ -113,7 +112,6 @@ std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t ra
     return some_of(lines);
 }
 
-/// A line and its weight, while targets are looked for.
 struct Weighed {
     Ray light;
     double weight;
@@ -129,9 +127,9 @@ std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Bo
     return found;
 }
 
-/// Weight of the lines that cross a box, more the nearer they come to its middle: where they come together, not beside.
+/// Sums the weights of the lines that cross a box; lines near its centre count more.
 double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
-    const float farthest = (box.size() / 2).length2();  // of a line that crosses it, squared
+    const float farthest = (box.size() / 2).length2();
     double sum = 0;
     for (const Weighed& line : lines) {
         if (!line_crosses(box, line.light)) continue;
@@ -141,7 +139,7 @@ double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box
     return sum;
 }
 
-/// The part of a box, half as wide where it is wide, that most of the lines cross.
+/// Returns the part of a box, halved along its long axes, that most lines cross.
 Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
@@ -170,10 +168,10 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                                        const Imath::Box3f& scene_box) {
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
-    constexpr double share_of_rest = 0.05;  // of all, that is worth a place of its own
-    // A quarter of evenly spread lines crosses half a box; all lines of one window do.
+    constexpr double share_of_rest = 0.05;  // minimum share of all weight for another place
+    // A quarter of evenly spread lines crosses half a box; all lines of a window do.
     constexpr double worthwhile_share = 0.4;
-    // Relative to the scene. The parts of the scene's own box resolve larger boxes.
+    // Relative to the scene, whose own parts resolve larger boxes.
     constexpr float widest_target = 1.0f / 16;
     std::vector<Weighed> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
@@ -183,7 +181,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     std::vector<Imath::Box3f> targets;
     for (int place = 0; place < most_places && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++place) {
-        // From the smallest box that most of the rest crosses.
+        // Start at the smallest target that most lines cross.
         Imath::Box3f box = scene_box;
         std::vector<Weighed> inside = rest;
         for (const Imath::Box3f& target : targets) {
@@ -214,8 +212,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Weights of the lines in the search for targets: the light along each, over the root of the light of its source. All
-/// lines of a sun are parallel, so the lines of the dimmer sky must show where on them the window is.
+/// Returns the light along each line, divided by the square root of its source's total. All lines of a sun are
+/// parallel, so the dimmer sky must locate a window along them.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -231,8 +229,8 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Estimates the importance of the parts from the lines, and counts it as a few rays of each part. One more line of mean
-/// weight is spread over each box, so that no part starts with zero.
+/// Estimates the importance of the parts from the lines, with the weight of `rays_of_lines` rays. One mean line is
+/// spread over each box, so no part starts with zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
@@ -256,7 +254,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // Few importance leaves through a small window; so many rays take a moment, and are few of all.
+    // A small window transmits little importance. These rays take little time and few of all rays.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

@@ -10,25 +10,24 @@
 
 namespace interflect::inline detail {
 
-/// Light from outside the scene that would reach a surface.
+/// Line along which light from outside the scene would reach a surface.
 struct OutdoorLine {
-    Ray light;          ///< From the surface point; the direction is the way of the light.
-    std::uint32_t sun;  ///< Its number; none: the light comes from skies.
-    double importance;  ///< Times the brightness there: power that arrives, weighed by importance.
+    Ray light;          ///< Starts at the surface point, in the direction of the light.
+    std::uint32_t sun;  ///< Index of the sun, or none for sky light.
+    double importance;  ///< Times the brightness: received power, weighted by importance.
 };
 
-/// At most so many places are aimed at, each with the same number of targets: enough to go from 10 km to 1 cm.
+/// Limits for all places together. 20 halvings per place reach from 10 km to 1 cm.
 inline constexpr int most_places = 4, most_targets = 80;
 
-/// Boxes, each half as wide as the one before it, in which lines come together: a window, a house, a place. Later ones
-/// count for lines that cross several.
-/// @param weights  Of the lines.
+/// Finds boxes in which lines converge, such as windows. At each place, every box is half as wide as the previous one.
+/// A line belongs to the last box that it crosses. @param weights  One per line.
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Aims light from outside at the places that matter to the views: follows importance out of the scene, finds targets
-/// (Emission) for the rays that escape, and estimates the importance of the parts. Does so only where a run follows
-/// importance and has light from outside. @return The number of rays traced.
+/// Aims light from outside at places that are important to the views. Traces importance out of the scene, finds targets
+/// (Emission) and estimates the importance of luminaire parts. Requires full importance and light from outside. @return
+/// Number of rays traced.
 std::int64_t aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::inline detail

@@ -13,7 +13,6 @@ namespace {
 
 bool emits(const Material& material) { return channel_sum(material.exitance) > 0; }
 
-/// Empty where no patch is covered.
 std::vector<float> uncovered_shares(const Scene& scene, const RayCaster& ray_caster) {
     std::vector<float> shares;
     if (!ray_caster.has_covered_patches()) return shares;
@@ -63,7 +62,7 @@ CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster
     ray_caster.require_made_for(scene);
     CoveredEmission covered;
     if (!ray_caster.has_covered_patches()) return covered;
-    const Materials materials(scene);  // as if nothing were covered
+    const Materials materials(scene);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const float share = ray_caster.uncovered_share(i);
         const Material& material = materials.material(i);

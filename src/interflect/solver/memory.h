@@ -7,31 +7,28 @@
 
 namespace interflect::inline detail {
 
-/// What a run holds at its peak [bytes].
+/// Peak memory of a run [bytes].
 struct MemoryNeed {
     std::size_t scene = 0;       ///< Vertices, patches, materials, textures and names.
-    std::size_t ray_tracer = 0;  ///< Embree's structures, and which faces coincide.
-    std::size_t patches = 0;     ///< What the forest knows of each patch, whatever elements there are.
-    std::size_t rest = 0;        ///< Program, threads, and the hits of camera rays.
+    std::size_t ray_tracer = 0;  ///< Embree's structures, and the list of coincident faces.
+    std::size_t patches = 0;     ///< Data per patch, without elements.
+    std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
-    /// Of each element, while a bounce's results are collected: the tree 11, H 12, importance 8, history and noise 8,
-    /// points consumed 8, what the pass brought so far 16, what is shot 12 and by what importance 4, and sums of
-    /// arrivals, 40, or what was received, 16, and what has not been collected yet.
-    /// Where the scene has textures, 25 more: means over the element, and which elements have some.
+    /// Bytes per element: tree 11, H 12, importance 8, history and noise 8, consumed points 8, result of the pass 16,
+    /// unshot radiosity and its importance 16, contributions 40 or received values 16. Textures add 37.
     std::size_t per_element = 128;
-    /// Of each element and light group: H, what is shot and what the pass brought, 12 each, and sums of arrivals, 24,
-    /// or what was received, 12.
+    /// Bytes for H, unshot light and result of the pass, 12 each, and contributions 24 or received light 12.
     static constexpr std::size_t per_element_and_group = 60;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
 };
 
-/// What solving this scene needs. Methods that link elements (hr) need 24 bytes a link besides.
+/// Excludes the links of hr, 24 bytes each.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
 
-/// The elements that fit into so much memory.
-/// @throws InputError where not even the patches do: says how much they need.
+/// @return Number of elements that fit.
+/// @throws InputError with the required memory if the patches do not fit.
 std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
 
 }  // namespace interflect::inline detail

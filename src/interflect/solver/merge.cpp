@@ -10,8 +10,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// What scales children to their parent's mean: factor child + offset. Where all of them are 0 there is nothing to
-/// scale, and they get the mean.
+/// Coefficients that scale children to their parent's mean: factor * child + offset.
 template <class T>
 struct Scaling {
     T factor, offset;
@@ -27,7 +26,6 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
     return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
-/// @param most_history  Rays that any element's mean stands for at most.
 template <class T>
 void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
                 const IterationPlan& plan, float most_history = std::numeric_limits<float>::infinity()) {

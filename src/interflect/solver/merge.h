@@ -7,32 +7,29 @@
 
 namespace interflect::inline detail {
 
-/// Eq. 6 with a tau for each element: what N rays brought, among the rays that its mean stands for so far. A patch has
-/// the same tau as all others. Children made later have a larger one, but only for how they share what their parent
-/// has: so none of the light is forgotten, and none counts twice. Where no element is younger than others this is
-/// Eq. 6 as it is.
+/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) for each element. Newer children have a
+/// larger tau. It only changes how they share their parent's mean, so no light is lost or counted twice. Equal
+/// histories give Eq. 6 itself.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const IterationPlan& plan);
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan);
 
-/// The same for estimates that are not shot again: how siblings differ from their parent is averaged with a tau of
-/// their own, but as differences, which may make an element's mean negative. So it stays unbiased, and its noise known,
-/// where siblings are young and few rays have reached them.
+/// Merges estimates that are not shot again. Differences from the parent are averaged, so means may be negative, but
+/// they are unbiased with known noise.
 void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                    const IterationPlan& plan);
 
-/// merge() and merge_details() for the parts that light groups bring; what is known of one that is dimmed to nothing
-/// stays as it is.
+/// Merges each light group. The stored light of a group dimmed to 0 does not change.
 void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 void merge_details(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 
-/// Eq. 6 for what an iteration lost through the openings of the scene: what escapes goes with what irradiance is the
-/// mean of. That of one iteration does not, since it also shoots what the one before it left. @return The mean.
+/// Averages escaped power by Eq. 6 to match the mean irradiance. The power of one iteration does not match, because it
+/// includes light of the previous one. @return The mean.
 RgbD merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
-/// From now on the means stand for this iteration's rays too; for elements made in it, `first_new` and on, which
-/// inherited a mean that is too smooth, less of them count.
+/// Adds the rays of an iteration. New elements (index >= first_new) inherited a mean that is too smooth, so only
+/// `inherited_weight` of their history counts.
 void update_history(SolverState& state, const IterationPlan& plan, std::uint32_t first_new);
 
 }  // namespace interflect::inline detail

@@ -8,22 +8,21 @@
 
 namespace interflect::inline detail {
 
-/// Patches that are close to each other: a binary tree, halved again and again along the longest axis of the box around
-/// their centres until every patch is alone. 4 bytes a patch.
+/// Binary tree of neighbouring patches, split along the longest axis of their centres. 4 bytes per patch.
 class Neighbourhoods {
   public:
-    Neighbourhoods() = default;  ///< None.
+    Neighbourhoods() = default;
     explicit Neighbourhoods(const ElementForest& forest);
 
     bool empty() const { return patches_.empty(); }
 
-    /// Moves every patch's value by a share of the way to its neighbourhood's mean, and that likewise towards the mean
-    /// of the next larger one.
+    /// Moves the mean of each neighbourhood by `share` towards that of the next larger one, from the root to the
+    /// patches.
     /// @param values  Per area, one for each patch. @param share  In [0, 1].
     void smooth(const ElementForest& forest, std::span<float> values, float share) const;
 
   private:
-    std::vector<std::uint32_t> patches_;  // a neighbourhood is a range of them, its halves are the next smaller ones
+    std::vector<std::uint32_t> patches_;  // neighbourhoods are ranges, halved recursively
 };
 
 }  // namespace interflect::inline detail

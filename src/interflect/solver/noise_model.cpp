@@ -9,9 +9,8 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// What is known from earlier iterations counts so much less with each: mesh and sampling weights change.
+/// Decay of earlier iterations, because mesh and sampling weights change.
 constexpr double memory = 0.75;
-/// The scale is taken to lie within this factor of 1.
 constexpr double largest_scale = 100;
 
 }  // namespace
@@ -42,7 +41,7 @@ void NoiseModel::add(const ElementForest& forest, const FreshEstimate& fresh, st
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
                 const std::size_t n = rarity(forest, mean, e);
-                // What either of the two told by itself.
+                // Expected value of the observed difference for independent rays.
                 const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
                 sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
                 sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);

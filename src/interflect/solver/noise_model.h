@@ -14,42 +14,37 @@
 
 namespace interflect::inline detail {
 
-/// An estimate of irradiance that an iteration made, before it is merged.
+/// Estimate of irradiance by one iteration, before merging.
 struct FreshEstimate {
-    std::vector<Rgb> irradiance;  ///< H of every element [lm/m^2 or W/m^2].
-    std::vector<float> variance;  ///< Of its luminance, if rays arrived independently of each other.
-    GroupLight groups = {};       ///< Of H what each light group brought.
+    std::vector<Rgb> irradiance;  ///< Irradiance H of every element [lm/m^2 or W/m^2].
+    std::vector<float> variance;  ///< Variance of its luminance, for independent rays.
+    GroupLight groups = {};       ///< Shares of the light groups in `irradiance`.
 };
 
-/// How noisy the running mean of irradiance is. Of every element it keeps the variance that one ray would cause if rays
-/// arrived independently: that is known from few rays. How much less it is thanks to low-discrepancy points, or more
-/// since noise is reflected on, is told by how much independent iterations differ, for all elements together that about
-/// as many rays meet: points are the better distributed the more there are of them, and no element that a single heavy
-/// ray met counts for those that thousands do.
+/// Noise of the running mean of irradiance, from the variance of one ray. Few rays suffice to estimate it for
+/// independent rays. Low-discrepancy points reduce it and reflected noise increases it. Differences between iterations
+/// give the factor, which elements with similar numbers of rays share: more points are better distributed. A single ray
+/// with a large weight must not affect elements with many rays.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Variance of the luminance of an element's irradiance where that is the mean of so many rays: of a root; of
-    /// others, of their difference from their parent. @param mean  The running mean, of every element.
+    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
+    /// its parent. @param mean  Running mean of every element.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
-    /// Whether two iterations have been compared.
     bool is_known() const { return iterations_ > 1; }
 
-    /// Gives elements from `first` on, made since, a quarter of their parents' rays on a quarter of the area.
+    /// Initialises new elements (index >= first): a quarter of their parents' rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
-    /// Enters an iteration of so many rays, before it is merged.
-    /// @param mean     The running mean.
-    /// @param history  Rays that it stands for, by element; 0: nothing is known of how the element differs from its
-    ///                 parent.
-    /// @param weight   How much a leaf's squared error counts; inner elements count as their leaves together.
+    /// Adds an iteration that has not been merged yet.
+    /// @param history  Rays in the mean, by element; 0: the difference from the parent is unknown.
+    /// @param weight   Weight of an element's squared error; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
-    /// From now on one ray causes so many times the variance, by patch.
     void scale_by_patch(const ElementForest& forest, std::span<const float> factor) {
         for (std::uint32_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] *= factor[forest.patch(e)];
     }
@@ -64,13 +59,14 @@ class NoiseModel {
 
   private:
     static constexpr std::size_t rarities = 48;
-    /// Squares of differences between an iteration and the mean, summed over the elements of each rarity.
+    /// Sums of squared differences between iterations and the mean.
     struct Spread {
         std::array<double, rarities> observed{}, independent{};
         Spread& operator+=(const Spread& other);
     };
 
-    /// How few of all rays meet an element: one in about 2^n. Siblings, of which one was met by luck, have the same n.
+    /// Returns class n for elements hit by about one in 2^n rays. Siblings share a class, even if one was hit by
+    /// chance.
     std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
@@ -78,7 +74,7 @@ class NoiseModel {
         const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// Of siblings' independent variance three quarters are left of that of their differences from their mean.
+    /// Siblings' differences from their mean have three quarters of their independent variance.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }
@@ -88,7 +84,7 @@ class NoiseModel {
 
     std::vector<float> per_ray_;  // [irradiance^2]
     std::array<float, rarities> scale_;
-    Spread spread_;  // of all iterations, later ones counting more
+    Spread spread_;  // decays with each iteration
     int iterations_ = 0;
 };
 

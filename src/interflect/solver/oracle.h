@@ -10,20 +10,20 @@
 
 namespace interflect::inline detail {
 
-/// One end of an interaction, as the oracle sees it.
+/// One end of an interaction, as seen by the oracle.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};  ///< Unit length.
     float area = 0;       ///< [m^2]
-    /// No cosine to the normal is taken below that: 1 for what shines alike in all directions.
+    /// Minimum cosine, 1 for a source that shines equally in all directions.
     float least_cosine = 0;
 };
 
-/// Cheap upper estimate of the form factor from receiver to shooter: the solid angle of a disk of the shooter's area,
-/// f = A_j / (pi d^2 + A_j), times the cosines at both ends of the line between the centres. No cosine is taken below 2
-/// f: where the elements are close for their size, some of their parts face each other better than their centres do.
+/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j), of a disk of the
+/// shooter's area, times the cosines at both ends of the line between the centres. Cosines are at least 2 f, because
+/// parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
-    // By value and without branches, so that many pairs can be judged at once.
+    // By value and without branches, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
     const auto larger = [](float x, float y) { return x < y ? y : x; };
     const V3f d = receiver.centre - shooter.centre;
@@ -37,23 +37,21 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Decides for every ray whether two elements may exchange light as they are. Its verdict depends on the state at the
-/// beginning of an iteration alone, never on what other rays do.
+/// Refinement test for the two elements of a ray. The result depends on the state before the step, never on other rays.
 struct Oracle {
     bool refines = false;  ///< False: the leaves that the ray connects exchange light.
-    double threshold = 0;  ///< P_eps, times psi_max where importance decides too [lm or W].
+    double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
-    float min_area = 0;  ///< An element of less than four times this is not subdivided [m^2].
-    /// The forest grows to no more than this. What a step makes beyond it is dropped at the step's end, the last first
-    /// in the forest's order: so which elements there are does not depend on which thread was first.
+    float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
+    /// Maximum size of the forest. Excess elements are dropped at the end of a step, in an order independent of
+    /// threads.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
-    /// psi of every element as the step finds it, by which receivers are weighed; empty unless by_importance.
+    /// psi of every element before the step; empty unless by_importance.
     std::vector<float> importance;
 
-    /// Eq. 14 (by_importance == false) and Eq. 15, Prikryl et al. 2000; of the channels the largest decides.
-    /// @param reflected  The largest channel of rho_i B_j, the receiver's reflectance times the shooter's radiosity
-    ///                   [lm/m^2 or W/m^2].
+    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.
+    /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2].
     /// @param psi        psi_i of the receiver; 1 unless by_importance.
     bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {
         const double power = static_cast<double>(reflected) * receiver.area;

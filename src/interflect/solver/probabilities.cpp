@@ -11,7 +11,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// The weights of one leaf.
 struct Weights {
     double power = 0, importance = 0;
 };
@@ -29,7 +28,7 @@ struct WeightSums {
     }
 };
 
-/// Weighs every leaf, and adds up in double precision and always in the same order.
+/// Computes the weights of leaves and sums them in double precision and fixed order.
 WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, StableArray<Weights>& weights) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
@@ -52,7 +51,6 @@ WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, 
     });
 }
 
-/// Weighs every part of the luminaires. @param sums  Has the leaves'.
 void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightSums& sums) {
     for (std::size_t i = 0; i < s.part_count(); ++i) {
         const double power = channel_sum(s.emission->power(i));
@@ -63,9 +61,9 @@ void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightS
     }
 }
 
-/// Raises numbers >= 0 to a power.
+/// @param numbers  >= 0.
 void raise(std::span<float> numbers, float exponent) {
-    if (exponent == 0.75f) {  // the usual one takes square roots alone, many at a time
+    if (exponent == 0.75f) {  // the default; square roots vectorise
         for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));
     } else {
         for (float& x : numbers) x = std::pow(x, exponent);
@@ -96,7 +94,7 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (sampled.part_importance.empty())  // not known yet: as if it were the mean
+        if (sampled.part_importance.empty())  // unknown: use the mean
             by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
         else
             by_power += for_driven * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];

@@ -11,22 +11,19 @@
 
 namespace interflect::inline detail {
 
-/// What leaves the elements of a forest: B = M + rho H [lm/m^2 or W/m^2], found for each when it is asked for. Refers
-/// to the surfaces and to H.
+/// Radiosity B = M + rho H of the elements [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
 class Radiosity {
   public:
-    Radiosity() = default;  ///< There is none.
-    /// @param irradiance  H of every element.
-    /// @param emits       Whether M counts; else B is only what is reflected.
+    Radiosity() = default;
+    /// @param emits  False: B = rho H.
     Radiosity(const Materials& materials, std::span<const Rgb> irradiance, bool emits = true)
         : materials_(&materials), irradiance_(irradiance), emits_(emits) {}
 
     bool empty() const { return irradiance_.empty(); }
     bool emits() const { return emits_; }
 
-    /// B, or 0 where it is not finite.
+    /// B, or 0 if it is not finite.
     Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
-    /// The same, of an element whose patch is known.
     Rgb of_element(std::uint32_t patch, std::uint32_t e) const {
         const Rgb b = as_it_is(patch, e);
         return is_finite(b) ? b : Rgb(0);
@@ -34,7 +31,7 @@ class Radiosity {
     bool is_lost(const ElementForest& forest, std::uint32_t e) const {
         return !is_finite(as_it_is(forest.patch(e), e));
     }
-    /// Whether the radiosity of an inner element may differ from the mean of its children's, for their reflectances do.
+    /// Whether B of an inner element may differ from the mean of its children.
     bool has_textures() const { return materials_->has_textures(); }
 
   private:
@@ -49,7 +46,7 @@ class Radiosity {
     bool emits_ = false;
 };
 
-/// What leaves an element [lm or W]: where there are textures, the sum over its leaves.
+/// Returns the power of an element [lm or W]; with textures, the sum over its leaves.
 inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
     const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
     if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
@@ -58,7 +55,7 @@ inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::u
     return sum;
 }
 
-/// What leaves all patches together [lm or W], in double precision and always in the same order.
+/// Returns the power of all patches [lm or W], summed in double precision and fixed order.
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
     return parallel_sum(forest.patch_count(), elements_at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
@@ -67,11 +64,10 @@ inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) 
     });
 }
 
-/// Importance per area of the elements of a forest [1/m^2], as the sum of two parts.
+/// Importance per area of the elements [1/m^2], the sum of two parts that may be empty.
 class Importance {
   public:
-    Importance() = default;  ///< There is none.
-    /// @param a, b  Of every element; either may be empty.
+    Importance() = default;
     explicit Importance(std::span<const float> a, std::span<const float> b = {}) : a_(a), b_(b) {}
 
     bool empty() const { return a_.empty() && b_.empty(); }

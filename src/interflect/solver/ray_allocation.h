@@ -8,19 +8,18 @@
 
 namespace interflect::inline detail {
 
-/// Splits N rays systematically among sources: source s gets N q_s / sum q of them, rounded up or down, and that number
-/// in the mean over `offset`. The rays of a source follow those of the sources before it. 16 bytes for 256 sources: the
-/// rest is found anew from q.
+/// Systematic allocation of N rays to sources, in order. Source s gets N q_s / sum q rays, rounded up or down; the mean
+/// over `offset` is exact. Stores 16 bytes per 256 sources and recomputes the rest.
 class RayAllocation {
   public:
-    /// @param q       Sampling weights >= 0; they need not sum to 1. Must outlive this.
+    /// @param q       Weights >= 0, not necessarily normalised. Must outlive this.
     /// @param rays    N > 0. @param offset  Uniform in [0, 1).
     RayAllocation(std::span<const float> q, std::int64_t rays, double offset);
 
-    double q_sum() const { return q_sum_; }  ///< 0: there is nothing to share the rays by, and nobody gets any.
+    double q_sum() const { return q_sum_; }  ///< If 0, no rays are allocated.
 
-    /// Calls body(s, first, from, to) for every source s that has some of the rays [begin, end), in order: its own
-    /// begin with `first`, and of those asked for it has [from, to).
+    /// Calls body(s, first, from, to) for all sources with rays in [begin, end), in order. `first` is the first ray of
+    /// s, and [from, to) are its rays in the range.
     template <class Body>
     void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
         const auto after =
@@ -37,8 +36,8 @@ class RayAllocation {
 
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
-    /// Calls body(s, first, next) for every source that has rays [first, next), of one block of sources, until it
-    /// returns false. @return What it returned last, or true.
+    /// Calls body(s, first, next) for all sources of a block with rays [first, next), until it returns false. @return
+    /// The last result, or true.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);
@@ -57,11 +56,11 @@ class RayAllocation {
   private:
     static constexpr std::size_t block_sources = 256;
     struct SourceBlock {
-        double q_before;         // sum of the weights of all blocks before it
-        std::int64_t first_ray;  // rays of all blocks before it
+        double q_before;         // sum over previous blocks
+        std::int64_t first_ray;  // rays of previous blocks
     };
-    /// Of the rays those that belong to sources whose weights sum to this. A block's end and the next one's beginning
-    /// are the same sum of the same terms, and so get the same answer.
+    /// Returns the rays of the sources whose weights sum to `q`. At the end of a block and the start of the next, `q`
+    /// has the same bits.
     std::int64_t rays_before(double q) const {
         const double before = q / q_sum_ * static_cast<double>(rays_) + offset_;
         return std::min(rays_, static_cast<std::int64_t>(before));  // N + offset may round up to N + 1

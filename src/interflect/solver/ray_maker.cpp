@@ -9,7 +9,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Keys of the random numbers, so that no two purposes share one.
 enum class Purpose : std::uint64_t { allocation = 1, sampling = 2, emission = 3 };
 
 std::uint64_t stream_key(const SampleStreams& streams, Purpose purpose, std::uint64_t index) {

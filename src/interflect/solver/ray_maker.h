@@ -12,13 +12,13 @@
 
 namespace interflect::inline detail {
 
-/// The rays of one task that start on the same leaf or part of a luminaire: batch.rays[begin ... end - 1].
+/// Rays of one task with the same source: batch.rays[begin ... end - 1].
 struct SourceRays {
-    std::uint32_t source;  ///< The leaf, or elements of the forest + the part.
+    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
     std::uint32_t begin, end;
 };
 
-/// The rays of one task; one a thread, reused.
+/// Rays of one task; one object per thread, reused.
 struct RayBatch {
     std::vector<SourceRays> sources;
     std::vector<Ray> rays;
@@ -26,16 +26,15 @@ struct RayBatch {
     PointBlock points;
 };
 
-/// Makes the rays of a step. Refers to what it is made of.
+/// Generates the rays of a step. Refers to its arguments.
 class RayMaker {
   public:
     RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
              const SampleStreams& streams);
 
     const RayAllocation& allocation() const { return allocation_; }
-    std::uint32_t elements() const { return elements_; }  ///< Of the forest when the step began.
+    std::uint32_t elements() const { return elements_; }  ///< Size of the forest before the step.
 
-    /// Makes the rays begin ... end - 1.
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 
   private:

@@ -14,9 +14,9 @@ struct CosSin {
     float cosine, sine;
 };
 
-/// (cos 2 pi t, sin 2 pi t) for t in [0, 1], to 3e-7; becomes vector code where calls of the C library would not.
+/// (cos 2 pi t, sin 2 pi t) for t in [0, 1], to 3e-7. Vectorises, unlike the C library.
 inline CosSin cos_sin_of_turn(float turn) {
-    // The nearest quarter turn, then Taylor series on [-pi/4, pi/4].
+    // Nearest quarter turn, then Taylor series on [-pi/4, pi/4].
     const float quadrant = std::floor(4 * turn + 0.5f);
     const float x = (turn - 0.25f * quadrant) * 6.283185307f, x2 = x * x;
     const float s = x * (1 + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040))));

@@ -11,12 +11,12 @@
 
 namespace interflect::inline detail {
 
-/// Makes the rays that samples first_sample, first_sample + 1, ... of a patch stand for: origins uniform on its area
-/// and `offset` above it, directions with density cos(theta) / pi about its normal.
-/// @param key     Names the patch's point sequence (fill_points).
+/// Generates rays from samples first_sample, first_sample + 1, ... Origins are uniform on the cell, `offset` above the
+/// patch. Directions have density cos(theta) / pi about the normal.
+/// @param key     Key of the point sequence (fill_points).
 /// @param points  Working space.
-/// @param rays    Receives the rays; its size is their number.
-/// @param starts  Points of a leaf (StartPoints::of) that origins are chosen from; empty: uniform ones.
+/// @param rays    Output; its size is the number of rays.
+/// @param starts  Points of a leaf to sample as origins (StartPoints::of); empty: uniform origins.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins,
                 std::span<const StartPoint> starts = {});

@@ -56,7 +56,6 @@ Escaped Receiver::finish() {
     return std::exchange(escaped_, {});
 }
 
-/// Begins at the patches of both ends.
 void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start,
                      const Hit& hit) {
     const std::size_t i = open_[open_count_++];
@@ -82,8 +81,9 @@ void Receiver::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, c
     shooters_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Takes all rays in flight one level further (Eq. 14, 15): of a pair that the oracle does not accept the larger end is
-/// divided; when it does, power has arrived, and importance goes on to the leaf. No branch depends on a verdict.
+/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). A rejected pair is divided at its larger end. For
+/// an accepted pair, the receiver of power is final, and importance descends to the leaf. No branch depends on the
+/// oracle.
 void Receiver::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
@@ -109,7 +109,6 @@ void Receiver::advance() {
     }
 }
 
-/// Of the lanes in use those for which `condition` holds, kept in `found`; without a branch.
 template <class Condition>
 inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, const Condition& condition) const {
     std::size_t count = 0;
@@ -120,17 +119,15 @@ inline std::span<const std::uint32_t> Receiver::open_lanes_if(Lanes& found, cons
     return std::span(found).first(count);
 }
 
-/// Gets from the forest what the oracle asks about the receiver.
 inline void Receiver::look_up_receiver(std::size_t i) {
     const std::uint32_t element = pairs_.receiver[i];
     pairs_.area[i] = forest_.area(element);
     pairs_.children[i] = forest_.first_child(element);
-    if (step_.oracle.by_importance && element < old_size_)  // a new element inherits
+    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit it
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
-/// Divides the larger end of a pair that was not accepted, if that is the shooter, which must be the lowest of its
-/// ancestor, or a leaf. What cannot be divided is settled.
+/// Divides the lowest shooter of a path, or a receiver without children. Settles a pair that cannot be divided.
 void Receiver::subdivide_on_demand(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {
@@ -144,7 +141,6 @@ void Receiver::subdivide_on_demand(std::size_t i) {
     if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
 }
 
-/// Sends power to the receiver that was accepted, importance to the leaf or the patch that was hit.
 void Receiver::send(std::size_t i) {
     const auto& [source, patch, left, start, reflectance] = rays_[i];
     std::uint32_t leaf = pairs_.receiver[i];

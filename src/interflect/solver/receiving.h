@@ -19,7 +19,7 @@
 
 namespace interflect::inline detail {
 
-/// What left the scene.
+/// Power and rays that left the scene.
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
@@ -31,13 +31,13 @@ struct Escaped {
     }
 };
 
-/// The receiving end of a step, for one thread: finds the elements at which the payload of each ray arrives. A
-/// structure-of-arrays traversal with lane refill: many rays descend the quadtrees together, one level at a time, and
-/// the next ray takes the lane of one that has arrived. This hides memory latency and lets the compiler vectorise.
+/// Finds the elements that receive the payload of each ray, for one thread. Structure-of-arrays traversal with lane
+/// refill: many rays descend the quadtrees level by level, and a new ray replaces a finished one in its lane. This
+/// hides memory latency and vectorises.
 class Receiver {
   public:
-    /// @param old_size  Elements of the forest when the step began. All other arguments must outlive this.
-    /// @param gathered  Receives the importance that rays find; null: they look for none.
+    /// @param old_size  Size of the forest before the step. All other arguments must outlive this.
+    /// @param gathered  Collects importance found by rays; may be null.
     Receiver(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
              Arrivals& arrivals, GatheredImportance* gathered)
         : materials_(materials),
@@ -54,40 +54,35 @@ class Receiver {
         pairs_.next.fill(none);
     }
 
-    /// Takes rays of one source.
-    /// @param source        A leaf, or elements when the step began + a part of a luminaire.
-    /// @param contribution  What each carries. @param of_groups  Of that, the power of each light group.
-    /// @param origins       Their parameters on the leaf's patch; of a part's rays they mean nothing.
-    /// @param transmitted   Share of the importance found that gets back to the source.
+    /// @param source        Leaf, or old_size + luminaire part. Each of its rays carries `contribution`.
+    /// @param of_groups     Power of each light group in `contribution`.
+    /// @param origins       Parameters on the leaf's patch; unused for luminaire parts.
+    /// @param transmitted   Share of found importance that returns to the source.
     void take(std::uint32_t source, const Arrivals::Contribution& contribution, std::span<const std::int64_t> of_groups,
               std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
               float transmitted = 1);
-    /// Tells the processor that a ray will be taken soon.
     void prefetch(const Hit& hit) const;
-    /// To be called at the end of a task: rays must not wait for those of another.
+    /// Finishes all rays in flight. Call at the end of each task.
     void finish_batch();
-    /// Adds power that arrived at a leaf in another way.
     void deposit(std::uint32_t leaf, const Arrivals::Contribution& contribution,
                  std::span<const std::int64_t> of_groups) {
         buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
     }
-    /// Adds power that escaped.
     void count_escaped(const Arrivals::Contribution& contribution) {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
         ++escaped_.rays;
     }
     /// Points of the leaves that reflect where they receive, in any order.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// To be called at the end. @return What escaped from this thread's rays.
+    /// Flushes all contributions. @return Escaped power and rays of this thread.
     Escaped finish();
 
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
-    /// What must be known of a ray in flight beside its pair.
     struct RayState {
-        std::uint32_t source, patch;  // patch: that was hit
-        std::uint32_t left;           // the leaf that the ray left, among left_
-        Parameters start;             // on the patch that the ray left
+        std::uint32_t source, patch;  // patch: hit by the ray
+        std::uint32_t left;           // index in left_
+        Parameters start;             // on the source's patch
         Rgb reflectance{0, 0, 0};     // rho_i
     };
 
@@ -114,16 +109,16 @@ class Receiver {
     GatheredImportance* gathered_;
     struct Left {
         std::uint32_t source;
-        double found;  // importance, by its rays so far
+        double found;  // importance found so far
         float transmitted;
     };
-    std::vector<Left> left_;  // sources whose rays the task has taken
+    std::vector<Left> left_;  // sources of the current task
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
-    Lanes open_;  // lanes in use come first, then the others
+    Lanes open_;  // lanes in use, then free lanes
     std::size_t open_count_ = 0;
     Shooters shooters_;
-    Shooters::Path path_;  // of the rays being taken
+    Shooters::Path path_;
 };
 
 }  // namespace interflect::inline detail

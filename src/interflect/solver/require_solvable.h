@@ -4,7 +4,7 @@
 
 namespace interflect::inline detail {
 
-/// @throws InputError that lists every option out of range and every fault of the scene.
+/// @throws InputError listing all options out of range and all faults of the scene.
 void require_solvable(const Scene& scene, const SolveOptions& options);
 
 }  // namespace interflect::inline detail

@@ -4,7 +4,7 @@
 
 namespace interflect::inline detail {
 
-/// Squared errors of reduced differences: what Detail::risk() expected, and what later iterations told.
+/// Squared errors after shrinkage: expected by Detail::risk(), and measured by later iterations.
 struct RiskCheck {
     double expected = 0, measured = 0;
 
@@ -12,13 +12,12 @@ struct RiskCheck {
         expected += o.expected, measured += o.measured;
         return *this;
     }
-    /// Enters one iteration's; earlier ones count half as much with each.
-    /// @param weight  In [0, 1]: less for iterations that are too short to tell much.
+    /// Adds an iteration; earlier ones decay by 1 - weight / 2. @param weight  In [0, 1]; less for short iterations.
     void add(const RiskCheck& fresh, double weight) {
         expected = expected * (1 - weight / 2) + weight * fresh.expected;
         measured = measured * (1 - weight / 2) + weight * fresh.measured;
     }
-    /// What expected errors are to be multiplied by; 1 where nothing is known.
+    /// Factor that corrects expected errors; 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 };
 

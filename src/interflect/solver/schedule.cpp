@@ -9,11 +9,11 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// An iteration has this many times the rays averaged before it.
+/// Rays of an iteration relative to the rays averaged before.
 constexpr double growth = 0.5;
-/// Most rays of an iteration: a second or two, so that the end of an iteration is never far.
+/// Maximum rays of an iteration: one or two seconds, so a run can stop soon.
 constexpr std::int64_t largest_iteration = 1 << 24;
-/// Rays of the first iteration: some for every patch, but never more than a small part of the budget.
+/// Rays of the first iteration: some per patch, but a small share of the budget.
 constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, budget_over_first_rays = 8;
 
 }  // namespace
@@ -36,10 +36,10 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     averaged_rays_ = power_rays;
 }
 
-/// How many rays the time that is left allows, as fast as the last iteration was; 0: too few to be worth while.
+/// Returns the rays that fit into the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
-    constexpr double share_of_time = 0.85;    // of what is left: no two iterations are equally fast
-    constexpr double least_share = 1.0 / 32;  // of what was averaged before
+    constexpr double share_of_time = 0.85;    // of the remaining time; iterations vary in speed
+    constexpr double least_share = 1.0 / 32;  // of the rays averaged before
     const double time_left = options_.limits.time - seconds, took = seconds - planned_at_;
     const std::int64_t traced = rays_ - planned_after_;
     planned_at_ = seconds, planned_after_ = rays_;
@@ -65,10 +65,10 @@ IterationPlan Schedule::next(double seconds) {
         rays =
             std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)),
                        smallest_, largest_iteration);
-    // A long one is lost if it is cut short: there is a short one before it, so that then something is known.
+    // A short iteration precedes a long one, which is lost if interrupted.
     const bool counts_iterations = options_.experimental.iterations > 0 || options_.experimental.warm_up > 0;
     if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;
-    // What would remain for a last iteration of less than half the size goes into this one.
+    // Absorb a remainder of less than half an iteration.
     if (left < rays + rays / 2) rays = left;
     if (std::isfinite(options_.limits.time)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};

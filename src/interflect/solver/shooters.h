@@ -11,11 +11,10 @@
 
 namespace interflect::inline detail {
 
-/// What the rays in flight left, as the oracle sees it: the ancestor path of every leaf that shot them, of which each
-/// pair takes the element that suits its receiver.
+/// Ancestor paths of the leaves that shot the rays in flight. Each pair uses the element that suits its receiver.
 class Shooters {
   public:
-    /// A path, from the largest to the smallest, as numbers of shooters.
+    /// Range of shooters, from the largest to the smallest.
     struct Path {
         std::uint32_t first = 0, last = 0;
     };
@@ -23,13 +22,12 @@ class Shooters {
     /// Both arguments must outlive this.
     Shooters(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
-    /// Appends the elements that hold a leaf, from its root to itself.
     Path append_leaf(std::uint32_t leaf);
-    /// Appends what stands for a part of a luminaire near one of its rays.
+    /// Appends a proxy of a luminaire part for one of its rays.
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { shooters_.clear(); }
 
-    /// Begins with the first of the path. @param reflectance  rho_i of the patch that was hit.
+    /// Starts with the largest shooter. @param reflectance  rho_i of the patch that was hit.
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, shooters_[path.first].normal);
@@ -43,26 +41,25 @@ class Shooters {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Lets the pair's shooter be the largest element of its path that is no larger than the receiver, or the lowest.
-    /// Between larger ones and the receiver no verdict is asked for: what is received is the same for all of them.
+    /// Selects the largest shooter of the path that is not larger than the receiver, or the lowest. Larger ones give
+    /// the same received power, so the oracle skips them.
     void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && shooters_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);
     }
 
-    /// The pair's shooter, which is the lowest of its path, becomes its child that holds the start of the ray.
-    /// @return whether there is one, or may be.
+    /// Replaces the lowest shooter of a path by its child at the start of the ray. @return Whether this was possible.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
     struct Shooter {
-        std::uint32_t element;  // none: a part of a luminaire
+        std::uint32_t element;  // none: luminaire part
         Cell cell;
         V3f centre, normal;
         float area;  // [m^2]
         float least_cosine;
-        Rgb radiosity{0, 0, 0};  // of the nearest element that was there when the step began: a new one inherits it
+        Rgb radiosity{0, 0, 0};  // new elements inherit it
     };
 
     void take(RayPairs& pairs, std::size_t i, std::uint32_t number, const Rgb& reflectance) const {
@@ -78,7 +75,7 @@ class Shooters {
     std::vector<Shooter> shooters_;
 };
 
-/// The first child; makes the children where there are none and there may be more elements. @return none: none.
+/// Returns the first child, or none. Creates children of a leaf if the forest may grow.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

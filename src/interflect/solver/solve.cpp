@@ -20,7 +20,7 @@ const Method& find_method(const std::string& name) {
 const Method& default_method(bool has_views) { return find_method(has_views ? "ihsrr" : "hsrr"); }
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
-    // They outlive the solver.
+    // Non-owning, because the arguments outlive the solver.
     const std::shared_ptr<const Scene> shared_scene(std::shared_ptr<void>(), &scene);
     const std::shared_ptr<const RayCaster> shared_caster(std::shared_ptr<void>(), &ray_caster);
     Solver solver(shared_scene, shared_caster, options);

@@ -28,16 +28,16 @@ struct Solver::Run {
           known_dimming(state.groups.size(), 1) {}
 
     const std::shared_ptr<const Scene> undimmed_scene;
-    std::shared_ptr<const Scene> scene = undimmed_scene;  // as its sources are now
+    std::shared_ptr<const Scene> scene = undimmed_scene;  // with current exitances
     const std::shared_ptr<const RayCaster> ray_caster;
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
     bool is_prepared = false, is_finished = false;
-    double error = std::numeric_limits<double>::infinity();  // estimated, for the present views
+    double error = std::numeric_limits<double>::infinity();  // estimate for the current views
     int iteration = 0;
-    IterationPlan plan;                // of the iteration under way; 0 rays: there is none
-    std::optional<Solution> finished;  // solution() as of now
-    std::vector<float> known_dimming;  // of each light group when light of it was last found
+    IterationPlan plan;                // current iteration; 0 rays: none
+    std::optional<Solution> finished;  // cached solution()
+    std::vector<float> known_dimming;  // factors for which the stored light was computed
 
     void iterate_until(const Limits& limits);
     IterationPlan next_plan(std::int64_t rays_asked_for);
@@ -50,7 +50,7 @@ struct Solver::Run {
 void Solver::Run::dim_sources() {
     const bool is_dimmed = std::any_of(state.solution.dimming.begin(), state.solution.dimming.end(),
                                        [](float factor) { return factor != 1; });
-    const std::shared_ptr<const Scene> before = scene;  // until nothing refers to it
+    const std::shared_ptr<const Scene> before = scene;  // keep it alive while referenced
     scene = is_dimmed ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.groups, state.solution.dimming))
                       : undimmed_scene;
     set_sources(state, *scene);
@@ -58,21 +58,21 @@ void Solver::Run::dim_sources() {
 
 void Solver::Run::dim(std::size_t group, float factor) {
     Solution& solution = state.solution;
-    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // a dark group's light is kept as it was
+    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // the light of a dark group is kept
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     method->scale_group(state, group, change);
     dim_sources();
-    state.escaped_power_rays = 0;  // known again after the next iteration
+    state.escaped_power_rays = 0;  // unknown until the next iteration ends
 }
 
 void Solver::Run::limit_time() {
     state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
 }
 
-/// @param rays_asked_for  In all; a plan that is fulfilled is extended to them.
+/// @param rays_asked_for  Total number; extends a completed plan.
 IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     const IterationPlan next = method->plan(state);
     const bool is_more_asked_for = rays_asked_for < std::numeric_limits<std::int64_t>::max() &&
@@ -83,11 +83,11 @@ IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     return method->plan(state);
 }
 
-/// @throws Interrupted in the middle of an iteration.
+/// @throws Interrupted
 void Solver::Run::iterate_until(const Limits& limits) {
     const std::int64_t all = std::numeric_limits<std::int64_t>::max(), before = state.schedule.rays();
     const std::int64_t rays_asked_for = limits.rays < all - before ? before + limits.rays : all;
-    if (!state.options.method.is_stochastic) limit_time();  // others find a first estimate at any price
+    if (!state.options.method.is_stochastic) limit_time();  // others always compute a first estimate
     if (!is_prepared) method->prepare(state);
     is_prepared = true;
     limit_time();
@@ -106,12 +106,12 @@ void Solver::Run::iterate_until(const Limits& limits) {
     is_finished = plan.rays == 0 && (error <= state.options.limits.until || method->is_fulfilled(state));
 }
 
-/// With a forest of its own, since that of the run grows.
+/// Copies the forest, because that of the run grows.
 Solution Solver::Run::snapshot() {
     Solution copy = state.solution;
-    method->finish(state);  // changes irradiance
+    method->finish(state);  // modifies irradiance
     std::swap(copy, state.solution);
-    std::fill(copy.dimming.begin(), copy.dimming.end(), 1.0f);  // of what the sources of `scene` emit
+    std::fill(copy.dimming.begin(), copy.dimming.end(), 1.0f);  // relative to the sources of `scene`
     const auto forest = std::make_shared<ElementForest>(*scene, state.forest->size());
     forest->rebuild(state.forest->subdivided());
     copy.forest = forest;
@@ -156,7 +156,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     run.finished.reset();
     state.begin_work(monitor, limits.time);
     state.solution.interrupted = false;
-    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // else it is dark, and exactly so
+    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // otherwise 0 is the exact solution
     try {
         if (is_lit) run.iterate_until(limits);
     } catch (const Interrupted&) {

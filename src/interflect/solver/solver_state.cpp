@@ -21,15 +21,15 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A step of rays may make more elements than are kept at its end (Oracle::max_elements): addresses are reserved for
-/// as many as no step of a second or two makes, or for what fits half of the addresses that the process may have.
+/// A step may create more elements than it keeps (Oracle::max_elements). Reserves addresses for more than one or two
+/// seconds of that, within half of the free address space.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
     const std::size_t groups = std::min(scene.light_groups.size() + 1, most_light_groups);
     const std::size_t per_element =
         ElementForest::reserved_per_element + Arrivals::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
-    if (!options.method.is_stochastic) return options.refinement.max_elements;  // it knows what it makes
+    if (!options.method.is_stochastic) return options.refinement.max_elements;  // never exceeded
     const std::size_t fitting = free_address_space() / 2 / per_element;
     return std::min(largest, options.refinement.max_elements +
                                  std::min(excess, fitting - std::min(fitting, options.refinement.max_elements)));
@@ -116,7 +116,6 @@ void look(SolverState& state) {
 
 namespace {
 
-/// What reports are saved as.
 using ReportNumbers = std::array<double, 19>;
 
 ReportNumbers numbers_of(const IterationReport& r) {

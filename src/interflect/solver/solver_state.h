@@ -24,16 +24,16 @@
 
 namespace interflect::inline detail {
 
-/// The state of a run: everything that one iteration hands to the next.
+/// State of a run that persists between iterations.
 struct SolverState {
-    /// @param scene, caster  Must outlive it.
+    /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
     SolverState(const SolverState&) = delete;
 
     const Scene& scene;
-    const Scene* lit = &scene;  // the same, with sources as they are dimmed
+    const Scene* lit = &scene;  // the same scene with dimmed sources
     Materials materials;
-    std::vector<Imath::Box3f> targets;  // for light from outside, for the present views
+    std::vector<Imath::Box3f> targets;  // of light from outside, for the current views
     Emission emission;                  // of the luminaires
     const RayCaster& ray_caster;
     const SourceGroups groups;
@@ -42,72 +42,71 @@ struct SolverState {
     const std::shared_ptr<ElementForest> forest;
     ViewImportance view;
     ElementFloor floor;
-    Neighbourhoods neighbourhoods;                // none without a view
-    std::vector<PartImportance> part_importance;  // that the luminaires' rays have found for the present views
+    Neighbourhoods neighbourhoods;                // empty without a view
+    std::vector<PartImportance> part_importance;  // found for the current views
     SampleStreams streams;
     Arrivals arrivals;
     Schedule schedule;
-    std::vector<float> history;  // of each element: rays that its mean stands for
+    std::vector<float> history;  // number of rays averaged into each element's mean
     NoiseModel noise;
     RiskCheck risk_check;
     Quanta quanta;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;  // averaged before the views were changed
-    RgbD escaped_power{0, 0, 0};           // mean of the iterations, as irradiance is
-    double escaped_power_rays = 0;         // that it stands for
+    std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
+    RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
+    double escaped_power_rays = 0;         // rays in this mean
 
-    // Of the work that is under way:
+    // The work in progress:
     std::function<void(const IterationReport&)> on_report;
-    StopRequest stop;  // by the caller; once there is a first estimate, by the limit of time too
+    StopRequest stop;  // after a first estimate, the time limit also stops the run
     StopRequest::Clock::time_point start;
     StopRequest::Clock::time_point last_step =
-        StopRequest::Clock::time_point::max();  // none begins later, but the first
+        StopRequest::Clock::time_point::max();  // start of the last step, unless it is the first
     bool has_traced_step = false;
-    double earlier_seconds = 0;  // that earlier work took
+    double earlier_seconds = 0;
 
-    /// @param step_seconds  In which steps may begin.
+    /// @param step_seconds  Period in which steps may start.
     void begin_work(const Monitor& monitor, double step_seconds);
     void end_work() { earlier_seconds = seconds(); }
-    /// Of all work so far.
+    /// Duration of all work, including earlier calls.
     double seconds() const {
         return earlier_seconds + std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
     bool may_begin_step() const { return !has_traced_step || StopRequest::Clock::now() < last_step; }
 
-    /// @throws std::runtime_error where what is read does not fit together.
+    /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);
 };
 
-/// The sources emit what those of another scene do, which must outlive the state: the same but for that.
+/// Changes the exitance of the sources. @param lit  The scene with these exitances; must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Replaces the targets of light from outside, and forgets the importance of the luminaires' parts.
+/// Replaces the targets of outdoor light, and resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Finds what the views of the options show; importance is not known then.
+/// Computes the view importance of every element. Resets the indirect importance.
 void look(SolverState& state);
 
-/// Traces a step's rays; afterwards everything kept by element has grown with the forest. @throws Interrupted
+/// Traces a step, then grows all data per element with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);
 
-/// What each light group shoots of `irradiance`, and where `emits`, of its own; refers to them.
+/// Returns the radiosity of each group. Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
-/// All power that leaves surfaces and luminaires [lm or W].
+/// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
-/// The smallest area that an element's parts may have, and the area that a pixel shows there: see ElementFloor [m^2].
+/// Minimum area of an element's children, and area of a pixel at the element [m^2]; see ElementFloor.
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 
-/// Gives elements from `first` on, made since, what their parents have.
+/// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the rays that have been averaged: as the mesh gets finer, what a view shows of
-/// each element must be known as well.
+/// Adds camera rays in proportion to the averaged rays, because the mesh becomes finer.
 void refine_view_importance(SolverState& state);
 
-/// Adds a report of where the run stands. @param escaped_power  Averaged as irradiance is.
+/// @param escaped_power  Averaged like irradiance.
 void report(SolverState& state, int iteration, const RgbD& escaped_power);
 
 }  // namespace interflect::inline detail

@@ -9,7 +9,7 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A number in [0, 1] as every second bit of 32.
+/// Quantises a number in [0, 1] to the even bits of the result.
 std::uint32_t spread_bits(float x) {
     auto bits = static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1.0f) * 65535.0f);
     bits = (bits | bits << 8) & 0x00ff00ffu;
@@ -18,7 +18,7 @@ std::uint32_t spread_bits(float x) {
     return (bits | bits << 1) & 0x55555555u;
 }
 
-/// Position along a Morton curve: points that follow each other are close, so stratified samples are spread evenly.
+/// Returns the position along a Morton curve. Successive points are close, so samples stay stratified.
 std::uint32_t position_on_curve(const Parameters& p) { return spread_bits(p.u) | spread_bits(p.v) << 1; }
 
 bool is_before(const StartPoint& a, const StartPoint& b) {
@@ -32,7 +32,7 @@ bool is_before(const StartPoint& a, const StartPoint& b) {
 
 StartPoints::StartPoints(std::vector<StartPoint> points) : points_(std::move(points)) {
     parallel_sort(points_, is_before);
-    double sum = 0;  // a float would lose the last of many points
+    double sum = 0;  // a float would lose small terms
     for (std::size_t i = 0; i < points_.size(); ++i) {
         if (i == 0 || points_[i].leaf != points_[i - 1].leaf) sum = 0;
         sum += static_cast<double>(points_[i].power);

@@ -10,35 +10,34 @@
 
 namespace interflect::inline detail {
 
-/// A point of a leaf that received power.
+/// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< Sum of the channels [any unit]; in StartPoints: of this point and those before it on the leaf.
+    float power;    ///< Sum of the channels [any unit]; in StartPoints cumulative over the leaf.
     Parameters at;  ///< On the leaf's patch.
 };
 
-/// Origins of reflected light. A leaf that receives light in one corner and reflects it uniformly sends light to wrong
-/// surfaces, a bias that only a finer mesh removes. A leaf with points here starts its rays at these points, in
-/// proportion to the received power, like particle tracing.
+/// Origins of reflected light. Uniform reflection from a partly lit leaf sends light to wrong surfaces, a bias that
+/// only a finer mesh removes. A leaf with points here starts rays at them, in proportion to received power, as in
+/// particle tracing.
 class StartPoints {
   public:
     StartPoints() = default;
-    /// @param points  In any order, which changes no bit. Cost: O(n log n) on all threads, 16 bytes a point.
+    /// @param points  Their order changes no bit. Cost: O(n log n) on all threads, 16 bytes per point.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// The points of a leaf; empty for a leaf that starts its rays anywhere. Cost: O(log n).
+    /// Returns the points of a leaf; empty if its rays start uniformly. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// Samples a point in proportion to power. @param points  At least one. @param u  In [0, 1).
+    /// @param points  At least one, sampled by power. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
     void archive(StateArchive& archive, const std::string& name) { archive(name, points_); }
-    /// Whether all points lie on leaves of a forest of so many elements.
     bool fit(std::size_t elements) const { return points_.empty() || points_.back().leaf < elements; }
 
   private:
-    std::vector<StartPoint> points_;  // by leaf, then along a space-filling curve
+    std::vector<StartPoint> points_;  // by leaf, then along a Morton curve
 };
 
 }  // namespace interflect::inline detail

@@ -13,12 +13,11 @@
 
 namespace interflect::inline detail {
 
-/// What a run needs in order to go on, as named arrays of bytes. Every class with state lists its members once, in an
-/// archive() of its own, for writing as well as for reading. The arrays are in the machine's own layout: they are read
-/// by the version of Interflect that wrote them.
+/// State of a run, as named arrays of bytes in native layout. Each class lists its members once, in archive(), for
+/// writing and reading. Only the same version of Interflect can read them.
 class StateArchive {
   public:
-    /// For writing: refers to the values that it is given, which must not change until they are written.
+    /// For writing. Refers to the values, which must not change until they are written.
     StateArchive() = default;
     /// For reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
@@ -45,7 +44,7 @@ class StateArchive {
         }
     }
 
-    /// For what is kept in another form: writes a copy of `values`, or returns what was written.
+    /// For data stored in another form: writes `values`, or returns the data read.
     template <class T>
     std::vector<T> by_value(const std::string& name, std::vector<T> values) {
         if (!reads_) {
@@ -59,11 +58,10 @@ class StateArchive {
     }
 
     bool reads() const { return reads_; }
-    /// What has been written, in order.
     const std::vector<std::pair<std::string, std::span<const std::byte>>>& written() const { return spans_; }
 
   private:
-    /// @throws std::runtime_error where there is no such array.
+    /// @throws std::runtime_error if the array is missing.
     std::vector<std::byte> taken(const std::string& name) {
         const auto found = arrays_.find(name);
         if (found == arrays_.end()) throw std::runtime_error("the state of the run lacks '" + name + "'");
@@ -81,7 +79,7 @@ class StateArchive {
     std::map<std::string, std::vector<std::byte>> arrays_;
 };
 
-/// Names and lists what is kept for each light group, [group][element]; reads as many groups as were written.
+/// Archives [group][element] arrays. Reads the number of groups that was written.
 template <class T>
 void archive_groups(StateArchive& archive, const std::string& name, std::vector<std::vector<T>>& groups) {
     constexpr std::uint64_t most = 256;

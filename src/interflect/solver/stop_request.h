@@ -9,15 +9,15 @@
 
 namespace interflect::inline detail {
 
-/// Thrown where a run has to end in the middle of an iteration, the work of which is lost.
+/// Thrown if a run must stop; the current step is lost.
 struct Interrupted {};
 
-/// When a run has to end, whatever is under way. Asked on all threads, at every batch of rays.
+/// Condition for stopping a run. All threads check it before each batch of rays.
 class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// @param flag  Set by the caller from another thread or a signal handler; may be null.
+    /// @param flag  Set by another thread or a signal handler; may be null.
     explicit StopRequest(const std::atomic<bool>* flag = nullptr) : flag_(flag) {}
 
     void limit_time(Clock::time_point start, double seconds) {
@@ -37,7 +37,7 @@ class StopRequest {
     double seconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// As parallel_for_ranges() without it, but begins no range once the run has to end. @throws Interrupted then.
+/// Like parallel_for_ranges() above, but starts no range once the run must stop. @throws Interrupted
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
     std::atomic<bool> is_over{false};

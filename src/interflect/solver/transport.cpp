@@ -23,18 +23,15 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// Key of the random numbers of a step's walks.
 std::uint64_t walk_key(const SampleStreams& streams) {
-    constexpr std::uint64_t purpose = 0x77616c6b;  // no other stream of the run has this one
+    constexpr std::uint64_t purpose = 0x77616c6b;  // unique among random streams
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Rays of one task: enough to hide the cost of a task, few enough to stay in the second-level cache.
+/// Rays per task: many enough to amortise it, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// How far ahead of the rays under way the patches that others hit are asked for.
 constexpr std::size_t rays_ahead = 32;
 
-/// Notes how many points every leaf, and every part of the luminaires, has consumed.
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
     constexpr std::size_t blocks_at_once = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
@@ -50,8 +47,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Upper bound of the number of visits of a random walk. The expected number is at most 1 / (1 - rho); the factor
-/// covers chance and panes, and leaves 2^49 units for the expected power.
+/// Upper bound of the visits of a random walk. The expected number is at most 1 / (1 - rho); the factor covers chance
+/// and panes, and leaves 2^49 units for the expected power.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -59,7 +56,7 @@ double most_visits(const Scene& scene) {
     return headroom / (1 - rho);
 }
 
-/// The rays of a step and what they carry. Refers to the step.
+/// Rays and payloads of a step. Refers to the step.
 struct Shooting {
     Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
              const TransportStep& step, const SampleStreams& streams)
@@ -76,7 +73,7 @@ struct Shooting {
     Panes panes;
 };
 
-/// What becomes of one task's rays; one a thread, reused.
+/// Data of one task; one object per thread, reused.
 struct Batch {
     explicit Batch(const Receiver& r) : receiver(r) {}
 
@@ -88,7 +85,7 @@ struct Batch {
     Receiver receiver;
 };
 
-/// What arrived at elements of which those from `old_size` on have got other numbers since.
+/// Contributions of a step after new elements (index >= old_size) were renumbered.
 class Arrived {
   public:
     Arrived(Arrivals& arrivals, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
@@ -96,7 +93,6 @@ class Arrived {
 
     Arrivals::Contribution take(std::uint32_t e) { return arrivals_.take(number(e)); }
     std::array<std::int64_t, 3> take(std::uint32_t e, std::size_t group) { return arrivals_.take(number(e), group); }
-    /// What arrived at an element arrives at another one.
     void move(std::uint32_t from, std::uint32_t to) {
         arrivals_.add(number(to), take(from));
         for (std::size_t g = 0; g < arrivals_.groups(); ++g) arrivals_.add(number(to), g, take(from, g));
@@ -113,7 +109,7 @@ class Arrived {
     std::vector<std::uint32_t> old_numbers_;
 };
 
-/// Keeps the forest within the oracle's limit; what arrived at elements that are dropped arrives at their parents.
+/// Drops elements beyond the oracle's limit. Their parents receive the contributions.
 void drop_excess(ElementForest& forest, Arrived& arrived, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
@@ -126,7 +122,7 @@ void forget_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Nothing where a step carries no importance, or none that leaves are told apart by, and no luminaire shoots.
+/// Returns nothing without importance, or if patches receive it and no luminaire shoots.
 std::optional<GatheredImportance> gathered_by(const TransportStep& step, const Materials& materials,
                                               const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -136,12 +132,11 @@ std::optional<GatheredImportance> gathered_by(const TransportStep& step, const M
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // of a ray
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // hits per ray
     return std::optional<GatheredImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
                                              step.rays, forest.size() + step.part_count());
 }
 
-/// What the rays of parts of the luminaires found.
 std::vector<PartImportance> found_by_parts(const TransportStep& step, const RayAllocation& allocation,
                                            const GatheredImportance& gathered, std::size_t elements) {
     std::vector<PartImportance> parts(step.part_count());
@@ -153,13 +148,13 @@ std::vector<PartImportance> found_by_parts(const TransportStep& step, const RayA
     return parts;
 }
 
-/// Replaces the importance that a leaf received by its mean with what the leaf's own rays found. Each of these counts
-/// as one ray, and as many are expected to have brought it as if all that do carried alike: weights that do not depend
-/// on what is found leave the mean where it is.
+/// Averages the importance that a leaf received with that gathered by its own rays. A gathering ray has the weight 1,
+/// and received importance the expected effective number of its rays. The weights do not depend on the estimates, so
+/// the mean is unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const GatheredImportance& gathered, const Totals& carried, std::size_t elements,
            std::vector<float>& received) {
-    // Where none is carried, none is known from what arrives.
+    // Without incoming importance there is no incoming estimate.
     const double rays_per_importance = carried.importance > 0 ? carried.importance / carried.importance_square : 0;
     constexpr std::size_t blocks_at_once = 16;
     parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
@@ -175,10 +170,10 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
     });
 }
 
-/// Turns sums of arrivals into what each element receives, per unit of area.
+/// Converts sums of contributions to received values per area.
 void collect(const ElementForest& forest, const TransportStep& step, const Units& units, Arrived& arrived,
              Received& received) {
-    constexpr std::size_t at_once = std::size_t{1} << 16;  // their sums fill a large page of 2 MiB
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // sums fill more than a page of 2 MiB
     if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
@@ -199,7 +194,6 @@ void collect(const ElementForest& forest, const TransportStep& step, const Units
     });
 }
 
-/// Adds what ancestors received, and lets inner elements have the mean of their children.
 void balance(const ElementForest& forest, const TransportStep& step, Received& received) {
     if (step.carries_power() && !step.leaves_only) {
         push(forest, received.irradiance), pull(forest, received.irradiance);
@@ -218,10 +212,8 @@ Received nothing_received(const TransportStep& step, std::size_t elements) {
     return received;
 }
 
-// The three parts of a step. Between the second and the third all that has happened is in Arrivals, as integers: those
-// of several machines could be added up there.
+// The three phases of a step. After the second, Arrivals contain integers that several machines could sum.
 
-/// Makes the rays begin ... end - 1 and finds what they hit.
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
     batch.hits.resize(batch.shot.rays.size());
@@ -229,7 +221,7 @@ void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t be
     shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
 }
 
-/// What goes through panes arrives behind them too, filtered.
+/// Deposits the filtered payload of rays behind panes.
 void receive_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
                     std::span<const Panes::HitBehind> behind, Batch& batch) {
     const std::uint32_t source = rays.source;
@@ -242,7 +234,7 @@ void receive_behind(const TransportStep& step, const Shooting& shooting, const S
     }
 }
 
-/// What the rays of a batch carry arrives at elements, which may be made for that.
+/// Deposits the payload of a batch; the oracle may create elements.
 void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) {
     auto& [shot, hits, all_behind, group_terms, walkers, receiver] = batch;
     std::span<const Panes::HitBehind> behind = all_behind;
@@ -264,7 +256,7 @@ void receive(const TransportStep& step, const Shooting& shooting, Batch& batch) 
     receiver.finish_batch();
 }
 
-/// Continues the rays of a batch as random walks. @param task  Index of the first ray.
+/// Continues a batch as random walks. @param task  Index of the first ray.
 void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
@@ -282,14 +274,14 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
     walks.follow(task, walkers, batch.receiver);
 }
 
-/// All points that the threads noted; their order has no meaning.
+/// Joins the points of all threads, in any order.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
     return StartPoints(std::move(all));
 }
 
-/// Turns arrivals into what elements receive. @param step  What has served makes room for what is received.
+/// Converts contributions to received values. @param step  Its buffers are reused.
 Received commit(TransportStep& step, const Shooting& shooting, ElementForest& forest, SampleStreams& streams,
                 Arrivals& arrivals, const std::optional<GatheredImportance>& gathered, const Escaped& escaped) {
     const RayAllocation& allocation = shooting.rays.allocation();

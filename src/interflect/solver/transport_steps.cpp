@@ -11,14 +11,14 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// ExperimentalOptions::epsilon is the threshold after so many rays.
+/// Number of rays at which ExperimentalOptions::epsilon is the threshold.
 constexpr double rays_at_epsilon = 20e6;
-/// Of the rays that importance drives these go by that of the neighbourhood.
+/// Share of importance-driven rays that are sampled by neighbourhood importance.
 constexpr double share_of_nearby = 0.2;
-/// So much of its neighbourhood's importance a patch has there, and that of the next larger one.
+/// Share of the next larger neighbourhood in Neighbourhoods::smooth().
 constexpr float taken_over = 0.3f;
 
-/// How the rays of a step that carries power are shared: Eq. 3, 9, 10, and 11 where it carries importance too.
+/// Shares of the weights in Eq. 3, 9, 10, or Eq. 11 if combined.
 MixtureWeights power_step_shares(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;
@@ -53,15 +53,15 @@ std::vector<float> total_importance(const Solution& so_far) {
 
 namespace {
 
-/// By box of light from outside: the mean importance of its parts, and the factor that makes up for an exponent.
+/// Mean importance in a box of light from outside, and the factor for its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The exponent allows for parts with a few valuable rays among many. Boxes already separate these, so importance
-/// differs between boxes with the exponent 1. The factor keeps the unit: it is 1 for a box of the typical importance.
+/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores the
+/// exponent 1 between boxes. It is 1 for a box of typical importance.
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -83,8 +83,8 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     return boxes;
 }
 
-/// Importance of the luminaires' parts, and of parts alike (those of one emitter). Few rays of a part say little: what
-/// they found counts beside the mean of its like as if that were known from a few rays as well.
+/// Computes the importance of parts, and its mean over the parts of an emitter. The mean serves as a prior with the
+/// weight of `rays_of_mean` rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;
@@ -161,7 +161,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
     oracle.threshold = so_far.options.experimental.epsilon * fall * reference_power(so_far);
     if (oracle.by_importance) {
-        // An element whose importance was estimated too low would stay coarse for ever: hence a part of its parent's.
+        // An element with underestimated importance would stay coarse.
         oracle.importance =
             importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance.smoothing, 1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
@@ -174,7 +174,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
 double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
-    double seen = 0, area = 0;  // sum of V H, the mean irradiance of the picture; of the patches in it [m^2]
+    double seen = 0, area = 0;  // mean irradiance of the picture; visible area [m^2]
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         seen += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *

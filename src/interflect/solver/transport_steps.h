@@ -11,61 +11,57 @@
 
 namespace interflect::inline detail {
 
-/// What steers a run: what its method asks for, and nothing where there is no view.
+/// Returns the use of importance by the method; off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// Whether the mesh of a run is refined between its passes, by what they tell of its elements.
+/// Whether variance refines the mesh between passes.
 bool refines_by_variance(const SolveOptions& options);
 
-/// psi of every element, which refers to the solution; empty where there is no view.
+/// Returns psi of every element, empty without a view. Refers to the solution.
 Importance importance_of(const Solution& so_far);
-/// The same, added up.
 std::vector<float> total_importance(const Solution& so_far);
 
-/// The importance that drives the rays of power, as the method and the options ask for; empty where none does.
+/// Importance for sampling rays of power; empty if not used.
 struct ImportanceWeights {
     std::vector<float> elements;
-    std::vector<float> nearby;  ///< Of patches, as it is in their neighbourhoods; empty where it is taken as it is.
-    std::vector<float> parts, parts_nearby;  ///< The same of the luminaires' parts; empty without luminaires.
+    std::vector<float> nearby;               ///< Neighbourhood importance by patch; empty without smoothing.
+    std::vector<float> parts, parts_nearby;  ///< The same for luminaire parts.
 };
-/// @param found  By the rays of the luminaires' parts so far.
+/// @param found  Importance found by rays of luminaire parts so far.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
-/// A step, and what there is to shoot in it: sums over the leaves of P_s (Eq. 3), and of that times the importance that
-/// drives rays (Eq. 9, 10; 0 where none does).
+/// A step, with the sums over leaves of P_s (Eq. 3) and of P_s times sampling importance (Eq. 9, 10; 0 if not used).
 struct PowerStep {
     TransportStep step;
     double power = 0, weighted_power = 0;
-    std::int64_t lost_leaves = 0;  ///< Those of which nothing can be shot, since it is not finite.
+    std::int64_t lost_leaves = 0;  ///< Leaves with non-finite radiosity, which are not shot.
 };
 
-/// A step in which rays carry power; where `combined`, importance too (Eq. 11). Leaves are chosen as the method of the
-/// run says: by power (Eq. 3), by what is seen, or by total or indirect importance (Eq. 9, 10); a share beta by power
-/// alone, and one by the importance nearby: few rays that bring importance meet a small lamp, and where it has been
-/// taken for unimportant the few rays that start there carry much. No oracle is set.
-/// @param weights  importance_weights(so_far).
-/// @param emission  Of the luminaires: it is shot where `light` emits.
-/// @param light    What is to be shot. The step refers to what `so_far`, `emission` and `light` do.
+/// Makes a step with power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by power
+/// (Eq. 3), by direct importance, or by total or indirect importance (Eq. 9, 10). A share beta is sampled by power
+/// alone. Another share is sampled by neighbourhood importance, because underestimated small lamps give rays large
+/// weights. Sets no oracle.
+/// @param weights   importance_weights(so_far).
+/// @param emission  Luminaires, shot if `light` emits.
+/// @param light     Radiosity to shoot. The step refers to data of `so_far`, `emission` and `light`.
 PowerStep power_step(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
-/// A step in which rays carry importance alone (Eq. 8). @param importance  What is to be reflected; the step refers to
-/// it.
+/// Makes a step with importance alone (Eq. 8). @param importance  Importance to reflect; the step refers to it.
 TransportStep importance_step(const Materials& materials, const Solution& so_far, const Importance& importance,
                               std::int64_t rays);
 
-/// The oracle of the run's method, Eq. 14 or 15, with the references below.
-/// @param rays  That irradiance is the mean of, after this step; > 0. The more, the lower the threshold.
+/// Makes the oracle of the method (Eq. 14 or 15), relative to the references below.
+/// @param rays  Number of rays averaged after this step, > 0. The threshold falls as it grows.
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 
-/// The power that the oracle's threshold is relative to [lm or W]. With a view: what arrives at the surfaces it sees,
-/// as if all were lit as they are on average; so it depends neither on lamps in the picture nor on lights elsewhere,
-/// nor on how an emitter is divided, nor (times a length squared on both sides of Eq. 14) on the unit of length.
-/// Without a view, and as long as what it sees is dark: all emitted power.
+/// Returns the reference of the oracle's threshold [lm or W]: the power that visible patches receive at the mean
+/// irradiance of the picture. It is independent of lamps in the picture, light elsewhere, tessellation and unit of
+/// length. Without a view, or while the visible patches are dark: all emitted power.
 double reference_power(const Solution& so_far);
 
-/// psi_max of Eq. 15: the area-weighted mean of psi over the patches that the view sees [1/m^2].
+/// Returns psi_max of Eq. 15 [1/m^2]: the area-weighted mean over the visible patches.
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);
 
 }  // namespace interflect::inline detail

@@ -14,27 +14,26 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// The mean square by which a leaf's children will differ, over that of its own siblings: a quarter where irradiance is
-/// linear, a half where an edge runs through.
+/// Expected squared difference of children relative to siblings: a quarter for linear irradiance, a half at an edge.
 constexpr float expected_decay = 0.3f;
-/// The same over the square of its irradiance, for a leaf without siblings: nothing is known of it.
+/// The same relative to squared irradiance, for a leaf without siblings.
 constexpr float assumed_square = 0.04f;
-/// Children are made once their expected differences are this share of the noise that they would have with the rays so
-/// far. More rays will come, and until then the differences are reduced to what they are worth.
+/// Minimum expected signal relative to the children's noise. More rays follow, and shrinkage suppresses noise until
+/// then.
 constexpr float least_signal = 0.12f;
-/// A leaf is left alone if what splitting it gains is less than this share of the whole squared error.
+/// Minimum reduction of the total squared error for which a leaf is split.
 constexpr double negligible_gain = 2e-7;
-/// A leaf is split too if it radiates more than this share of all light from other places than it should: what is
-/// reflected from a bright corner of a lamp's housing leaves it less easily than it would from everywhere.
+/// Minimum share of all light reflected from wrong places for which a leaf is split. For example, light escapes less
+/// easily from a bright corner of a lamp's housing.
 constexpr double negligible_misplacement = 1e-7;
-/// A leaf reflects light where it receives it if more than this share of all light would leave from elsewhere. At 1e-5
-/// total power is within 0.05% in rooms with light sources 2 cm from a ceiling, where 1 is off by 5%, and runs take 3%
-/// longer; at 1e-6, within 0.03% and 20%.
+/// Leaves above this share of all light reflect where they receive. At 1e-5, total power is within 0.05% in rooms with
+/// lights 2 cm from a ceiling, and runs take 3% longer. Without this (at 1) the error is 5%. At 1e-6 it is 0.03%, for
+/// 20% more time.
 constexpr double tolerable_misplacement = 1e-5;
-/// How much the squared error of the shape of what is not seen counts beside what is: it reaches the view spread out.
+/// Relative weight of errors on invisible surfaces. Their effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
 
-/// Decides about the leaves of a run.
+/// Decides which leaves are split or reflect where they receive.
 class VarianceOracle {
   public:
     explicit VarianceOracle(const SolverState& state)
@@ -62,15 +61,14 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// Whether light that the leaf received may leave from so far elsewhere that it matters; so it is taken to do as
-    /// long as the leaf is not known.
+    /// Whether power from wrong places matters; true if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
     }
 
   private:
-    /// Mean squares of how a leaf's children will differ from it.
+    /// Expected mean squared differences of the children from their leaf.
     struct Expected {
         float signal, noise;
     };
@@ -83,7 +81,7 @@ class VarianceOracle {
         const Detail detail = detail_of(state_, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * detail.signal(), 4 * detail.noise};
     }
-    /// Of the squared error of the luminance of its irradiance.
+    /// Returns the weight of the squared luminance error of the leaf's irradiance.
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
@@ -92,7 +90,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Power that leaves the leaf from other places than it should, times what power from there matters to the view.
+    /// Returns the power reflected from wrong places, times importance.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -105,7 +103,6 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// What all surfaces receive, by its importance.
     double received_power() const {
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
@@ -117,8 +114,8 @@ class VarianceOracle {
     const SolverState& state_;
     const ElementForest& forest_;
     ErrorMeasure measure_;
-    std::span<const float> psi_;  // indirect importance; empty where the run does not follow it
-    double least_gain_ = 0;       // [weight times irradiance^2]
+    std::span<const float> psi_;                                   // indirect importance, if used
+    double least_gain_ = 0;                                        // [weight times irradiance^2]
     double least_misplaced_power_ = 0, most_misplaced_power_ = 0;  // [lm or W, times importance]
 };
 

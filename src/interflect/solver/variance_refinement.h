@@ -5,15 +5,13 @@
 
 namespace interflect::inline detail {
 
-/// Splits every leaf within which irradiance is expected to vary by more than the noise that its children will have:
-/// the variation is extrapolated from how the leaf and its siblings differ, beyond their noise (detail.h). Not where
-/// that matters nothing to the error of the whole, nor below the smallest area (ElementFloor). New elements inherit
-/// what their parents have; how they differ is measured by later rays alone, so it is not biased by the choice.
-/// To be called between iterations.
+/// Splits leaves in which irradiance is expected to vary by more than the noise of children. The variation is
+/// extrapolated from differences of siblings without their noise (detail.h). Leaves with negligible errors and the
+/// smallest elements (ElementFloor) are not split. Only later rays measure the new differences, so splits cause no
+/// bias. Call between iterations.
 void refine_by_variance(SolverState& state);
 
-/// Leaves that reflect light where they receive it (StartPoints), one entry an element; empty unless
-/// refine_by_variance() makes the mesh.
+/// Marks leaves that reflect where they receive (StartPoints). Empty unless refine_by_variance() makes the mesh.
 std::vector<std::uint8_t> leaves_that_blur(const SolverState& state);
 
 }  // namespace interflect::inline detail

@@ -13,7 +13,6 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// One jittered ray through each cell of a grid over the picture, about `rays` of them.
 std::vector<Ray> camera_rays(const WeightedView& w, const Imath::V3d& origin, int rays, std::uint64_t key) {
     const int rows = std::max(1, static_cast<int>(std::sqrt(static_cast<float>(rays) / w.aspect)));
     const int columns = std::max(1, static_cast<int>(static_cast<float>(rows) * w.aspect));

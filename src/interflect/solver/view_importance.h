@@ -14,49 +14,46 @@
 
 namespace interflect::inline detail {
 
-/// The points that camera rays hit, spread evenly over the picture. Kept as points, 20 bytes each, so
-/// that they can be handed to elements anew whenever the mesh has changed.
+/// Hit points of camera rays, spread evenly over the pictures. Points take 20 bytes each and are reassigned when the
+/// mesh changes.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Traces more camera rays on all threads, jittered, one to a cell of the picture plane; about so many for each
-    /// view.
+    /// Adds about `rays_per_view` jittered camera rays per view, on all threads.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
-    bool empty() const { return points_.empty(); }  ///< No view shows anything.
-    std::int64_t rays() const { return rays_; }     ///< Asked for so far, of all views.
+    bool empty() const { return points_.empty(); }  ///< No view shows a surface.
+    std::int64_t rays() const { return rays_; }     ///< Requested for all views.
     std::int64_t views() const { return std::ssize(views_); }
-    /// Share of the pictures that shows surfaces, in [0, 1].
+    /// Returns the share of the pictures that shows surfaces, in [0, 1].
     double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
-    /// v = V / A of every element [1/m^2]: V is the share of the picture that shows the element,
-    /// weighted over the views; sum of V over what all views hit = 1, and what is seen through panes of glass counts
-    /// as much as comes through. Inner elements have the mean of their children.
-    /// @param at_patches  Spread each patch's V evenly over it.
+    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element, weighted
+    /// over the views. It sums to 1 over hit surfaces, and surfaces behind panes add their transmitted share. Inner
+    /// elements have the mean of their children.
+    /// @param at_patches  Spread V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
     void archive(StateArchive& archive);
-    /// Whether all points lie on elements of this forest.
     bool fits(const ElementForest& forest) const;
 
   private:
-    /// @param share  Of each ray.
     void add_points_behind(const ElementForest& forest, const Panes& panes, std::span<const Ray> rays,
                            std::span<const Hit> hits, float share);
 
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;         // of all pictures, times shares_
-        std::uint32_t leaf;  // that holds it, when last looked up
+        float share;         // share of all pictures, times shares_
+        std::uint32_t leaf;  // result of the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;
     std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
-    double shares_ = 0, hit_shares_ = 0;  // total weight of the camera rays, and of the rays that hit a surface
+    double shares_ = 0, hit_shares_ = 0;  // total weight of camera rays, and of hits
     std::vector<Point> points_;
 };
 

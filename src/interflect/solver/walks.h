@@ -20,10 +20,10 @@ struct ReflectedPower {
     RgbD power;     ///< [lm or W]
 };
 
-/// The particles of one task; one a thread, reused.
+/// Particles of one task; one object per thread, reused.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
-    std::vector<RgbD> received_groups, reflected_groups;  ///< The power of each light group, particle by particle.
+    std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
     std::vector<Ray> rays;
     std::vector<Hit> hits;
     std::vector<Panes::HitBehind> behind;
@@ -31,18 +31,17 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks complete the transport of a pass (TransportStep::to_the_end). A surface reflects a particle with a
-/// probability equal to its reflectance. Unlike a bounce, a walk costs no time for elements that it does not visit.
+/// Random walks complete the transport of a pass (TransportStep::to_the_end). A particle survives with the probability
+/// of its reflectance. Unlike a bounce, a walk costs no time for elements that it does not visit.
 class Walks {
   public:
-    /// @param elements  Of the forest when the step began: deeper ones receive through their ancestors.
-    /// @param key       Of the random numbers of the step's walks.
+    /// @param elements  Size of the forest before the step. Newer elements receive through ancestors.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const Units& units, std::uint32_t elements, std::uint64_t key);
 
-    /// Adds a particle at the hit point of a ray. The caller appends its power by light group to `received_groups`.
+    /// Adds a particle at a hit point. The caller appends its power by light group to `received_groups`.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, Walkers& walkers) const;
-    /// Traces all added particles until they are absorbed or escape. @param task  Key of the random numbers.
+    /// Traces particles until they are absorbed or escape. @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) const;
 
   private:
