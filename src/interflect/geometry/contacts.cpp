@@ -28,9 +28,8 @@ constexpr double narrow = 2e-3;
 
 constexpr std::size_t facets_at_once = 256;
 
-/// Length above which slivers of a triangulated flat surface are cut across, as a share of the width that the surface
-/// has along them. The error of `slivers` (experiments/run audit) is halved from 1/4 to 1/16, and falls no further at
-/// 1/32.
+/// Slivers of a flat surface are cut across into pieces no longer than this share of the width that the surface has
+/// along them. With 1/16 the error of blocks of pixels in `slivers` (experiments/run audit) falls from 8.8% to 1.3%.
 constexpr double longest_sliver_share = 1.0 / 16;
 
 /// The pieces of a facet; none where it stays whole.
