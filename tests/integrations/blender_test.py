@@ -52,6 +52,15 @@ class Addon(unittest.TestCase):
         self.assertGreater(found["lit_objects"], 0)
         self.assertGreater(found["images"], 0)
 
+    def test_sheets_lit_on_both_sides_are_opaque_in_cycles(self):
+        """Both sides of a sheet are in one place in the file, where Cycles skips one of them."""
+        for kind in ("sheets_vertex", "sheets_lightmap", "sheets_magnified"):
+            with self.subTest(kind):
+                found = self.blender(kind)
+                self.assertEqual(found["result"], ["FINISHED"])
+                self.assertLess(found["sky"], 1e-6)
+                self.assertEqual(found["through_corners"], 0)
+
     def test_three_bakes_leave_what_one_leaves(self):
         for kind in ("three_vertex", "three_lightmaps"):
             with self.subTest(kind):

@@ -7,6 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import bmesh
 import bpy
 
 case, command, out = sys.argv[sys.argv.index("--") + 1 :]
@@ -14,7 +15,7 @@ bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.ops.preferences.addon_enable(module="interflect")
 bpy.context.preferences.addons["interflect"].preferences.command = command
 import interflect
-from interflect import area_lamps, exchange, pipeline, result
+from interflect import area_lamps, exchange, lit_sides, pipeline, result
 
 KINDS_OF_DATA = ("objects", "collections", "meshes", "cameras", "lights", "materials", "node_groups", "images", "scenes", "worlds")
 
@@ -241,6 +242,39 @@ def instances() -> dict:
     return found
 
 
+def sheets(kind: str, magnified: float = 1) -> dict:
+    """A box of sheets without its front, under a sky that lights both sides of each sheet. Returns the shares of
+    pixels that show, from inside, the sky through the sheets, and, from outside, a lamp that fills the box through its
+    corners. Moving the sides farther apart magnifies cracks that are thinner than a pixel."""
+    lit_sides.RELATIVE_DISTANCE *= magnified
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 1.25))
+    box = bpy.context.object
+    box.scale = 4, 3, 2.5
+    box.data.materials.append(bpy.data.materials.new("grey"))
+    editable = bmesh.new()
+    editable.from_mesh(box.data)
+    bmesh.ops.delete(editable, geom=[face for face in editable.faces if face.normal.y < -0.5], context="FACES")
+    editable.to_mesh(box.data)
+    new_world()
+    found = bake(kind)
+    camera = put("camera", bpy.data.cameras.new("camera"), (0.3, -1, 1.2))
+    bpy.context.scene.camera = camera
+    camera.data.lens, camera.data.clip_start = 18, 0.01
+    camera.rotation_euler = (math.pi / 2, 0, 0)  # away from the missing front
+    sky = 1 - sum(picture(width=128, height=96)[3::4]) / (128 * 96)
+    lamp = bpy.data.materials.new("lamp")
+    lamp.use_nodes = True
+    lamp.node_tree.nodes["Principled BSDF"].inputs["Emission"].default_value = (0, 1, 0, 1)
+    lamp.node_tree.nodes["Principled BSDF"].inputs["Emission Strength"].default_value = 1e6
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 1.25))
+    bpy.context.object.scale = 3.99, 2.99, 2.49
+    bpy.context.object.data.materials.append(lamp)
+    camera.location, camera.data.lens = (5, 6, 6), 50
+    camera.rotation_euler = (math.radians(59), 0, math.radians(140))  # towards the box
+    through_corners = sum(green > 100 for green in picture(width=128, height=96)[1::4]) / (128 * 96)
+    return {**found, "sky": sky, "through_corners": through_corners}
+
+
 SHAPES = {"SQUARE": (0.8, 0.3), "RECTANGLE": (0.9, 0.4), "DISK": (0.8, 0.3), "ELLIPSE": (0.9, 0.4)}
 
 
@@ -277,19 +311,24 @@ def panels() -> dict:
 
 def powers_seen() -> list:
     """Measures the mean light in each quarter of a picture from below, with a lamp in its middle."""
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 1, False
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 256, 64, 100
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder, "below.exr"))
-        bpy.ops.render.render(write_still=True)
-        picture = bpy.data.images.load(scene.render.filepath)
-        pixels = list(picture.pixels)
-        bpy.data.images.remove(picture)
-    red = [pixels[4 * i] for i in range(256 * 64)]
+    red = picture(width=256, height=64)[0::4]
     return [sum(red[i] for i in range(256 * 64) if i % 256 // 64 == part) / 64**2 for part in range(4)]
+
+
+def picture(width: int, height: int) -> list:
+    """Renders in Cycles with a transparent sky. Returns red, green, blue and opacity of each pixel."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.render.film_transparent = "CYCLES", True
+    scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 64, 1, False
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
+    scene.render.image_settings.file_format, scene.render.image_settings.color_mode = "OPEN_EXR", "RGBA"
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath = str(Path(folder, "picture.exr"))
+        bpy.ops.render.render(write_still=True)
+        rendered = bpy.data.images.load(scene.render.filepath)
+        pixels = list(rendered.pixels)
+        bpy.data.images.remove(rendered)
+    return pixels
 
 
 def warnings() -> dict:
@@ -420,6 +459,9 @@ def hdri_world() -> dict:
 CASES = {
     "vertex": lambda: first_bake("VERTEX"),
     "lightmap": lambda: first_bake("LIGHTMAP"),
+    "sheets_vertex": lambda: sheets("VERTEX"),
+    "sheets_lightmap": lambda: sheets("LIGHTMAP"),
+    "sheets_magnified": lambda: sheets("LIGHTMAP", 256),
     "three_vertex": lambda: three_bakes("VERTEX"),
     "three_lightmaps": lambda: three_bakes("LIGHTMAP"),
     **{each.__name__: each for each in (visibility, user, scenes, instances, panels, warnings, failures)},

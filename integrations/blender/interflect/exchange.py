@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import numpy
 
-from . import area_lamps, result
+from . import area_lamps, lit_sides, result
 from .visibility import only_rendered
 
 if bpy.app.version < (3, 5):
@@ -75,6 +75,8 @@ def import_lit(scene, path: Path, replaced: list[str], warnings: list[str]) -> N
                 made.select_set(False, view_layer=temporary.view_layers[0])
                 if made.type not in ("CAMERA", "LIGHT"):
                     lit.objects.link(made)
+            temporary.view_layers[0].update()  # computes the places of the objects
+            lit_sides.separate(lit.objects)
             scene.collection.children.link(lit)
         finally:
             bpy.data.scenes.remove(temporary)

@@ -75,7 +75,7 @@ def _undo_exposure(material, notes):
 
 
 def _output(nodes, links, shader):
-    """Shows front sides only: the file has both sides of a face at the same place, each with its own light."""
+    """Shows front sides only: each side of a face has its own light, and lit_sides.py moves it in front of the other."""
     side, through, shown = (nodes.new(f"ShaderNode{kind}") for kind in ("NewGeometry", "BsdfTransparent", "MixShader"))
     links.new(side.outputs["Backfacing"], shown.inputs["Fac"])
     links.new(shader.outputs[0], shown.inputs[1])
