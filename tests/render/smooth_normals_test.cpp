@@ -104,6 +104,28 @@ TEST(SmoothNormals, KeepTheMeanOfEachPatch) {
         if (before[p].x > 0.3f) EXPECT_NEAR(irradiance[p].x, before[p].x, 2e-3f);  // without clamping at zero
 }
 
+/// A shadow edge between two nearly coplanar patches, whose corners have very different normals because of others: G
+/// would be the step over 0.1 degrees. Seen to fail without a bound: irradiance grew to 80 times the largest.
+TEST(SmoothNormals, AreNotExtrapolatedFromNearlyCoplanarNeighbours) {
+    Scene scene;
+    add_material(scene, Rgb(0.5f), Rgb(0));
+    scene.objects = {""};
+    const auto fold = [](float x) { return x < 1 ? 0.0f : x < 2 ? 0.002f * (x - 1) : 0.002f + 0.4f * (x - 2); };
+    for (const float x : {0.0f, 1.0f, 2.0f, 3.0f})
+        for (const float y : {0.0f, 1.0f}) scene.vertices.emplace_back(x, y, fold(x));
+    for (std::uint32_t k = 0; k < 6; k += 2) {
+        Patch patch;
+        patch.vertices = {k, k + 2, k + 3, k + 1};
+        scene.patches.push_back(patch);
+    }
+    ElementForest forest(scene, 1 << 10);
+    subdivide_all(forest, 2);
+    std::vector<Rgb> irradiance;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) irradiance.emplace_back(forest.patch(e) == 0 ? 1.0f : 0.1f);
+    ElementVertices(scene, forest).normals().apply(forest, irradiance);
+    for (const Rgb& h : irradiance) EXPECT_LE(h.x, 1.5f);
+}
+
 /// Two squares at an angle of 20 degrees, below the default crease angle.
 Scene folded_square(const V3f& normal_of_first, const V3f& normal_of_second) {
     Scene scene;

@@ -13,8 +13,9 @@ namespace {
 /// A patch is curved if the normal at a corner differs from its own by more than this cosine: 0.5 degrees, above the
 /// rounding of normals in readers (0.2 degrees).
 constexpr float cosine_of_flat = 0.99996f;
-/// Regularises fits in directions in which the surface is not curved; the bias in the others is 0.1%.
-constexpr double relative_ridge = 1e-3;
+/// Ridge of the fits, relative to the variation of the normal over the patch: bounds G where neighbours are nearly
+/// coplanar and steps are noise or shadows. On a regular mesh, G is 2% too small.
+constexpr double relative_ridge = 0.02;
 
 std::uint32_t corner_count(const Patch& patch) { return static_cast<std::uint32_t>(patch.vertex_count()); }
 
@@ -104,21 +105,25 @@ SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std
         return mean_along_edge(forest, irradiance, patch, edge, forest.geometry(patch).is_triangle());
     };
     Imath::M33d squares(0, 0, 0, 0, 0, 0, 0, 0, 0);
-    Gradient products;
-    products.fill(Imath::V3d(0));
+    Gradient found{{Imath::V3d(0), Imath::V3d(0), Imath::V3d(0)}, Rgb(0)};
     for (const Neighbour& n : neighbours(curved)) {
         const Imath::V3d turn(forest.geometry(n.patch).normal() - forest.geometry(curved.patch).normal());
         const Rgb step = along(n.patch, n.other_edge) - along(curved.patch, n.edge);
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) squares[i][j] += turn[i] * turn[j];
-        for (std::size_t c = 0; c < 3; ++c) products[c] += turn * static_cast<double>(step[static_cast<int>(c)]);
+        for (int c = 0; c < 3; ++c) {
+            found.by_normal[static_cast<std::size_t>(c)] += turn * static_cast<double>(step[c]);
+            found.largest_change[c] = std::max(found.largest_change[c], std::abs(step[c]));
+        }
     }
-    const double trace = squares[0][0] + squares[1][1] + squares[2][2];
-    if (!(trace > 0)) return products;
-    for (int i = 0; i < 3; ++i) squares[i][i] += relative_ridge * trace;
+    const bool is_triangle = forest.geometry(curved.patch).is_triangle();
+    double variation = 0;
+    for (std::size_t c = 0; c < (is_triangle ? 3 : 4); ++c)
+        variation += static_cast<double>((curved.normals[c] - curved.mean_normal(is_triangle)).length2());
+    for (int i = 0; i < 3; ++i) squares[i][i] += relative_ridge * variation;
     const Imath::M33d inverse = squares.inverse();
-    for (Imath::V3d& g : products) g = g * inverse;
-    return products;
+    for (std::size_t c = 0; c < 3; ++c) found.by_normal[c] = found.by_normal[c] * inverse;
+    return found;
 }
 
 void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const {
@@ -147,8 +152,10 @@ void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradia
             change_below(curved.patch, [&](std::uint32_t leaf) {
                 const Imath::V3d turn(curved.normal_at(is_triangle, forest.cell(leaf).centre(is_triangle)) - mean);
                 for (int c = 0; c < 3; ++c) {
-                    const double change = gradients[i][static_cast<std::size_t>(c)].dot(turn);
-                    irradiance[leaf][c] = std::max(0.0f, irradiance[leaf][c] + static_cast<float>(change));
+                    const auto change =
+                        static_cast<float>(gradients[i].by_normal[static_cast<std::size_t>(c)].dot(turn));
+                    const float most = gradients[i].largest_change[c];
+                    irradiance[leaf][c] = std::max(0.0f, irradiance[leaf][c] + std::clamp(change, -most, most));
                 }
             });
         }

@@ -19,7 +19,8 @@ namespace interflect::inline detail {
 ///
 /// with n(x) interpolated from the normals at the patch's corners and n_mean the mean of these. G, the gradient of
 /// irradiance by normal, is a least-squares fit to the steps of irradiance across the edges to the patch's neighbours,
-/// where the place is the same and the normal differs. The mean over a patch stays the same.
+/// where the place is the same and the normal differs. No change exceeds the largest of these steps. The mean over a
+/// patch stays the same.
 class SmoothNormals {
   public:
     SmoothNormals() = default;
@@ -47,8 +48,10 @@ class SmoothNormals {
         V3f normal_at(bool is_triangle, Parameters p) const;
         V3f mean_normal(bool is_triangle) const;
     };
-    /// Change of irradiance per change of the normal: a vector for each channel.
-    using Gradient = std::array<Imath::V3d, 3>;
+    struct Gradient {
+        std::array<Imath::V3d, 3> by_normal;  ///< G: change of irradiance per change of the normal, for each channel.
+        Rgb largest_change;  ///< The largest step to a neighbour: no change within the patch is larger.
+    };
 
     Gradient gradient(const ElementForest& forest, std::span<const Rgb> irradiance, const CurvedPatch& curved) const;
     std::span<const Neighbour> neighbours(const CurvedPatch& curved) const {
