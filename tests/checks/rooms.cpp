@@ -21,6 +21,19 @@ Scene two_sided_room(V3f size) {
     return scene;
 }
 
+Scene thick_walled_room(V3f size, float thickness) {
+    Scene scene = closed_box(size, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
+    add_box(scene, V3f(-thickness), size + V3f(thickness), 0);
+    return scene;
+}
+
+void add_two_sided_box(Scene& scene, V3f low, V3f high, std::uint32_t material) {
+    const V3f size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+    for (const auto& [corner, u, v] : {std::array{low, y, z}, std::array{low + x, z, y}, std::array{low, z, x},
+                                       std::array{low + y, x, z}, std::array{low, x, y}, std::array{low + z, y, x}})
+        add_rectangle(scene, corner, u, v, material, 1, 1, true);
+}
+
 void open_ceiling(Scene& scene, V2f low, V2f high) {
     float ceiling = 0;
     for (const V3f& x : scene.vertices) ceiling = std::max(ceiling, x.z);

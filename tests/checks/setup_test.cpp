@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -170,6 +172,33 @@ TEST_F(ShutOutSky, IsMeantWhereTheSceneIsLowerThanARoom) {
     scene = two_sided_room({4, 5, 1.9f});
     scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(1)}});
     EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+/// Walls of 5 cm and more were not seen as closed.
+TEST_F(ShutOutSky, OfARoomWithThickWallsOfOneSidedFaces) {
+    for (const float thickness : {0.02f, 0.05f, 0.1f, 0.2f, 0.3f}) {
+        scene = thick_walled_room(room_size, thickness);
+        scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(1)}});
+        EXPECT_THAT(kinds(scene), ElementsAre("shut-out-sky")) << thickness;
+    }
+}
+
+TEST_F(ShutOutSky, IsMeantForSolidsOfOneSidedFaces) {
+    scene.vertices.clear(), scene.patches.clear();
+    add_box(scene, {0, 0, 0}, room_size, 0);
+    add_box(scene, {6, 0, 0}, {9, 4, 8}, 0);
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    add_rectangle(scene, {-5, -5, 0}, {20, 0, 0}, {0, 20, 0}, 0);  // the ground
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+/// Above the roof, 37% of the light left the scene and none entered the room.
+TEST(Setup, LuminaireOutsideOfARoomWithThickWalls) {
+    for (const float z : {2.5f, 3.5f, 4.0f}) {
+        Scene scene = thick_walled_room(room_size, 0.2f);
+        add_light(scene, downlight(), {2, 2, z});
+        EXPECT_EQ(testing::Value(kinds(scene), ElementsAre("outside-luminaire")), z > 3) << z;
+    }
 }
 
 TEST(Setup, RoomInCentimetresReadAsMetres) {

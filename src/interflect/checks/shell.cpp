@@ -11,7 +11,8 @@ namespace interflect::inline detail {
 
 namespace {
 
-constexpr int most_escaped_inside = 2;  // of SightLines::rays_per_point
+constexpr int most_escaped_inside = 2;                                 // of SightLines::rays_per_point
+constexpr int least_escaped_outside = SightLines::rays_per_point / 4;  // walls on a ground have half
 constexpr std::uint64_t seed_of_origins = 11, seed_of_directions = 12, seed_of_sides = 13;
 
 /// Random lines by index: uniform and isotropic in the sphere around the scene.
@@ -61,7 +62,7 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
     constexpr std::uint64_t count = 128;
     constexpr int least_met = 32;
     const OuterLines line(scene);
-    int met = 0, enclosing = 0, paths = 0;
+    int met = 0, solid = 0, enclosing = 0, paths = 0;
     float length = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
         const Hit hit = lines.first_surface(line(i));
@@ -70,13 +71,24 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
         SightLines::Outlook inner = lines.from_surface(face.back, -face.normal, seed_of_sides, most_escaped_inside);
         if (inner.escaped > most_escaped_inside)
-            inner = lines.from_surface(face.front, face.normal, seed_of_sides, most_escaped_inside);
+            inner = lines.from_surface(face.front, face.normal, seed_of_sides, least_escaped_outside);
+        if (inner.escaped > least_escaped_outside && scene.patches[hit.patch].other_side == none) {
+            // The outer side of a thick wall of one-sided faces: the inner side lies further along the line.
+            const Ray behind{face.back, line(i).direction};
+            const Hit inner_hit = lines.first_surface(behind);
+            if (inner_hit.patch == none) {
+                ++solid;
+                continue;
+            }
+            const MetFace inner_face = met_face(scene, ray_caster, behind, inner_hit);
+            inner = lines.from_surface(inner_face.front, inner_face.normal, seed_of_sides, most_escaped_inside);
+        }
         if (inner.escaped > most_escaped_inside) continue;
         ++enclosing;
         paths += inner.met;
         length += inner.distance;
     }
-    if (met < least_met || 10 * enclosing < 9 * met) return {};
+    if (met < least_met || 2 * solid > met || 10 * enclosing < 9 * (met - solid)) return {};
     return {true, is_seen_inside(scene, lines), length / static_cast<float>(paths)};
 }
 
