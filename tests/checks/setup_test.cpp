@@ -257,6 +257,24 @@ TEST(Setup, MeshWithYUp) {
     EXPECT_THAT(kinds(seen), IsEmpty());
 }
 
+/// A corridor that is narrower than high, with things on a wall; they and the narrow side suggested that y is up.
+TEST(Setup, CorridorWithPicturesOrLampsOnAWall) {
+    for (const V3f& size : {V3f(1, 0.04f, 0.8f), V3f(0.2f, 0.2f, 0.2f)}) {
+        Scene scene = closed_box({30, 2.2f, 3}, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
+        scene.name = "corridor.obj";
+        scene.objects = {""};
+        for (int i = 0; i < 9; ++i) {
+            const std::size_t first = scene.patches.size();
+            const V3f corner(1 + 3 * static_cast<float>(i), 0.001f, 1.2f);
+            add_box(scene, corner, corner + size, 0);
+            scene.objects.push_back("thing");
+            for (std::size_t k = first; k < scene.patches.size(); ++k)
+                scene.patches[k].object = static_cast<std::uint32_t>(i + 1);
+        }
+        EXPECT_THAT(kinds(scene), IsEmpty()) << size;
+    }
+}
+
 TEST(Setup, IsSoundInMadeScenes) {
     EXPECT_THAT(kinds(make_maze({.rooms = 9, .furniture = true})), IsEmpty());
     EXPECT_THAT(kinds(make_office({})), IsEmpty());

@@ -72,8 +72,15 @@ std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
                           [&](const Patch& patch) { return connected.find(patch.vertices[0]); });
 }
 
-/// Per axis and direction: fraction of objects that start within a hundredth of the scene's size of its lower end. All
-/// 0 for fewer than four objects.
+/// Whether a box is thin along an axis, such as a picture along the normal of its wall.
+bool is_thin(const Imath::Box3f& box, int axis) {
+    constexpr float thin = 0.25f;  // pictures and radiators; tables and beds are higher
+    const V3f size = box.size();
+    return size[axis] < thin * std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
+}
+
+/// Per axis and direction: fraction of objects that start within a hundredth of the scene's size of its lower end and
+/// are not thin along the axis, as things on a wall are. All 0 for fewer than four objects.
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};
@@ -84,6 +91,7 @@ std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const float distance = least_distance * all.size().length();
     for (const Imath::Box3f& box : boxes)
         for (int axis = 0; axis < 3; ++axis) {
+            if (is_thin(box, axis)) continue;
             shares[axis][0] += box.min[axis] - all.min[axis] < distance;
             shares[axis][1] += all.max[axis] - box.max[axis] < distance;
         }
@@ -92,11 +100,20 @@ std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     return shares;
 }
 
+/// Whether a scene is lower along an axis than along the others. Corridors may be narrower than high, so that elongated
+/// scenes must be half as low.
+bool is_flat(const V3f& extent, int axis) {
+    constexpr float flat = 0.8f, elongated_flat = 0.5f;  // rooms of 4 x 5 x 3 m; corridors of 30 x 2.2 x 3 m
+    constexpr float elongated = 4;
+    const float a = extent[(axis + 1) % 3], b = extent[(axis + 2) % 3];
+    const bool is_elongated = std::max(a, b) > elongated * std::min(a, b);
+    return extent[axis] < (is_elongated ? elongated_flat : flat) * std::min(a, b);
+}
+
 }  // namespace
 
 const char* find_other_up_axis(const Scene& scene) {
     constexpr double least_standing = 0.5, least_advantage = 0.25;
-    constexpr float flat = 0.8f;  // rooms of 4 x 5 x 3 m
     if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
     const char* const of_light = axis_of_light(scene);
     const auto standing = standing_objects(scene);
@@ -108,8 +125,7 @@ const char* find_other_up_axis(const Scene& scene) {
             const bool stands = standing[axis][sign] >= least_standing &&
                                 standing[axis][sign] >= standing[2][0] + least_advantage &&
                                 standing[axis][sign] > standing[axis][1 - sign];
-            const bool is_flat = extent[axis] < flat * std::min(extent[(axis + 1) % 3], extent[(axis + 2) % 3]);
-            if (shines + stands + is_flat >= 2) return axis_names[axis][sign];
+            if (shines + stands + is_flat(extent, axis) >= 2) return axis_names[axis][sign];
         }
     return nullptr;
 }
