@@ -34,7 +34,7 @@ struct ValidateOptions {
 
 /// Finds problems that would spoil a solution. Call it with the scene as read, before cut_at_contacts(). Problems:
 /// "degenerate-face" (without area, omitted by the reader), "duplicate-face" (same corners as another), "inverted-face"
-/// (one-sided, with the scene behind it), "inverted-lamp" (its front is against a surface, its back is not),
+/// (one-sided, with the scene and its light behind it), "inverted-lamp" (its front is against a surface, its back is not),
 /// "hidden-lamp" (covered, or enclosed by close surfaces), "zero-power-lamp", "high-reflectance", "no-light",
 /// "implausible-size", "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane),
 /// "open-edge" (belongs to one face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces

@@ -275,6 +275,30 @@ TEST(Setup, CorridorWithPicturesOrLampsOnAWall) {
     }
 }
 
+std::int64_t inverted_faces(const Scene& scene) {
+    for (const Finding& finding : validate(scene, RayCaster(scene)))
+        if (finding.kind == "inverted-face") return finding.count;
+    return 0;
+}
+
+/// The bottom of a solid and the outer side of a wall see nothing and have the scene behind them, as they should.
+TEST(InvertedFace, IsNotABottomOrAnOuterSide) {
+    Scene scene = closed_box(room_size, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
+    add_box(scene, {3, 4, 0}, {3.9f, 4.9f, 2}, 0);
+    EXPECT_EQ(inverted_faces(scene), 0);
+    EXPECT_EQ(inverted_faces(thick_walled_room(room_size, 0.02f)), 0);
+    EXPECT_EQ(inverted_faces(make_two_rooms({})), 0);
+}
+
+TEST(InvertedFace, IsAWallThatFacesOutwards) {
+    for (std::size_t wall = 0; wall < 6; ++wall) {
+        Scene scene = closed_box(room_size, 1, {{"wall", Rgb(0.5f), Rgb(0)}});
+        add_box(scene, {1, 1, 0}, {1.9f, 1.9f, 2}, 0);
+        std::swap(scene.patches[wall].vertices[1], scene.patches[wall].vertices[3]);
+        EXPECT_EQ(inverted_faces(scene), 1) << wall;
+    }
+}
+
 TEST(Setup, IsSoundInMadeScenes) {
     EXPECT_THAT(kinds(make_maze({.rooms = 9, .furniture = true})), IsEmpty());
     EXPECT_THAT(kinds(make_office({})), IsEmpty());

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "interflect/base/random.h"
+#include "interflect/checks/one_way.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/geometry/texture_mapping.h"
@@ -45,15 +46,18 @@ Surroundings FaceSurroundings::look(std::uint32_t patch, Side side) const {
     const PatchGeometry geometry(scene_, scene_.patches[patch]);
     const V3f normal = side == Side::front ? geometry.normal() : -geometry.normal();
     const float near = close_by * std::sqrt(geometry.area());
-    int blocked = 0, escaped = 0;
+    int blocked = 0, escaped = 0, one_way = 0;
     for (std::uint64_t i = 0; i < rays_of_face; ++i) {
         const auto words = random_words(seed_of_surroundings + 1, i);
         const V3f x = geometry.point(geometry.uniform_parameters(unit_float(words[0]), unit_float(words[1])));
-        const Hit hit = first_hit(ray_caster_, {x + ray_caster_.ray_offset(patch) * normal, direction(normal, i)});
+        const Ray ray{x + ray_caster_.ray_offset(patch) * normal, direction(normal, i)};
+        const Hit hit = first_hit(ray_caster_, ray);
         escaped += hit.patch == none;
         blocked += hit.patch != none && hit.distance < near;
+        one_way += hit.patch != none && is_one_way(scene_, ray_caster_, ray, hit);
     }
-    return {static_cast<float>(blocked) / rays_of_face, static_cast<float>(escaped) / rays_of_face};
+    return {static_cast<float>(blocked) / rays_of_face, static_cast<float>(escaped) / rays_of_face,
+            static_cast<float>(one_way) / rays_of_face};
 }
 
 template <class Start>

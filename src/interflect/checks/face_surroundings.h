@@ -13,6 +13,7 @@ enum class Side { front, back };
 struct Surroundings {
     float blocked = 0;  ///< Hit an object closer than a tenth of the face's size.
     float escaped = 0;  ///< Left the scene.
+    float one_way = 0;  ///< Hit an object from which no light returns along them (is_one_way()).
 };
 
 /// Samples surroundings of faces and lamps with cosine-distributed rays.
@@ -20,7 +21,7 @@ class FaceSurroundings {
   public:
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
 
-    /// Traces 64 rays.
+    /// Traces 64 rays and back.
     Surroundings look(std::uint32_t patch, Side side) const;
     /// Whether light from this source, reflected eight times independent of reflectance, stays within a tenth of the
     /// scene's size and within five times the lamp's size or 0.5 m. Traces 64 paths through glass.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interflect/checks/one_way.h"
 #include "interflect/checks/shell.h"
-#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect::inline detail {
 
@@ -12,17 +12,6 @@ namespace {
 
 constexpr std::size_t most_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
-
-/// Whether the reversed ray is blocked: the ray has passed the back of a one-sided face.
-bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray, const Hit& hit) {
-    constexpr float rounding = 1e-4f, offsets = 8;
-    const float offset = ray_caster.ray_offset(hit.patch);
-    const V3f normal = PatchGeometry(scene, scene.patches[hit.patch]).normal();
-    const Ray reversed{ray.origin + hit.distance * ray.direction + offset * normal, -ray.direction};
-    Hit back;
-    ray_caster.trace({&reversed, 1}, {&back, 1});
-    return back.patch != none && back.distance < hit.distance * (1 - rounding) - offsets * offset;
-}
 
 /// Distance of rays from a surface on which the point lies.
 float offset_of_points(const Scene& scene) {

@@ -95,14 +95,15 @@ class Validator {
         return result;
     }
 
-    /// One-sided faces whose front sees only the void and whose back sees only the scene.
+    /// One-sided faces whose front sees only the void and whose back sees only the scene, from which light reaches it.
+    /// Light does not reach the back of the bottom of a solid, or of the outer face of a thick wall.
     void add_inverted_faces() {
         Finder inverted = finder("inverted-face", "one-sided faces have the scene behind them and nothing before them",
                                  "turn them round: reverse the order of their vertices");
         for (const std::uint32_t i :
              sampled_patches([&](std::uint32_t k) { return scene_.patches[k].other_side == none && !emits(k); })) {
             const Surroundings front = surroundings_.look(i, Side::front), back = surroundings_.look(i, Side::back);
-            if (front.escaped == 1 && back.escaped == 0) inverted.add_patch(i);
+            if (front.escaped == 1 && back.escaped == 0 && 2 * back.one_way < 1) inverted.add_patch(i);
         }
         inverted.append_to(findings_);
     }
