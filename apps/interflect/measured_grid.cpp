@@ -76,7 +76,9 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
     const auto is_dark = [&](std::size_t i) {
         return faults[i] == PointFault::none && measured[i].is_measured() && measured[i].sum() == Rgb(0);
     };
-    warn_of_points(points, "receive no light at all and probably lie inside solids or outside of the scene", is_dark);
+    warn_of_points(points,
+                   "receive no light at all: they are in a room without light, inside a solid, or outside of the scene",
+                   is_dark);
 }
 
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,

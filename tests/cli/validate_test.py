@@ -152,7 +152,7 @@ class Misplaced(CommandTest):
         self.assertEqual(self.warnings(*probe, *at["1.5,1.5,1"]), [])
         outside, dark = self.warnings(*probe, *at["1.5,1.5,1"], *at["1.5,1.5,2.6"], *at["0.7,0.7,0.5"])
         self.assertIn("1 of 3 measuring points lie outside of the scene, such as (1.5, 1.5, 2.6)", outside)
-        self.assertIn("1 of 3 measuring points receive no light at all", dark)
+        self.assertIn("1 of 3 measuring points receive no light at all: they are in a room without light, inside", dark)
         self.assertIn("such as (0.7, 0.7, 0.5)", dark)
 
     def test_unit_and_up_axis(self):
