@@ -109,14 +109,123 @@ TEST(Setup, LuminaireBesideAnOpenScene) {
     EXPECT_THAT(kinds(scene), ElementsAre("outside-luminaire"));
 }
 
-TEST(Setup, OpeningLargerThanTheScene) {
+/// A luminaire above the middle of the room, with an opening of this length along the room's width of 4 m.
+bool is_too_wide(Scene room, float length) {
+    const auto web = downlight();
+    web->opening.size = {length, 0.1f, 0};
+    add_light(room, web, {2, 2.5f, 2.9f});
+    return testing::Value(kinds(room), testing::Contains("wide-opening"));
+}
+
+/// 23% of the longer opening are outside. It was compared with the diagonal of 7.07 m.
+TEST(Setup, OpeningLargerThanTheRoom) {
+    EXPECT_FALSE(is_too_wide(two_sided_room(room_size), 3.99f));
+    EXPECT_TRUE(is_too_wide(two_sided_room(room_size), 5.2f));
+    EXPECT_TRUE(is_too_wide(thick_walled_room(room_size, 0.1f), 5.2f));
+    EXPECT_TRUE(is_too_wide(two_sided_room({4, 5, 3.1f}), 5.2f));
+    EXPECT_FALSE(is_too_wide(two_sided_room({6, 5, 3}), 3.99f));
+}
+
+/// A part of the room's luminaire is behind a beam, but in the room.
+TEST(Setup, OpeningAcrossABeam) {
+    Scene scene = two_sided_room(room_size);
+    add_two_sided_box(scene, {2.5f, 0, 2.7f}, {2.6f, 5, 3});
+    EXPECT_FALSE(is_too_wide(scene, 3));
+}
+
+TEST(Setup, OpeningLargerThanAnOpenScene) {
     for (const float length : {7.0f, 7.1f}) {  // the room's diagonal is 7.07 m
         Scene scene = two_sided_room(room_size);
-        const auto web = downlight();
-        web->opening.size = {length, 0, 0};
-        add_light(scene, web, {2, 2.5f, 2.9f}, {0, 0, -1});
-        EXPECT_EQ(testing::Value(kinds(scene), testing::Contains("wide-opening")), length > 7.05f) << length;
+        open_ceiling(scene, {0, 0}, {4, 5});
+        EXPECT_EQ(is_too_wide(scene, length), length > 7.05f) << length;
     }
+}
+
+/// A dark room with a cabinet of 0.9 x 0.9 x 2 m.
+Scene room_with_cabinet() {
+    Scene scene = two_sided_room(room_size);
+    add_two_sided_box(scene, {3, 4, 0.01f}, {3.9f, 4.9f, 2});
+    return scene;
+}
+
+/// 59 of 63 points in a room had 0 lx, without a warning.
+TEST(EnclosedLuminaire, InACabinetOfADarkRoom) {
+    Scene scene = room_with_cabinet();
+    add_light(scene, downlight(), {3.5f, 4.5f, 1});
+    EXPECT_THAT(kinds(scene), ElementsAre("enclosed-luminaire"));
+    scene.views.push_back({"room", {1, 1, 1.5f}, {2, 2, 1}});
+    EXPECT_THAT(kinds(scene), ElementsAre("enclosed-luminaire"));
+    scene.views.push_back({"cabinet", {3.2f, 4.2f, 1.5f}, {3.5f, 4.5f, 1}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+/// It may be a small room of its own.
+TEST(EnclosedLuminaire, InACabinetOfALitRoom) {
+    Scene scene = room_with_cabinet();
+    add_light(scene, downlight(), {3.5f, 4.5f, 1});
+    add_light(scene, downlight(), {1, 1, 2.5f});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.luminaires.pop_back();
+    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(1));
+    add_rectangle(scene, {1, 1, 2.9f}, {0, 1, 0}, {1, 0, 0}, lamp);
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+TEST(EnclosedLuminaire, InThePlenumAboveACeiling) {
+    Scene scene = two_sided_room(room_size);
+    add_two_sided_box(scene, {0, 0, 3.001f}, {4, 5, 3.2f});
+    add_light(scene, downlight(), {1, 1, 2.9f});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    add_light(scene, downlight(), {1, 1, 3.1f});
+    EXPECT_THAT(kinds(scene), ElementsAre("enclosed-luminaire"));
+}
+
+TEST(EnclosedLuminaire, InALanternOfGlassOrOfMetal) {
+    Scene scene = two_sided_room(room_size);
+    scene.materials.push_back({"glass", Rgb(0), Rgb(0)});
+    scene.materials[1].transmittance = Rgb(0.5f);
+    add_two_sided_box(scene, {1.9f, 1.9f, 2}, {2.1f, 2.1f, 2.2f}, 1);
+    scene.luminaires.push_back({"bulb", 0, PointLight{{2, 2, 2.1f}, Rgb(1)}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.materials[1].transmittance = Rgb(0);
+    EXPECT_THAT(kinds(scene), ElementsAre("enclosed-luminaire"));
+}
+
+TEST(EnclosedLuminaire, RecessedInACeiling) {
+    Scene scene = two_sided_room(room_size);
+    open_ceiling(scene, {1.4f, 1.8f}, {2.1f, 2.6f});  // one patch from (1.5, 1.875) of 0.5 x 0.625 m
+    const V3f x(0.5f, 0, 0), y(0, 0.625f, 0), z(0, 0, 0.2f), o(1.5f, 1.875f, 3);
+    for (const auto& [corner, u, v] : {std::array{o, y, z}, std::array{o + x, z, y}, std::array{o, z, x},
+                                       std::array{o + y, x, z}, std::array{o + z, y, x}})
+        add_rectangle(scene, corner, u, v, 0, 1, 1, true);
+    add_light(scene, downlight(), {1.75f, 2.19f, 3.15f});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+}
+
+/// Nine closed rooms; `lamps` of them have a luminaire.
+Scene nine_rooms(int lamps) {
+    Scene scene;
+    scene.name = "rooms";
+    scene.objects.push_back("");
+    add_material(scene, Rgb(0.5f), Rgb(0));
+    for (int i = 0; i < 9; ++i) {
+        const V3f low(3.1f * static_cast<float>(i % 3), 3.1f * static_cast<float>(i / 3), 0);
+        add_two_sided_box(scene, low, low + V3f(3));
+        if (i < lamps) add_light(scene, downlight(), low + V3f(1.5f, 1.5f, 2.5f));
+    }
+    return scene;
+}
+
+TEST(EnclosedLuminaire, InOneOfManyClosedRooms) {
+    EXPECT_THAT(kinds(nine_rooms(9)), IsEmpty());
+    EXPECT_THAT(kinds(nine_rooms(3)), IsEmpty());
+    EXPECT_THAT(kinds(nine_rooms(1)), ElementsAre("enclosed-luminaire"));
+    Scene scene = nine_rooms(1);
+    scene.views.push_back({"lit", {1, 1, 1.5f}, {2, 2, 1}});
+    scene.views.push_back({"dark", {4, 1, 1.5f}, {5, 2, 1}});
+    EXPECT_THAT(kinds(scene), IsEmpty());
+    scene.views.erase(scene.views.begin());
+    EXPECT_THAT(kinds(scene), ElementsAre("enclosed-luminaire"));
 }
 
 TEST(Setup, LuminairesOfTwoFormatsWhosePlanesDiffer) {

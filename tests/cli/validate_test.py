@@ -67,11 +67,11 @@ class Validate(CommandTest):
                     for a, b in zip(first["position"], place, strict=True):
                         self.assertAlmostEqual(a, b, places=5)
 
-    def test_a_point_light_in_a_closed_box_is_hidden(self):
+    def test_a_point_light_in_a_closed_box_is_enclosed(self):
         self.write_room(LIGHT.format(z=1, intensity=5) + box((0.9, 0.9, 0.9), (1.1, 1.1, 1.1)))
-        self.assertEqual(self.findings("room.mgf")["hidden-lamp"]["count"], 1)
+        self.assertEqual(self.findings("room.mgf")["enclosed-luminaire"]["count"], 1)
         self.write_room(LIGHT.format(z=1.5, intensity=5) + box((0.9, 0.9, 0.9), (1.1, 1.1, 1.1)))
-        self.assertNotIn("hidden-lamp", self.findings("room.mgf"))
+        self.assertNotIn("enclosed-luminaire", self.findings("room.mgf"))
 
     def test_a_one_sided_wall_that_looks_out_is_inverted(self):
         inwards = room().replace(PAINT, ONE_SIDED)

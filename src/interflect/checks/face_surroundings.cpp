@@ -91,11 +91,4 @@ bool FaceSurroundings::is_enclosed(std::uint32_t patch) const {
     });
 }
 
-bool FaceSurroundings::is_enclosed(const V3f& position) const {
-    return stays_within(std::min(scene_size_ / 10, 0.5f), [&](std::uint64_t path) {
-        const V3f up(0, 0, path % 2 ? 1.0f : -1.0f);
-        return Ray{position, direction(up, path)};
-    });
-}
-
 }  // namespace interflect::inline detail

@@ -23,10 +23,9 @@ class FaceSurroundings {
 
     /// Traces 64 rays and back.
     Surroundings look(std::uint32_t patch, Side side) const;
-    /// Whether light from this source, reflected eight times independent of reflectance, stays within a tenth of the
+    /// Whether light from this face, reflected eight times independent of reflectance, stays within a tenth of the
     /// scene's size and within five times the lamp's size or 0.5 m. Traces 64 paths through glass.
     bool is_enclosed(std::uint32_t patch) const;
-    bool is_enclosed(const V3f& position) const;
 
   private:
     template <class Start>

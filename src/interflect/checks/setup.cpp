@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "interflect/checks/enclosed_lights.h"
 #include "interflect/checks/finder.h"
 #include "interflect/checks/light_places.h"
 #include "interflect/checks/shell.h"
@@ -104,7 +105,10 @@ std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_cas
     if (scene.patches.empty()) return {};
     const SightLines lines(scene, ray_caster);
     const Shell shell = find_shell(scene, ray_caster, lines);
-    std::vector<Finding> findings = find_misplaced_lights(scene, lines, shell.is_room, options.places);
+    const LocalLights lights(scene);
+    std::vector<Finding> findings = find_misplaced_lights(scene, lights, lines, shell, options.places);
+    for (Finding& finding : find_enclosed_lights(scene, ray_caster, lights, lines, options.places))
+        findings.push_back(std::move(finding));
     if (shell.is_room) add_shut_out_light(scene, ray_caster, lines, options.places, findings);
     add_unit(scene, shell, findings);
     add_up_axis(scene, findings);

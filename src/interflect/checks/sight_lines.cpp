@@ -25,6 +25,17 @@ Hit SightLines::first_surface(const Ray& ray) const {
     return hit;
 }
 
+bool SightLines::is_clear(const V3f& a, const V3f& b) const {
+    constexpr float rounding = 1e-4f;
+    const float length = (b - a).length();
+    const auto reaches = [&](const V3f& from, const V3f& to) {
+        const Hit hit = first_surface({from, (to - from) / length});
+        return hit.patch == none || hit.distance > (1 - rounding) * length;
+    };
+    // A surface within the rounding before one end is found from that end.
+    return !(length > 0) || (reaches(a, b) && reaches(b, a));
+}
+
 SightLines::Outlook SightLines::from_surface(const V3f& x, const V3f& normal, std::uint64_t key,
                                              int most_escaped) const {
     Outlook outlook;

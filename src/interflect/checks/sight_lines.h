@@ -14,6 +14,9 @@ class SightLines {
     /// First hit that is not a pane, with its distance from the start.
     Hit first_surface(const Ray& ray) const;
 
+    /// Whether nothing but panes lies between two points, in either direction.
+    bool is_clear(const V3f& a, const V3f& b) const;
+
     struct Outlook {
         int escaped = 0, met = 0;  ///< Rays that left the scene; rays that hit a surface.
         float distance = 0;        ///< Sum over the rays that hit a surface [m].

@@ -134,8 +134,6 @@ class Validator {
             if (largest_channel(rating(luminaire)) == 0)
                 dark.add({scene_.objects[luminaire.object], luminaire.name, "", scene_.origin + Imath::V3d(x),
                           position.has_value()});
-            else if (position && surroundings_.is_enclosed(x))
-                hidden.add_at(x, scene_.objects[luminaire.object], luminaire.name);
         }
         inverted.append_to(findings_);
         hidden.append_to(findings_);
