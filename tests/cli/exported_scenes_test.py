@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import zlib
 from pathlib import Path
 
-from command import BAD_INPUT, VIEWS, WRONG_USAGE, CommandTest, room
+from command import BAD_INPUT, VIEWS, WRONG_USAGE, CommandTest, room, vertices
 
 AREA = 2 * 2 * (2 * 3 + 2 * 2.5 + 3 * 2.5) + 1  # of room(): two-sided walls and a one-sided lamp [m^2]
 FAR_VIEW = ("--eye", "3000000.3,-1999999.8,1.6", "--look-at", "3000001.2,-1999997,1")
@@ -61,6 +61,9 @@ class Exported(CommandTest):
         self.write("room.views.json", json.dumps(VIEWS))
 
 
+EXPOSED = ("--exposure", "-6")
+
+
 class Meshes(Exported):
     def setUp(self):
         super().setUp()
@@ -68,21 +71,21 @@ class Meshes(Exported):
         self.leaves = self.json("info", "room.h5")["result"]["leaves"]
 
     def export(self, name, *options):
-        self.interflect("export", "room.h5", "-o", name, "--exposure", "-6", *options)
+        self.interflect("export", "room.h5", "-o", name, *options)
         return self.bytes(name)
 
     def test_ply_has_every_leaf(self):
-        content = self.export("room.ply")
+        content = self.export("room.ply", *EXPOSED)
         ply = Ply(content)
         self.assertEqual(len(ply.faces), self.leaves)
         self.assertAlmostEqual(ply.area(), AREA, places=3)
         self.assertGreater(max(len(face) for face in ply.faces), 4, "no T-junctions")
         lamp = [v for v in ply.vertices if abs(v["z"] - 2.4) < 1e-6 and v["red"] == 255]
         self.assertGreaterEqual(len(lamp), 4)  # 1000 / pi / 64 is above 1
-        self.assertEqual(self.export("again.ply"), content)
+        self.assertEqual(self.export("again.ply", *EXPOSED), content)
 
     def test_obj_has_geometry_and_materials(self):
-        text = self.export("room.obj").decode().splitlines()
+        text = self.export("room.obj", *EXPOSED).decode().splitlines()
         points = [tuple(map(float, line.split()[1:4])) for line in text if line.startswith("v ")]
         faces = [[points[int(i) - 1] for i in line.split()[1:]] for line in text if line.startswith("f ")]
         self.assertEqual(len(faces), self.leaves)
@@ -240,10 +243,20 @@ class Scenes(Exported):
     def test_refuses_names_that_the_format_cannot_hold(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
         before = self.files()
-        for name in ("a\nb.py", "a\nb.xml", "a$b.xml", "a\nb.pbrt", "a\nb.obj", "a#b.obj", "a\\b.obj"):
+        for name in ("a\nb.py", "a\nb.xml", "a$b.xml", "a\nb.pbrt", "a\nb.obj", "a#b.obj", "a\\b.obj", " a.obj"):
             result = self.interflect("export", "room.h5", "-o", name, exit_code=BAD_INPUT)
             self.assertIn("cannot hold this name", result.stderr)
             self.assertEqual(self.files(), before)
+
+    def test_many_names_that_are_shortened_alike(self):
+        """Seen to exceed the time limit when each name was numbered from 2."""
+        count = 20_000
+        faces = "".join(f"m {'x' * 100}{k} =\n\trd .5\nf v{k} v{k + 1} v{k + 2}\n" for k in range(count))
+        self.write("many.mgf", vertices(*((k % 2, k, 0) for k in range(count + 2))) + faces)
+        self.interflect("export", "many.mgf", "-o", "many.rad", timeout=30)
+        text = self.bytes("many.rad").decode()
+        for name in ("x" * 64, f"{'x' * 64}_2", f"{'x' * 64}_{count}"):
+            self.assertIn(f" {name}\n", text)
 
     def test_long_names_of_materials_are_shortened_and_numbered(self):
         """Seen to fail with "File name too long"."""

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 
 #include "interflect/base/escapes.h"
@@ -35,11 +36,13 @@ Image image_of(const Texture& texture) {
 
 std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind, std::size_t most) {
     std::set<std::string> taken;
+    std::map<std::string, int> next_numbers;  // by base name; smaller numbers are taken
     std::vector<std::string> plain;
     for (const std::string& name : names) {
         const std::string base = plain_name(name, kind).substr(0, most);
         std::string free = base;
-        for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}_{}", base, number);
+        int& number = next_numbers.try_emplace(base, 2).first->second;
+        for (; !taken.insert(free).second; ++number) free = fmt::format("{}_{}", base, number);
         plain.push_back(std::move(free));
     }
     return plain;

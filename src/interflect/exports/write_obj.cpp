@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "interflect/elements/forest.h"
+#include "interflect/error.h"
 #include "interflect/exports/exported_parts.h"
 #include "interflect/exports/lit_polygons.h"
 #include "interflect/exports/mesh_files.h"
@@ -104,6 +105,10 @@ void append_faces(std::string& text, const Scene& scene, const ElementForest& fo
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
     require_nameable(path, "#\\");  // '#' begins a comment; '\' separates folders in some readers
+    if (path.stem().string().starts_with(' '))
+        throw InputError(
+            path, 0,
+            "files of this format cannot hold this name, whose first blanks readers skip: expected one without");
     const LitPolygons polygons = lit_polygons(scene, solution);
     std::vector<ExportedFile> files = texture_files(path, scene);
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
