@@ -189,8 +189,10 @@ void print_figures(const BenchResult& result) {
         100 * result.shares[3].second, 100 * result.shares[4].second);
 }
 
-void run(const BenchArguments& options) {
+void run(const BenchArguments& options, const CLI::App& command) {
     const ThreadLimit limit(options.threads);
+    options.scene.check(command);
+    options.view.check();
     Scene scene = options.scene.load();
     SolveOptions solve_options;
     solve_options.limits.rays = options.rays;
@@ -241,7 +243,7 @@ void add_bench(CLI::App& app) {
         ->check(CLI::Range(1, 1000));
     add_threads(command, options->threads);
     command.add_flag("--json", options->json, "As JSON on stdout");
-    command.callback([options] { run(*options); });
+    command.callback([options, &command] { run(*options, command); });
 }
 
 }  // namespace interflect::command

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <system_error>
 
 #include "apps/interflect/parse.h"
+#include "interflect/formats/extension.h"
 
 namespace interflect::command {
 
@@ -21,6 +24,11 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
     return !error && canonical_a == fs::weakly_canonical(fs::absolute(b), error);
 }
 
+/// Extensions of all files that the command reads or writes, except text. They decide how a file is read.
+constexpr std::array<std::string_view, 25> known_extensions = {
+    ".mgf", ".gltf", ".glb", ".obj", ".mtl", ".ply",  ".stl", ".rad", ".vf",     ".ies", ".ldt",  ".h5", ".png",
+    ".jpg", ".jpeg", ".exr", ".hdr", ".xml", ".pbrt", ".py",  ".vtu", ".vtkhdf", ".hdf", ".html", ".htm"};
+
 }  // namespace
 
 void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs) {
@@ -34,6 +42,21 @@ void require_distinct_files(std::span<const NamedFile> inputs, std::span<const N
         for (const NamedFile& input : inputs) require_distinct(input, outputs[i]);
         for (std::size_t j = 0; j < i; ++j) require_distinct(outputs[j], outputs[i]);
     }
+}
+
+void require_no_scene_files(const Scene& scene, std::span<const NamedFile> outputs) {
+    for (const std::string& file : scene.files) {
+        const NamedFile input{"a file of the scene", file};
+        require_distinct_files({&input, 1}, outputs);
+    }
+}
+
+void require_text_name(const NamedFile& output) {
+    const std::string extension = lower_case_extension(output.path);
+    if (std::find(known_extensions.begin(), known_extensions.end(), extension) == known_extensions.end()) return;
+    throw UsageError(std::string(output.argument),
+                     fmt::format("text is written, which {} files do not hold: expected another extension, found '{}'",
+                                 extension, output.path.string()));
 }
 
 }  // namespace interflect::command

@@ -4,6 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include "interflect/scene.h"
+
 namespace interflect::command {
 
 struct NamedFile {
@@ -13,5 +15,12 @@ struct NamedFile {
 
 /// @throws UsageError if an output is an input or another output. Devices may repeat.
 void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs);
+
+/// @throws UsageError if an output is one of Scene::files.
+void require_no_scene_files(const Scene& scene, std::span<const NamedFile> outputs);
+
+/// @param output  Receives a table or JSON.
+/// @throws UsageError if its name ends like that of a scene, a solution, a picture or another kind of file.
+void require_text_name(const NamedFile& output);
 
 }  // namespace interflect::command

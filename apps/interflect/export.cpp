@@ -4,7 +4,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/distinct_files.h"
@@ -14,6 +18,7 @@
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/read_light.h"
+#include "apps/interflect/refused_options.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
@@ -44,6 +49,19 @@ struct ExportArguments {
 };
 
 constexpr const char* lightmap_group = "Lightmaps";
+
+/// Options that only some formats use.
+struct OptionsOfFormats {
+    std::vector<std::string_view> options;  // as for refuse_options()
+    std::vector<std::string_view> formats;
+};
+std::vector<OptionsOfFormats> options_of_formats() {
+    return {{{lightmap_group, "--up"}, {".glb", ".gltf"}},
+            {{"--exposure"}, {".glb", ".gltf", ".ply", ".obj"}},
+            {{"--probe-spacing", "--probe-rays"}, {".json", ".exr"}},
+            {{"--size"}, {".rad", ".xml", ".pbrt", ".py"}},
+            {{"--pixel-samples"}, {".xml", ".pbrt", ".py"}}};
+}
 
 /// Computes the exposure of `render` for the first view or an overview.
 float automatic_exposure_of(const SolvedScene& solved) {
@@ -77,6 +95,7 @@ SolvedScene read_dimmed(const ExportArguments& arguments) {
 void run_scene(const ExportArguments& arguments) {
     const bool is_solved = is_solution_file(arguments.scene.path);
     const Scene scene = is_solved ? read_dimmed(arguments).scene : arguments.scene.load();
+    require_no_scene_files(scene, std::array<NamedFile, 1>{{{"--output", arguments.output}}});
     const SceneExport exported =
         export_scene(arguments.output, scene, {arguments.size.width, arguments.size.height, arguments.samples});
     for (const auto& path : exported.files) spdlog::info("{}", path.string());
@@ -121,16 +140,33 @@ std::vector<std::filesystem::path> write_or_explain(const std::filesystem::path&
     }
 }
 
-void run(const ExportArguments& arguments, int& exit_code) {
+/// Refuses options that the format does not use.
+void check_format_options(const ExportArguments& arguments, const CLI::App& command) {
+    const std::string extension = lower_case_extension(arguments.output);
+    for (const auto& [options, formats] : options_of_formats()) {
+        std::string known;
+        for (const std::string_view format : formats) known += fmt::format(" {}", format);
+        if (std::find(formats.begin(), formats.end(), extension) == formats.end())
+            refuse_options(command, options, fmt::format("it has no effect on {}: it is for{}", extension, known));
+    }
+    constexpr std::array<std::string_view, 2> of_gathering = {"--samples", "--seed"};
+    if (arguments.lightmap.shading != LightmapShading::gather)
+        refuse_options(command, of_gathering, "it has no effect without --shading gather");
+}
+
+void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(arguments.threads);
     if (!is_scene_export(arguments.output))
         check_option("--output", [&] { return require_export_format(arguments.output); });
+    check_format_options(arguments, command);
+    arguments.scene.check(command);
     arguments.dimming.require_solution(arguments.scene.path);
     if (arguments.up && !(V3f(*arguments.up).length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
     const NamedFile output{"--output", arguments.output};
     require_distinct_files(input_files(arguments.scene, {}), {&output, 1});
     if (is_scene_export(arguments.output)) return run_scene(arguments);
     const SolvedScene solved = read_dimmed(arguments);
+    require_no_scene_files(solved.scene, {&output, 1});
     ExportOptions options;
     options.exposure = arguments.exposure.stops + (arguments.exposure.relative ? automatic_exposure_of(solved) : 0);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
@@ -224,7 +260,7 @@ void add_export(CLI::App& app, int& exit_code) {
     add_lightmap(command, *options);
     options->dimming.add_to(command);
     add_threads(command, options->threads);
-    command.callback([options, &exit_code] { run(*options, exit_code); });
+    command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
 }
 
 }  // namespace interflect::command

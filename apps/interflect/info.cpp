@@ -165,7 +165,8 @@ void add_info(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("info", "Tell what is in a scene or a solution");
     options->scene.add_to(command, std::string(scene_formats) + ", maze:ROOMS[:furniture], or solution file (.h5)");
     command.add_flag("--json", options->json, "As JSON on stdout");
-    command.callback([options] {
+    command.callback([options, &command] {
+        options->scene.check(command);
         if (is_solution_file(options->scene.path)) return print_solution_info(options->scene.path, options->json);
         const Scene scene = options->scene.load();
         const RayCaster ray_caster = make_ray_caster(scene);

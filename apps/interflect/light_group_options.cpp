@@ -22,6 +22,12 @@ void LightGroupOptions::add_to(CLI::App& app) {
         ->excludes(all);
 }
 
+void LightGroupOptions::check() const {
+    Scene without_sources;
+    without_sources.light_groups = groups;
+    check_option("--group", [&] { source_groups(without_sources); });
+}
+
 void LightGroupOptions::set_groups(Scene& scene) const {
     scene.light_groups.insert(scene.light_groups.end(), groups.begin(), groups.end());
     if (by_name) scene.light_groups = groups_by_name(scene);

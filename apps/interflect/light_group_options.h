@@ -15,6 +15,8 @@ struct LightGroupOptions {
     std::vector<LightGroup> groups;
 
     void add_to(CLI::App& app);
+    /// @throws UsageError for two groups of one name and for too many.
+    void check() const;
     /// @throws InputError for a group without sources.
     void set_groups(Scene& scene) const;
 };

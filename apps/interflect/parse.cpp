@@ -4,7 +4,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <set>
 
+#include "interflect/scene/limits.h"
 #include "interflect/solve.h"
 
 namespace interflect::command {
@@ -30,10 +32,10 @@ bool take(std::string_view& text, char c) {
     return true;
 }
 
-/// Reads three numbers, finite also in single precision.
+/// Reads three numbers within reach.
 bool take_vector(std::string_view& text, Imath::V3d& v) {
     return take_number(text, v.x) && take(text, ',') && take_number(text, v.y) && take(text, ',') &&
-           take_number(text, v.z) && is_finite(V3f(v));
+           take_number(text, v.z) && is_within_reach(v);
 }
 
 /// Reads a number from 1 to 10^18 that may end in k, M, G or T for powers of `thousand`.
@@ -123,7 +125,8 @@ double parse_share(const std::string& text) {
 Imath::V3d parse_vector(const std::string& text) {
     std::string_view rest = text;
     Imath::V3d v(0);
-    if (!take_vector(rest, v) || !rest.empty()) refuse(text, "three numbers with commas between, such as 1,2.5,-3");
+    if (!take_vector(rest, v) || !rest.empty())
+        refuse(text, "three numbers with commas between, from -1e15 to 1e15, such as 1,2.5,-3");
     return v;
 }
 
@@ -134,8 +137,8 @@ Line parse_line(const std::string& text) {
     double count = line.count;
     const bool parsed = take_vector(rest, line.a) && take(rest, ':') && take_vector(rest, line.b) &&
                         (rest.empty() || (take(rest, ':') && take_number(rest, count) && rest.empty()));
-    if (!parsed || !(count >= 2 && count <= most_points && count == std::floor(count)))
-        refuse(text, "two ends and perhaps a number of points from 2 to 1e6, such as 0,1,0.75:4,1,0.75:9");
+    if (!parsed || line.a == line.b || !(count >= 2 && count <= most_points && count == std::floor(count)))
+        refuse(text, "two different ends and perhaps a number of points from 2 to 1e6, such as 0,1,0.75:4,1,0.75:9");
     line.count = static_cast<int>(count);
     return line;
 }
@@ -148,7 +151,8 @@ Section parse_section(const std::string& text) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!take(rest, "xyz"[axis])) continue;
         double value = 0;
-        if (!take(rest, '=') || !take_number(rest, value) || !rest.empty()) refuse(text, expected);
+        if (!take(rest, '=') || !take_number(rest, value) || !rest.empty() || !(std::abs(value) <= farthest_coordinate))
+            refuse(text, expected);
         section.direction = Imath::V3d(0);
         section.point[axis] = value;
         section.direction[axis] = sign;
@@ -159,7 +163,8 @@ Section parse_section(const std::string& text) {
         double& number = i < 3 ? section.point[i] : section.direction[i - 3];
         if ((i > 0 && !take(rest, ',')) || !take_number(rest, number)) refuse(text, expected);
     }
-    if (!rest.empty() || !(V3f(section.direction.normalized()).length() > 0) || !is_finite(V3f(section.direction)))
+    if (!rest.empty() || !is_within_reach(section.point) || !is_within_reach(section.direction) ||
+        !(section.direction.length() > 0))
         refuse(text, expected);
     return section;
 }
@@ -181,10 +186,15 @@ PlacedLuminaire parse_luminaire(const std::string& text) {
     if (places.size() != position_alone && places.size() != with_aim) refuse(text, expected);
     placed.position = {places[0], places[1], places[2]};
     if (places.size() == with_aim) placed.aim = Imath::V3d(places[3], places[4], places[5]);
+    if (!is_within_reach(placed.position) || !is_within_reach(placed.aim.value_or(placed.position)))
+        refuse(text, "coordinates from -1e15 to 1e15");
+    if (placed.aim == placed.position) refuse(text, "an aim AX,AY,AZ apart from the position X,Y,Z");
+    std::set<std::string_view> given;
     const auto take_value = [&](std::string_view name, double& value) {
         if (!rest.starts_with(name)) return false;
         rest.remove_prefix(name.size());
         if (!take_number(rest, value)) refuse(text, expected);
+        if (!given.insert(name).second) refuse(text, "turn, lumens and maintenance once each");
         return true;
     };
     while (!rest.empty()) {

@@ -35,7 +35,7 @@ double parse_unit(const std::string& text);
 std::uint64_t parse_seed(const std::string& text);
 /// "2%" or "0.02" -> 0.02, above 0 and below 1.
 double parse_share(const std::string& text);
-/// "1,2.5,-3" -> (1, 2.5, -3), finite also in single precision.
+/// "1,2.5,-3" -> (1, 2.5, -3), within reach (is_within_reach()).
 Imath::V3d parse_vector(const std::string& text);
 /// "x=3" -> {(3, 0, 0), (1, 0, 0)}, "-z=1" -> {(0, 0, 1), (0, 0, -1)}, "1,2,3,0,1,1" -> {(1, 2, 3), (0, 1, 1)}.
 struct Section {
@@ -43,7 +43,7 @@ struct Section {
     Imath::V3d direction{1, 0, 0};  // of view; not zero
 };
 Section parse_section(const std::string& text);
-/// "0,0,1:2,0,1:5" -> from (0, 0, 1) to (2, 0, 1) with 5 points, from 2 to 10^6; default 11.
+/// "0,0,1:2,0,1:5" -> from (0, 0, 1) to (2, 0, 1) with 5 points, from 2 to 10^6; default 11. The ends differ.
 struct Line {
     Imath::V3d a{0, 0, 0}, b{0, 0, 0};  // [m]
     int count = 11;

@@ -93,6 +93,11 @@ void check_direction(const ProbeArguments& options) {
         throw UsageError("--direction: expected a direction that is not vertical (z)");
 }
 
+void check_exterior(const ProbeArguments& options) {
+    if (options.exterior && options.quantity == ProbedQuantity::ugr)
+        throw UsageError("--exterior", "it has no effect on glare (ugr)");
+}
+
 /// Returns the given directions, by default both ways along x and y.
 std::vector<V3f> lines_of_sight(const ProbeArguments& options) {
     if (options.directions.empty()) return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
@@ -218,16 +223,20 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     const bool traces_paths = options.light == ProbedLight::path;
     if (traces_paths) refuse_solver_options(command);
     PathTracerArguments::check_samples(command, options.path.samples);
+    options.scene.check(command, true);
     options.dimming.require_solution(options.scene.path);
     options.places.check();
     check_direction(options);
-    require_distinct_files(input_files(options.scene, {}),
-                           std::array<NamedFile, 2>{{{"--output", options.output}, {"--stats", options.solver.stats}}});
+    check_exterior(options);
+    const std::array<NamedFile, 2> outputs{{{"--output", options.output}, {"--stats", options.solver.stats}}};
+    require_distinct_files(input_files(options.scene, {}), outputs);
+    for (const NamedFile& output : outputs) require_text_name(output);
     std::optional<PendingFile> output;
     if (!options.output.empty()) output.emplace(options.output);
 
     const bool solved_before = is_solution_file(options.scene.path);
-    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming, command, true);
+    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
+    require_no_scene_files(solved.scene, outputs);
     std::vector<MeasuringGrid> grids = options.places.grids(solved.scene);
     const bool solves = !solved_before && !traces_paths;
     const SolveOptions solve_options = options.solver.resolved({});
@@ -235,7 +244,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     else if (!solved_before)
         solved.scene = options.mesh.cut(std::move(solved.scene), options.scene.read);
-    StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
+    StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_setup(solved.scene, ray_caster);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);

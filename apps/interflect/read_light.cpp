@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "apps/interflect/long_work.h"
-#include "apps/interflect/refused_options.h"
 
 namespace interflect::command {
 
@@ -12,14 +11,12 @@ SolvedScene read_light_of(const std::filesystem::path& solution) {
     return read_solution(solution);
 }
 
-SolvedScene read_scene_or_solution(const SceneOptions& scene, const DimmingOptions& dimming, const CLI::App& command,
-                                   bool traces_paths) {
+SolvedScene read_scene_or_solution(const SceneOptions& scene, const DimmingOptions& dimming) {
     SolvedScene solved;
     if (!is_solution_file(scene.path)) {
         solved.scene = scene.load();
         return solved;
     }
-    refuse_scene_options(command, scene.path, traces_paths);
     solved = read_light_of(scene.path);
     dimming.dim(solved);
     return solved;

@@ -4,60 +4,58 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <vector>
 
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/shared_options.h"
-#include "interflect/error.h"
+#include "interflect/solution_file.h"
 
 namespace interflect::command {
 
 namespace {
 
-bool is_given(const CLI::Option* option) { return option->count() > 0; }
+using Names = std::span<const std::string_view>;
 
-template <std::size_t Count>
-bool has(const std::array<std::string_view, Count>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
+bool has(Names names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
 
-constexpr std::array<std::string_view, 2> shared_with_path_tracing = {"--seed", "--until"};
+constexpr std::array<std::string_view, 5> solving_groups = {solver_group, limits_group, refinement_group,
+                                                            importance_group, experimental_group};
 
-bool is_of_solving(const CLI::Option& option) {
-    constexpr std::array<std::string_view, 5> groups = {solver_group, limits_group, refinement_group, importance_group,
-                                                        experimental_group};
-    return has(groups, option.get_group());
+std::vector<std::string_view> options_of_solving(std::initializer_list<std::string_view> others) {
+    std::vector<std::string_view> names(solving_groups.begin(), solving_groups.end());
+    names.insert(names.end(), others);
+    return names;
 }
 
 }  // namespace
 
-void refuse_solver_options(const CLI::App& command) {
+void refuse_options(const CLI::App& command, Names refused, const std::string& reason, Names accepted) {
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
-        const bool is_for_paths = has(shared_with_path_tracing, name) || name == "--contact-cuts";
-        if (is_given(option) && ((is_of_solving(*option) && !is_for_paths) || name == "--show"))
-            throw UsageError(fmt::format("{}: --shading path makes no solution", name));
+        const bool is_refused = has(refused, name) || has(refused, option->get_group());
+        if (option->count() > 0 && is_refused && !has(accepted, name)) throw UsageError(name, reason);
     }
+}
+
+void refuse_solver_options(const CLI::App& command) {
+    constexpr std::array<std::string_view, 3> of_paths = {"--seed", "--until", "--contact-cuts"};
+    refuse_options(command, options_of_solving({"--show"}), "--shading path makes no solution", of_paths);
 }
 
 void refuse_path_options(const CLI::App& command) {
-    for (const CLI::Option* option : command.get_options())
-        if (option->get_group() == path_group && is_given(option))
-            throw UsageError(fmt::format("{}: only --shading gather and path take it", option->get_name()));
+    constexpr std::array<std::string_view, 1> of_paths = {path_group};
+    refuse_options(command, of_paths, "only --shading gather and path take it");
 }
 
-void refuse_scene_options(const CLI::App& command, const std::filesystem::path& solution, bool traces_paths) {
-    constexpr std::array<std::string_view, 6> of_reading = {"--curve-divisions", "--unit",        "--up-axis",
-                                                            "--outside-files",   "--max-patches", "--luminaire"};
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name = option->get_name();
-        if (!is_given(option) ||
-            !(is_of_solving(*option) || has(of_reading, name) || option->get_group() == daylight_group))
-            continue;
-        if (traces_paths && has(shared_with_path_tracing, name)) continue;
-        throw InputError(solution, 0, fmt::format("it is solved already: {} has no effect, expected a scene", name));
-    }
+void refuse_scene_options(const CLI::App& command, const std::filesystem::path& scene, bool traces_paths) {
+    if (!is_solution_file(scene)) return;
+    constexpr std::array<std::string_view, 2> of_paths = {"--seed", "--until"};
+    refuse_options(command,
+                   options_of_solving({"--curve-divisions", "--unit", "--up-axis", "--outside-files", "--max-patches",
+                                       "--luminaire", daylight_group}),
+                   fmt::format("it has no effect on {}, which is solved already: expected a scene", scene.string()),
+                   traces_paths ? Names(of_paths) : Names());
 }
 
 }  // namespace interflect::command

@@ -84,8 +84,7 @@ struct RenderArguments {
 View view_to_draw(const Scene& scene, const RenderArguments& options) {
     if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
     const std::vector<View> views = options.view.views(scene);
-    if (views.size() > 1) throw InputError("a picture has one view, but several were given");
-    if (views.size() == 1) return views.front();
+    if (!views.empty()) return views.front();
     if (!scene.views.empty()) return scene.views.front();
     spdlog::warn("{} names no view and none was given: drawing an overview (--eye and --look-at choose another)",
                  scene.name);
@@ -210,10 +209,16 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
                  view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
 }
 
+std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
+    return {
+        {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
+}
+
 /// Draws the light of a solution; solves a scene first.
-void run_solution(RenderArguments& options, const CLI::App& command, PendingFile& output) {
+void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
-    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming, command, traces_paths(options.shading));
+    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
+    require_no_scene_files(solved.scene, outputs_of(options));
     const View view = view_to_draw(solved.scene, options);
     Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses views without a picture
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
@@ -222,7 +227,7 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
     const SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
-    StatsFile stats(options.solver.threads, options.solver.stats, solved.scene);
+    StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
     if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
@@ -246,8 +251,9 @@ void run_solution(RenderArguments& options, const CLI::App& command, PendingFile
 }
 
 /// Draws the light by path tracing; uses only the scene of a solution file.
-void run_paths(const RenderArguments& options, const CLI::App& command, PendingFile& output) {
-    Scene scene = read_scene_or_solution(options.scene, options.dimming, command, true).scene;
+void run_paths(const RenderArguments& options, PendingFile& output) {
+    Scene scene = read_scene_or_solution(options.scene, options.dimming).scene;
+    require_no_scene_files(scene, outputs_of(options));
     if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
     const View view = view_to_draw(scene, options);
     const RayCaster ray_caster = make_ray_caster(scene);
@@ -313,6 +319,9 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
                                                "or .jpg, found '{}'",
                                                options.output.string()));
     if (traces_paths(options.shading)) options.path.check_samples(command, path_options(options).samples);
+    options.scene.check(command, traces_paths(options.shading));
+    options.view.check();
+    if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
     if (options.shading == PictureShading::gather && command.get_option("--denoise")->count() == 0)
         options.path.denoise = is_for_people(options);
@@ -321,19 +330,17 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     options.cut.check();
     options.path.check();
     options.legend_rows = legend_rows(options);
-    require_distinct_files(input_files(options.scene, options.view),
-                           std::array<NamedFile, 3>{{{"--output", options.output},
-                                                     {"--stats", options.solver.stats},
-                                                     {"--error-image", options.path.error_image}}});
+    require_distinct_files(input_files(options.scene, options.view), outputs_of(options));
+    require_text_name({"--stats", options.solver.stats});
     if (traces_paths(options.shading))
         require_memory_for_paths(options.size);
     else
         require_memory_for_elements(options.size);
     PendingFile output(options.output);
     if (options.shading == PictureShading::path)
-        run_paths(options, command, output);
+        run_paths(options, output);
     else
-        run_solution(options, command, output);
+        run_solution(options, output);
     if (is_stop_requested()) exit_code = interrupted;
 }
 

@@ -160,6 +160,7 @@ void run(const ReportArguments& options) {
         throw UsageError("--output", fmt::format("a report is HTML: expected a name that ends in .html, found '{}'",
                                                  options.output.string()));
     options.places.check(MeasuringPlaces::Least::none);
+    options.view.check();
     require_distinct_files(std::array<NamedFile, 1>{{{"SOLUTION", options.solution}}},
                            std::array<NamedFile, 1>{{{"--output", options.output}}});
     require_memory_for_paths(options.size);
@@ -190,8 +191,10 @@ void add_report(CLI::App& app) {
     command.add_option("--exterior", options->exterior, "Horizontal illuminance outside [lx], for daylight factors")
         ->type_name("LUX")
         ->check(number_between(1e-12, 1e12));
-    command.add_flag("--ugr", options->ugr, "Rate glare for observers on a grid over each room, looking along x and y");
+    CLI::Option* const ugr = command.add_flag(
+        "--ugr", options->ugr, "Rate glare for observers on a grid over each room, looking along x and y");
     command.add_option("--eye-height", options->eye_height, "Height z of these observers' eyes [m]")
+        ->needs(ugr)
         ->capture_default_str()
         ->type_name("HEIGHT")
         ->check(number_between(-1e15, 1e15));

@@ -3,12 +3,14 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "apps/interflect/long_work.h"
 #include "apps/interflect/machine_memory.h"
+#include "apps/interflect/refused_options.h"
 #include "interflect/contacts.h"
 #include "interflect/error.h"
 #include "interflect/formats/view_files.h"
@@ -104,15 +106,51 @@ void SceneOptions::add_daylight_to(CLI::App& app) {
         ->default_str("0,0,1");
 }
 
+void SceneOptions::check(const CLI::App& command, bool traces_paths) const {
+    refuse_scene_options(command, path, traces_paths);
+    constexpr std::array<std::string_view, 4> of_files = {"--curve-divisions", "--unit", "--up-axis",
+                                                          "--outside-files"};
+    if (path.string().starts_with("maze:"))
+        refuse_options(command, of_files, "it has no effect on a maze, which is made in metres, with z up");
+    check_daylight(command);
+}
+
+Daylight SceneOptions::placed_daylight() const {
+    Daylight placed = daylight;
+    placed.zenith = V3f(zenith_);
+    return placed;
+}
+
+/// Adds one part after the other to an empty scene, so that errors name their option.
+void SceneOptions::check_daylight(const CLI::App& command) const {
+    constexpr std::array<std::string_view, 1> zenith = {"--zenith"};
+    if (!daylight.sun && !daylight.cie_sky && !daylight.perez_sky && !daylight.environment)
+        refuse_options(command, zenith, "it has no effect without --sky, --sun or --environment");
+    const Daylight all = placed_daylight();
+    const auto check = [](const char* option, const Daylight& part) {
+        check_option(option, [&] {
+            Scene empty;
+            add_daylight(empty, part);
+        });
+    };
+    Daylight part;
+    part.zenith = all.zenith;
+    check("--zenith", part);
+    part.sun = all.sun;
+    check("--sun", part);
+    part.cie_sky = all.cie_sky;
+    part.perez_sky = all.perez_sky;
+    part.ground_reflectance = all.ground_reflectance;
+    check("--sky", part);
+}
+
 Scene SceneOptions::load() const {
     ReadOptions limited = read;
     limited.max_patches = std::min(read.max_patches, patches_in_memory());
     try {
-        Daylight placed = daylight;
-        placed.zenith = V3f(zenith_);
         Scene scene = [&] {
             const LongWork work(fmt::format("reading {}", path.string()));
-            return load_scene(path, limited, luminaires, placed);
+            return load_scene(path, limited, luminaires, placed_daylight());
         }();
         log_warnings(scene.warnings);
         return scene;
@@ -194,10 +232,16 @@ void ViewOptions::add_to(CLI::App& app) {
     CLI::Option* look_at_option = vector_option("--look-at", look_at, "A point in the middle of the picture [m]");
     eye_option->needs(look_at_option);
     look_at_option->needs(eye_option);
-    vector_option("--up", up, "What is up in the picture")->default_str("0,0,1");
+    vector_option("--up", up, "What is up in the picture, of --eye")->needs(eye_option)->default_str("0,0,1");
     group(app.add_option("--fov", fov, "Vertical field of view of --eye [degrees]")
+              ->needs(eye_option)
               ->capture_default_str()
               ->check(number_between(0.001, 179)));
+}
+
+void ViewOptions::check() const {
+    if (!(up.length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
+    if (eye) check_option("--eye", [&] { Camera(view_of_eye(), 1, 1, *eye); });
 }
 
 std::vector<View> ViewOptions::views(const Scene& scene) const {
@@ -207,7 +251,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
                          fmt::format("there is no view '{}'; it names none, give --eye and --look-at", names.front()));
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
-    if (eye) views.push_back({"command line", *eye, *look_at, up, fov});
+    if (eye) views.push_back(view_of_eye());
     for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses views without a picture
     return views;
 }

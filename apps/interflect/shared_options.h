@@ -25,10 +25,15 @@ struct SceneOptions {
     Daylight daylight;
 
     void add_to(CLI::App& app, const std::string& what = std::string(scene_formats) + ", or maze:ROOMS[:furniture]");
+    /// @param traces_paths  As for refuse_scene_options().
+    /// @throws UsageError for invalid daylight and for options without effect on a solution or a maze.
+    void check(const CLI::App& command, bool traces_paths = false) const;
     Scene load() const;
 
   private:
     void add_daylight_to(CLI::App& app);
+    void check_daylight(const CLI::App& command) const;
+    Daylight placed_daylight() const;
 
     Imath::V3d zenith_{0, 0, 1};
 };
@@ -53,8 +58,15 @@ struct ViewOptions {
     float fov = 45;
 
     void add_to(CLI::App& app);
+    /// Number of requested views.
+    std::size_t count() const { return names.size() + files.size() + (eye ? 1 : 0); }
+    /// @throws UsageError if --eye, --look-at and --up give no picture.
+    void check() const;
     /// @throws InputError for a view that is missing or shows no picture.
     std::vector<View> views(const Scene& scene) const;
+
+  private:
+    View view_of_eye() const { return {"command line", *eye, *look_at, up, fov}; }
 };
 
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "apps/interflect/commands.h"
@@ -58,26 +59,32 @@ void add_solve(CLI::App& app, int& exit_code) {
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
     options->solver.add_to(command);
     options->checkpoints.add_to(command, "Save the run to this file now and then (.h5); `resume` goes on with it");
+    command.get_option("--every")->needs("--checkpoint");
     options->mesh.add_to(command);
     options->view.add_to(command);
     options->groups.add_to(command);
-    command.callback([options, &exit_code] {
+    command.callback([options, &command, &exit_code] {
         const ThreadLimit threads(options->solver.threads);
         require_solution_name(options->output);
-        require_distinct_files(input_files(options->scene, options->view),
-                               std::array<NamedFile, 3>{{{"--output", options->output},
-                                                         {"--stats", options->solver.stats},
-                                                         {"--checkpoint", options->checkpoints.file}}});
+        options->scene.check(command);
+        options->view.check();
+        options->groups.check();
+        const std::array<NamedFile, 3> outputs{{{"--output", options->output},
+                                                {"--stats", options->solver.stats},
+                                                {"--checkpoint", options->checkpoints.file}}};
+        require_distinct_files(input_files(options->scene, options->view), outputs);
+        require_text_name({"--stats", options->solver.stats});
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Scene scene = options->scene.load();
+        require_no_scene_files(scene, outputs);
         const std::vector<View> views = options->view.views(scene);
         const SolveOptions solve_options = options->solver.resolved(views);
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
         options->groups.set_groups(scene);
         // Requested views come first: `render` draws the first view of a solution.
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
-        StatsFile stats(options->solver.threads, options->solver.stats, scene);
+        StatsFile stats(options->solver.threads, options->solver.stats);
         const RayCaster ray_caster = make_ray_caster(scene);
         warn_of_setup(scene, ray_caster);
         const Solution solution =
@@ -110,17 +117,18 @@ void add_resume(CLI::App& app, int& exit_code) {
             throw InputError(options->input, 0, "a checkpoint is a solution file: expected a name that ends in .h5");
         if (options->checkpoints.file.empty()) options->checkpoints.file = options->input;
         require_solution_name(options->output);
-        require_distinct_files(std::array<NamedFile, 1>{{{"FILE", options->input}}},
-                               std::array<NamedFile, 2>{{{"--output", options->output}, {"--stats", options->stats}}});
-        require_distinct_files({}, std::array<NamedFile, 3>{{{"--output", options->output},
-                                                             {"--stats", options->stats},
-                                                             {"--checkpoint", options->checkpoints.file}}});
+        const std::array<NamedFile, 3> outputs{
+            {{"--output", options->output}, {"--stats", options->stats}, {"--checkpoint", options->checkpoints.file}}};
+        require_distinct_files(std::array<NamedFile, 1>{{{"FILE", options->input}}}, std::span(outputs).first(2));
+        require_distinct_files({}, outputs);
+        require_text_name({"--stats", options->stats});
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Solver solver = Solver::open(options->input);
         if (options->limits.any()) solver.set_plan(options->limits.resolved());
         const std::shared_ptr<const Scene> scene = solver.shared_scene();
-        StatsFile stats(options->threads, options->stats, *scene);
+        require_no_scene_files(*scene, outputs);
+        StatsFile stats(options->threads, options->stats);
         const Solution solution = run_to_end(std::move(solver), options->checkpoints);
         write(output, *scene, solution);
         stats.write(*scene, solution);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -38,12 +37,8 @@ Json line_of(const IterationReport& report) {
 
 }  // namespace
 
-StatsFile::StatsFile(int threads, const std::filesystem::path& stats, const Scene& scene) : threads_(threads) {
-    if (stats.empty()) return;
-    for (const std::string& file : scene.files)
-        require_distinct_files(std::array<NamedFile, 1>{{{"a file of the scene", file}}},
-                               std::array<NamedFile, 1>{{{"--stats", stats}}});
-    file_.emplace(stats);
+StatsFile::StatsFile(int threads, const std::filesystem::path& stats) : threads_(threads) {
+    if (!stats.empty()) file_.emplace(stats);
 }
 
 void StatsFile::write(const Scene& scene, const Solution& solution) {

@@ -12,8 +12,8 @@ namespace interflect::command {
 class StatsFile {
   public:
     /// Must precede long work. @param stats  Empty: no file.
-    /// @throws InputError if the file cannot be written, UsageError if it is a file of the scene.
-    StatsFile(int threads, const std::filesystem::path& stats, const Scene& scene);
+    /// @throws InputError if the file cannot be written.
+    StatsFile(int threads, const std::filesystem::path& stats);
     /// Must follow the writing of the result.
     void write(const Scene& scene, const Solution& solution);
 

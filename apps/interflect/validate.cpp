@@ -78,8 +78,9 @@ void print_prediction(const Prediction& prediction) {
                    prediction.rays / 1e6, prediction.rays_per_second / 1e6);
 }
 
-void run_validate(const ValidateArguments& arguments, int& exit_code) {
+void run(const ValidateArguments& arguments, const CLI::App& command, int& exit_code) {
     const ThreadLimit limit(arguments.threads);
+    arguments.scene.check(command);
     Scene scene = arguments.scene.load();
     const std::vector<Finding> findings = validate(scene, make_ray_caster(scene), arguments.validate);
     const auto problems =
@@ -122,7 +123,7 @@ void add_validate(CLI::App& app, int& exit_code) {
     command.add_flag("--strict", arguments->strict, "End with exit code 1 where there is a problem");
     command.add_flag("--json", arguments->json, "As JSON on stdout");
     add_threads(command, arguments->threads);
-    command.callback([arguments, &exit_code] { run_validate(*arguments, exit_code); });
+    command.callback([arguments, &command, &exit_code] { run(*arguments, command, exit_code); });
 }
 
 }  // namespace interflect::command

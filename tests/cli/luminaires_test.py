@@ -45,8 +45,8 @@ class Luminaires(CommandTest):
         self.interflect("render", "more.h5", "-o", "flat.png", *VIEW, *SMALL)
         self.interflect("render", "more.h5", "-o", "path.png", *VIEW, "--size", "32x18", "--shading", "path")
         error = self.interflect("render", "more.h5", "-o", "no.png", *VIEW, *SMALL, "--luminaire", "lamp.ies@1,1,2",
-                                exit_code=BAD_INPUT).stderr
-        self.assertIn("--luminaire has no effect", error)
+                                exit_code=WRONG_USAGE).stderr
+        self.assertIn("--luminaire: it has no effect", error)
 
     def test_faults_name_the_file_and_its_line(self):
         self.write("bad.ies", LAMP.replace("0 90", "90 0"))
@@ -59,7 +59,8 @@ class Luminaires(CommandTest):
 
     def test_wrong_usage(self):
         for value in ("lamp.ies", "@1,2,3", "lamp.ies@1,2", "lamp.ies@1,2,3,4", "lamp.ies@1,2,3,turn", "lamp.ies@1,2,x",
-                      "lamp.ies@1,2,3,lumens=-1", "lamp.ies@1,2,3,colour=2", "lamp.ies@1,2,3 "):
+                      "lamp.ies@1,2,3,lumens=-1", "lamp.ies@1,2,3,colour=2", "lamp.ies@1,2,3 ",
+                      "lamp.ies@1e16,2,3", "lamp.ies@1,2,3,1,2,3", "lamp.ies@1,2,3,turn=5,turn=6"):
             with self.subTest(value=value):
                 error = self.interflect("info", "dark.mgf", "--luminaire", value, exit_code=WRONG_USAGE).stderr
                 self.assertIn("--luminaire", error)

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from command import BAD_INPUT, LAMP, SMALL, VIEW, CommandTest, room, vertices
+from command import BAD_INPUT, LAMP, SMALL, VIEW, WRONG_USAGE, CommandTest, room, vertices
 
 FEW = ("--method", "srr", "--mesh-size", "0.5", "--rays", "200k")
 OFFSET = (100000, -200000, 3000)
@@ -71,9 +71,9 @@ class Position(CommandTest):
             result = self.interflect("solve", scene, "-o", "out.h5", exit_code=BAD_INPUT)
             self.assertRegex(result.stderr, scene + r":\d+: .*" + reason.replace("+", r"\+"))
         result = self.interflect(
-            "render", "room.mgf", "-o", "a.png", "--eye", "1e20,0,0", "--look-at", "0,0,0", exit_code=BAD_INPUT
+            "render", "room.mgf", "-o", "a.png", "--eye", "1e20,0,0", "--look-at", "0,0,0", exit_code=WRONG_USAGE
         )
-        self.assertIn("farther than 1e+15 m", result.stderr)
+        self.assertIn("--eye: expected three numbers with commas between, from -1e15 to 1e15", result.stderr)
 
 
 class LostLight(CommandTest):

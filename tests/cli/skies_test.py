@@ -47,8 +47,8 @@ class Skies(CommandTest):
         comparison = self.json("compare", "gather.exr", "path.exr")
         self.assertAlmostEqual(comparison["ratio_of_means"], 1, delta=0.01)
         error = self.interflect("render", "out.h5", "-o", "no.png", *VIEW, *SMALL, "--sky", "overcast",
-                                exit_code=BAD_INPUT).stderr
-        self.assertIn("--sky has no effect", error)
+                                exit_code=WRONG_USAGE).stderr
+        self.assertIn("--sky: it has no effect", error)
 
     def test_light_groups_dim_the_sky(self):
         self.interflect("solve", "open.mgf", "-o", "out.h5", "--rays", "100k", *DAYLIGHT[:4], "--group", "sun=sun-*",
@@ -77,17 +77,19 @@ class Skies(CommandTest):
         for option, value in (("--sky", "blue"), ("--sky", "clear:-1"), ("--sky", "clear:x"), ("--sky", "perez:100"),
                               ("--sky", "cie-17"), ("--sky", ""), ("--sun", "200"), ("--sun", "200,0"), ("--sun", "200,91"),
                               ("--sun", "200,35,-1"), ("--sun", "south,35"), ("--ground", "1.5"), ("--ground", "-0.1"), ("--ground", "0.2"),
-                              ("--environment", ""), ("--environment", "map.hdr,0,-1"), ("--zenith", "0,1")):
+                              ("--environment", ""), ("--environment", "map.hdr,0,-1"), ("--zenith", "0,1"), ("--zenith", "1,0,0"),
+                              ("--sky", "overcast:1e30"), ("--sun", "200,35,1e30")):
             with self.subTest(option=option, value=value):
                 error = self.interflect("info", "open.mgf", f"{option}={value}", exit_code=WRONG_USAGE).stderr
                 self.assertIn(option, error)
 
     def test_what_does_not_go_together(self):
-        for arguments, message in ((("--sky", "clear"), "needs a sun"), (("--sky", "perez:500,100"), "needs a sun"),
-                                   (("--sky", "perez:5000,100", "--sun", "200,35"), "irradiances of 5000 W/m2"),
-                                   (("--sky", "overcast", "--zenith", "0,0,0"), "zenith")):
+        for arguments, message in ((("--sky", "clear"), "--sky: a sky of CIE type 12 needs a sun"),
+                                   (("--sky", "perez:500,100"), "--sky: a sky by Perez needs a sun"),
+                                   (("--sky", "perez:5000,100", "--sun", "200,35"), "--sky: irradiances of 5000 W/m2"),
+                                   (("--sky", "overcast", "--zenith", "0,0,0"), "--zenith: the zenith has no direction")):
             with self.subTest(arguments=arguments):
-                result = self.interflect("info", "open.mgf", *arguments, exit_code=BAD_INPUT)
+                result = self.interflect("info", "missing.mgf", *arguments, exit_code=WRONG_USAGE)
                 self.assertIn(message, result.stderr)
 
 

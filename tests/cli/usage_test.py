@@ -1,5 +1,6 @@
 """Wrong usage: exit code 2, a message that names the option, no output; and the help."""
 
+import re
 import unittest
 
 from command import WRONG_USAGE, CommandTest, room
@@ -16,11 +17,12 @@ class WrongUsage(CommandTest):
             for word in ("error: ", "--help", *words):
                 self.assertIn(word, result.stderr)
             self.assertEqual(result.stdout, "")
-            self.assertEqual(self.files(), ["room.mgf"])
+            self.assertEqual(self.files(), self.inputs)
 
     def setUp(self):
         super().setUp()
         self.write("room.mgf", room())
+        self.inputs = ["room.mgf"]
 
     def test_subcommands(self):
         self.assert_wrong([], "expected one of", *SUBCOMMANDS)
@@ -88,9 +90,26 @@ class WrongUsage(CommandTest):
             "--centre": ("1,2",),
             "--fov": ("0", "180", "nan"),
             "--up": ("1,2", "x,y,z", "0,0,nan"),
+            "--eye": ("1e16,0,0", "1e30,0,0"),
         }.items():
             for value in values:
                 self.assert_wrong([*RENDER, f"{option}={value}"], option)
+        for value in ("x=1e30", "1e16,0,0,1,0,0"):
+            self.assert_wrong([*RENDER, "--section", value], "--section")
+
+    def test_views(self):
+        for subcommand in (SOLVE, RENDER, ("bench", "room.mgf"), ("report", "room.h5", "-o", "out.html")):
+            self.assert_wrong([*subcommand, "--eye", "1,1,1", "--look-at", "1,1,1"], "--eye", "same point")
+            self.assert_wrong([*subcommand, "--eye", "1,1,1", "--look-at", "2,2,2", "--up", "0,0,0"], "--up")
+            self.assert_wrong([*subcommand, "--eye", "1,1,1", "--look-at", "1,1,2"], "--eye", "parallel")
+        self.assert_wrong([*RENDER, "--view", "door", "--view", "floor"], "--view", "one view")
+
+    def test_places(self):
+        probe = ("probe", "room.mgf")
+        for value in ("1,1", "1e30,1,1", "1e16,1,1"):
+            self.assert_wrong([*probe, "--point", value], "--point")
+        for value in ("0,0,1", "0,0,1:0,0,1", "0,0,1:0,0,1e30", "0,0,1:1,0,1:1"):
+            self.assert_wrong([*probe, "--line", value], "--line")
 
     def test_light_groups_and_skies(self):
         for text in ("desk", "=lamp", "desk="):
@@ -98,6 +117,10 @@ class WrongUsage(CommandTest):
         for text in ("desk", "desk=", "=1", "desk=bright", "desk=-1", "desk=nan"):
             for subcommand in (RENDER, ("probe", "room.mgf", "--point", "1,1,1")):
                 self.assert_wrong([*subcommand, "--dim", text], "--dim", "GROUP=FACTOR")
+        twice = [*SOLVE, "--group", "a=lamp", "--group", "a=desk"]
+        self.assert_wrong(twice, "--group", "two light groups are called 'a'")
+        many = [word for k in range(300) for word in ("--group", f"g{k}=lamp")]
+        self.assert_wrong([*SOLVE, *many], "--group", "300 light groups")
         for text in ("perez:-1,5", "perez:5,-1", "clear:-1"):
             self.assert_wrong([*SOLVE, "--sky", text], "--sky", "perez:DIRECT,DIFFUSE")
 
@@ -106,10 +129,10 @@ class WrongUsage(CommandTest):
             "--pixel-samples": ("-1", "0", "1e18"),
             "--probe-rays": ("1e18", "7", "2000000", "-1"),
             "--probe-spacing": ("0", "-1", "nan", "1e99"),
-            "--up": ("0,0,0",),
         }.items():
             for value in values:
                 self.assert_wrong(["export", "room.mgf", "-o", "out.json", f"{option}={value}"], option)
+        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--up", "0,0,0"], "--up")
         self.assert_wrong(
             ["export", "room.mgf", "-o", "out.glb", "--lightmap", "--lightmap-max-size", "65"],
             "--lightmap-max-size", "multiple of 4",
@@ -135,9 +158,64 @@ class WrongUsage(CommandTest):
         ):
             self.assert_wrong(arguments, option, expected)
 
+    def test_text_under_the_name_of_another_kind_of_file(self):
+        """Seen to replace scenes by tables. The help names the extensions that the command reads and writes."""
+        subcommands = ("solve", "render", "export", "report")
+        help_texts = [self.interflect(subcommand, "--help").stdout for subcommand in subcommands]
+        extensions = set(re.findall(r"(?<!\w)\.[a-z]\w+", "".join(help_texts))) - {".json"}
+        self.assertLessEqual({".mgf", ".obj", ".h5", ".png", ".exr", ".glb", ".rad", ".ies", ".html"}, extensions)
+        for extension in sorted(extensions | {".MGF", ".mtl"}):
+            other = "other" + extension
+            self.assert_wrong([*SOLVE, "--stats", other], "--stats", extension.lower())
+            self.assert_wrong([*RENDER, "--stats", other], "--stats", extension.lower())
+            self.assert_wrong(["resume", "run.h5", "-o", "out.h5", "--stats", other], "--stats", extension.lower())
+            self.assert_wrong(["probe", "room.mgf", "--point", "1,1,1", "-o", other], "--output", extension.lower())
+
+    def test_options_that_the_format_of_an_export_does_not_use(self):
+        for scene, output, *options in (
+            ("room.mgf", "out.rad", "--lightmap"),
+            ("room.mgf", "out.rad", "--lightmap", "--texels-per-metre", "5"),
+            ("room.mgf", "out.rad", "--probe-spacing", "3"),
+            ("room.mgf", "out.rad", "--exposure", "4"),
+            ("room.mgf", "out.rad", "--up", "0,1,0"),
+            ("room.mgf", "out.rad", "--pixel-samples", "4"),
+            ("room.h5", "out.ply", "--lightmap"),
+            ("room.h5", "out.exr", "--lightmap"),
+            ("room.h5", "out.obj", "--up", "0,1,0"),
+            ("room.h5", "out.vtu", "--exposure", "1"),
+            ("room.h5", "out.glb", "--probe-rays", "100"),
+            ("room.h5", "out.glb", "--size", "8x8"),
+            ("room.h5", "out.json", "--pixel-samples", "5"),
+        ):
+            self.assert_wrong(["export", scene, "-o", output, *options], options[0], "it is for .")
+        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--lightmap", "--samples", "9"], "--samples", "gather")
+        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--lightmap", "--seed", "9"], "--seed", "gather")
+
+    def test_options_without_effect_on_a_solution(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
+        self.inputs = ["room.h5", "room.mgf"]
+        outputs = (("export", "-o", "out.rad"), ("render", "-o", "out.png"))
+        for subcommand in (("info",), ("probe", "--point", "1,1,1"), *outputs):
+            for option, *value in (
+                ("--sky", "overcast"),
+                ("--luminaire", "none.ies@1,1,1"),
+                ("--unit", "cm"),
+                ("--curve-divisions", "7"),
+                ("--outside-files",),
+            ):
+                self.assert_wrong([*subcommand, "room.h5", option, *value], option, "solved already")
+
     def test_options_without_effect(self):
         for arguments, option in (
             ((*RENDER, "--extent", "3"), "--extent"),
+            ((*RENDER, "--fov", "30"), "--fov"),
+            ((*SOLVE, "--up", "1,0,0"), "--up"),
+            ((*SOLVE, "--every", "5s"), "--every"),
+            ((*SOLVE, "--zenith", "1,0,0"), "--zenith"),
+            (("info", "maze:2", "--unit", "cm"), "--unit"),
+            (("info", "maze:2", "--curve-divisions", "5"), "--curve-divisions"),
+            (("report", "room.h5", "-o", "out.html", "--eye-height", "1"), "--eye-height"),
+            (("probe", "room.mgf", "--point", "1,1,1", "--quantity", "ugr", "--exterior", "9"), "--exterior"),
             ((*RENDER, "--scale", "1..2"), "--scale"),
             ((*RENDER, "--display-luminance", "90"), "--display-luminance"),
             ((*RENDER, "--shading", "path", "--rays", "1k"), "--rays"),
