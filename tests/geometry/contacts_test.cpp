@@ -391,7 +391,7 @@ TEST(Contacts, StripsThatAreSurfacesByThemselvesStayWhole) {
 }
 
 TEST(Contacts, CompactFacesStayWhole) {
-    const Scene scene = floor_of_slivers(4, 0.5f);
+    const Scene scene = floor_of_slivers(4, 0.8f);
     EXPECT_EQ(cut_at_contacts(scene).patches.size(), scene.patches.size());
 }
 

@@ -10,38 +10,14 @@ namespace interflect::inline detail {
 
 namespace {
 
-/// A patch is curved if the normal at a corner differs from its own by more than this cosine: 0.5 degrees, above the
-/// rounding of normals in readers (0.2 degrees).
+/// A patch is curved if the normal at a corner differs from its own by more than 0.5 degrees, above the rounding of
+/// normals in readers (0.2 degrees).
 constexpr float cosine_of_flat = 0.99996f;
 /// Ridge of the fits, relative to the variation of the normal over the patch: bounds G where neighbours are nearly
 /// coplanar and steps are noise or shadows. On a regular mesh, G is 2% too small.
 constexpr double relative_ridge = 0.02;
 
 std::uint32_t corner_count(const Patch& patch) { return static_cast<std::uint32_t>(patch.vertex_count()); }
-
-/// Normals at the corners of patches, one for each group of corners: the mean of the scene's normals, or of the
-/// patches'.
-std::vector<V3f> normals_of_groups(const Scene& scene, const SmoothSurfaces::Groups& corners,
-                                   const std::vector<V3f>& patch_normals) {
-    std::vector<V3f> authored(corners.count, V3f(0)), geometric(corners.count, V3f(0));
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
-        const Patch& patch = scene.patches[p];
-        const std::uint32_t count = corner_count(patch);
-        for (std::uint32_t c = 0; c < count; ++c) {
-            const std::uint32_t group = corners.group[4 * p + c];
-            const V3f& x = scene.vertices[patch.vertices[c]];
-            const V3f next = (scene.vertices[patch.vertices[(c + 1) % count]] - x).normalized();
-            const V3f last = (scene.vertices[patch.vertices[(c + count - 1) % count]] - x).normalized();
-            geometric[group] += patch_normals[p] * std::acos(std::clamp(next.dot(last), -1.0f, 1.0f));
-            if (scene.normals.empty()) continue;
-            const V3f n = scene.normals[patch.vertices[c]];
-            authored[group] += n.dot(patch_normals[p]) < 0 ? -n : n;
-        }
-    }
-    for (std::uint32_t g = 0; g < corners.count; ++g)
-        geometric[g] = (authored[g] == V3f(0) ? geometric[g] : authored[g]).normalized();
-    return geometric;
-}
 
 /// Mean irradiance of the leaves along an edge of an element, which starts at corner c in the order of the vertices.
 Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, std::uint32_t e, std::uint32_t c,
@@ -57,6 +33,20 @@ Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance
     return 0.5f * (half(c) + half(next));
 }
 
+std::vector<std::uint32_t> leaves_of(const ElementForest& forest, std::uint32_t patch) {
+    std::vector<std::uint32_t> leaves, elements{patch};
+    while (!elements.empty()) {
+        const std::uint32_t e = elements.back();
+        elements.pop_back();
+        if (forest.is_leaf(e)) {
+            leaves.push_back(e);
+            continue;
+        }
+        for (std::uint32_t k = 0; k < 4; ++k) elements.push_back(forest.first_child(e) + k);
+    }
+    return leaves;
+}
+
 }  // namespace
 
 V3f SmoothNormals::CurvedPatch::normal_at(bool is_triangle, Parameters p) const {
@@ -70,8 +60,8 @@ V3f SmoothNormals::CurvedPatch::mean_normal(bool is_triangle) const {
 }
 
 SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces) {
+    if (scene.normals.empty()) return;
     const std::vector<V3f> own = patch_normals(scene);
-    const std::vector<V3f> normals = normals_of_groups(scene, surfaces.corners, own);
     std::vector<std::array<std::uint32_t, 2>> members(surfaces.edges.count,
                                                       {none, none});  // edges, as 4 patch + corner
     for (std::uint32_t e = 0; e < surfaces.edges.group.size(); ++e) {
@@ -81,13 +71,15 @@ SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     }
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         CurvedPatch curved{.patch = p, .normals = {}};
-        bool is_flat = true;
-        const std::uint32_t count = corner_count(scene.patches[p]);
+        const auto count = static_cast<std::uint32_t>(scene.patches[p].vertex_count());
+        bool is_curved = false, has_all = true;
         for (std::uint32_t c = 0; c < count; ++c) {
-            curved.normals[c] = normals[surfaces.corners.group[4 * p + c]];
-            is_flat &= curved.normals[c].dot(own[p]) > cosine_of_flat;
+            const V3f n = scene.normals[scene.patches[p].vertices[c]];
+            curved.normals[c] = n.dot(own[p]) < 0 ? -n : n;
+            is_curved |= curved.normals[c].dot(own[p]) < cosine_of_flat;
+            has_all &= n != V3f(0);
         }
-        if (is_flat) continue;
+        if (!is_curved || !has_all) continue;
         curved.first_neighbour = static_cast<std::uint32_t>(neighbours_.size());
         for (std::uint32_t c = 0; c < count; ++c) {
             const auto [first, second] = members[surfaces.edges.group[4 * p + c]];
@@ -132,32 +124,26 @@ void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradia
     parallel_for_ranges(curved_.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) gradients[i] = gradient(forest, irradiance, curved_[i]);
     });
-    const auto change_below = [&](std::uint32_t patch, const auto& change) {
-        std::vector<std::uint32_t> elements{patch};
-        while (!elements.empty()) {
-            const std::uint32_t e = elements.back();
-            elements.pop_back();
-            if (forest.is_leaf(e)) {
-                change(e);
-                continue;
-            }
-            for (std::uint32_t k = 0; k < 4; ++k) elements.push_back(forest.first_child(e) + k);
-        }
-    };
     parallel_for_ranges(curved_.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const CurvedPatch& curved = curved_[i];
             const bool is_triangle = forest.geometry(curved.patch).is_triangle();
-            const V3f mean = curved.mean_normal(is_triangle);
-            change_below(curved.patch, [&](std::uint32_t leaf) {
-                const Imath::V3d turn(curved.normal_at(is_triangle, forest.cell(leaf).centre(is_triangle)) - mean);
+            const std::vector<std::uint32_t> leaves = leaves_of(forest, curved.patch);
+            const auto normal_of = [&](std::uint32_t leaf) {
+                return Imath::V3d(curved.normal_at(is_triangle, forest.cell(leaf).centre(is_triangle)));
+            };
+            Imath::V3d mean(0);
+            for (const std::uint32_t leaf : leaves) mean += normal_of(leaf) * static_cast<double>(forest.area(leaf));
+            mean /= static_cast<double>(forest.area(curved.patch));
+            for (const std::uint32_t leaf : leaves) {
+                const Imath::V3d turn = normal_of(leaf) - mean;
                 for (int c = 0; c < 3; ++c) {
                     const auto change =
                         static_cast<float>(gradients[i].by_normal[static_cast<std::size_t>(c)].dot(turn));
                     const float most = gradients[i].largest_change[c];
                     irradiance[leaf][c] = std::max(0.0f, irradiance[leaf][c] + std::clamp(change, -most, most));
                 }
-            });
+            }
         }
     });
 }

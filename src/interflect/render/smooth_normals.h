@@ -12,19 +12,19 @@
 
 namespace interflect::inline detail {
 
-/// The normals of the curved surfaces that flat patches approximate. The solver finds irradiance for the normal of each
-/// patch; on the curved surface it varies within the patch with the normal. To first order the change is
+/// Shading of the curved surfaces that flat patches approximate, by the normals of the scene's file (Scene::normals).
+/// The solver finds irradiance for the normal of each patch; on the curved surface it varies within the patch with the
+/// normal. To first order,
 ///
 ///     H(x) = H_solved(x) + G (n(x) - n_mean)
 ///
-/// with n(x) interpolated from the normals at the patch's corners and n_mean the mean of these. G, the gradient of
-/// irradiance by normal, is a least-squares fit to the steps of irradiance across the edges to the patch's neighbours,
-/// where the place is the same and the normal differs. No change exceeds the largest of these steps. The mean over a
-/// patch stays the same.
+/// with n(x) interpolated from the normals at the patch's corners and n_mean its mean. G, the gradient of irradiance by
+/// normal, is a least-squares fit to the steps of irradiance across the edges to the patch's neighbours, where the
+/// place is the same and the normal differs. No change exceeds the largest of these steps. The mean over a patch stays
+/// the same. Patches without normals at all corners stay flat: a low crease angle does not tell a roof from a dome.
 class SmoothNormals {
   public:
     SmoothNormals() = default;
-    /// Normals at corners are those of the scene, else the mean of the patches that meet there on the smooth surface.
     SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces);
 
     /// Adds G (n(x) - n_mean) at the centre of each leaf of a curved patch. Irradiance stays non-negative.
