@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace interflect::inline detail {
 
@@ -16,8 +15,6 @@ constexpr float cosine_of_flat = 0.99996f;
 /// Ridge of the fits, relative to the variation of the normal over the patch: bounds G where neighbours are nearly
 /// coplanar and steps are noise or shadows. On a regular mesh, G is 2% too small.
 constexpr double relative_ridge = 0.02;
-
-std::uint32_t corner_count(const Patch& patch) { return static_cast<std::uint32_t>(patch.vertex_count()); }
 
 /// Mean irradiance of the leaves along an edge of an element, which starts at corner c in the order of the vertices.
 Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, std::uint32_t e, std::uint32_t c,
