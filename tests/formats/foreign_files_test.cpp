@@ -33,6 +33,8 @@ TEST(WithoutQuotes, RemovesFromTheFirstMarkToTheLast) {
     EXPECT_EQ(without_quotes("found 'cut off"), "found ...");
     EXPECT_EQ(without_quotes("nothing is quoted"), "nothing is quoted");
     EXPECT_EQ(without_quotes("it's.ies: found 'a'", 8), "it's.ies: found ...");
+    EXPECT_EQ(without_quotes("expected the lamp's geometry, found 'a'"), "expected the lamp's geometry, found ...");
+    EXPECT_EQ(without_quotes("the lamp's geometry is missing"), "the lamp's geometry is missing");
 }
 
 class TiltFiles : public testing::Test {

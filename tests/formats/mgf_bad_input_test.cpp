@@ -85,6 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"UndefinedMaterial", "m paint", "material 'paint' is not defined"},
         BadLine{"UndefinedTemplate", "m paint = paint", "material 'paint' is not defined"},
         BadLine{"NoEquals", "v a b", "expected '='"}, BadLine{"NoName", "v =", "is not defined"},
+        BadLine{"NoImage", "texture ts", "expected 'texture rd|ed|ts image'"},
         BadLine{"DashName", "v - =", "cannot be a name"}, BadLine{"Sphere", "sph a 0", "radius of a sphere"},
         BadLine{"RingWithoutNormal", "ring a 0 1", "vertex 'a' needs a normal"},
         BadLine{"Torus", "torus a 0 1", "needs a normal"}, BadLine{"Cone", "cone a 1 b -1", "must not differ in sign"},

@@ -57,6 +57,19 @@ INSTANTIATE_TEST_SUITE_P(, PlyForm,
                          testing::Values(header("ascii") + square + face, binary(std::endian::little),
                                          binary(std::endian::big)));
 
+TEST(Ply, DataAfterTheLastElementGivesAWarning) {
+    const auto kinds = [](const std::string& bytes) {
+        const Scene scene = read(bytes);
+        std::vector<std::string> found;
+        for (const Warnings::Entry& warning : scene.warnings.entries()) found.push_back(warning.kind);
+        return found;
+    };
+    const std::vector<std::string> surplus = {"surplus-data"};
+    EXPECT_EQ(kinds(header("ascii") + square + face + face), surplus);
+    EXPECT_EQ(kinds(binary(std::endian::little) + "\1"), surplus);
+    EXPECT_EQ(kinds(header("ascii") + square + face + " \r\n\n"), std::vector<std::string>());
+}
+
 TEST(Ply, EveryCutOfABinaryFileIsRefused) {
     const std::string whole = binary(std::endian::little);
     for (std::size_t size = 0; size < whole.size(); ++size)

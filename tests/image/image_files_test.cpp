@@ -353,9 +353,9 @@ TEST(ImageFiles, RadianceWithAnImpossibleExposureIsRefused) {
     const auto file = [&](const std::string& exposure) {
         return folder.write("a.hdr", "#?RADIANCE\nEXPOSURE=" + exposure + "\n\n-Y 1 +X 1\n" + "\x10\x10\x10\x80");
     };
-    for (const char* exposure : {"0", "-1", "nan", "inf", "", "x", "1e-99"})
+    for (const char* exposure : {"0", "-1", "nan", "inf", "", "x", "1e-99", "+", "+-1", "++1"})
         EXPECT_THAT(refusal(file(exposure)), HasSubstr("EXPOSURE is no number above 0")) << exposure;
-    EXPECT_EQ(read_image(file(" 2.5")).width, 1);
+    for (const char* exposure : {" 2.5", "+2", " +2e1"}) EXPECT_EQ(read_image(file(exposure)).width, 1) << exposure;
 }
 
 TEST(ImageFiles, FormatIsThatOfTheExtension) {

@@ -45,6 +45,9 @@ class PlyReader {
             else
                 skip(element);
         }
+        if (!values_.is_at_end())
+            model_.warnings.add("surplus-data", "data after the last element of the header is left out",
+                                model_.file.string());
         for (const std::uint32_t index : mesh_.indices) require_vertex(index);
         model_.instances.push_back({0, file_to_world(options_), 0});
         model_.materials.push_back(material());

@@ -10,6 +10,12 @@
 
 namespace interflect::inline detail {
 
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n\v\f";
+
+}  // namespace
+
 std::size_t size_of(PlyType type) {
     switch (type) {
         case PlyType::int8:
@@ -29,6 +35,8 @@ std::optional<std::int64_t> PlyValues::lines() const {
     if (form_ != Form::ascii) return std::nullopt;
     return std::count(bytes_.begin(), bytes_.end() - static_cast<std::ptrdiff_t>(rest_.size()), '\n');
 }
+
+bool PlyValues::is_at_end() const { return rest_.find_first_not_of(blanks) == rest_.npos; }
 
 double PlyValues::next(PlyType type) {
     if (form_ == Form::ascii) return next_word();
@@ -59,7 +67,6 @@ double PlyValues::next(PlyType type) {
 }
 
 double PlyValues::next_word() {
-    constexpr std::string_view blanks = " \t\r\n\v\f";
     rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
     if (rest_.empty()) throw std::invalid_argument("the file ends before its last value");
     const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));

@@ -24,6 +24,8 @@ class PlyValues {
 
     /// @throws std::invalid_argument  at the end and for invalid numbers. Binary values may be infinite or NaN.
     double next(PlyType type);
+    /// Returns whether only blanks remain.
+    bool is_at_end() const;
     /// Returns whether enough bytes remain. In text, each value but the last takes at least two characters.
     bool may_hold(std::uint64_t values, std::uint64_t bytes) const {
         return form_ == Form::ascii ? values <= (rest_.size() + 1) / 2 : bytes <= rest_.size();

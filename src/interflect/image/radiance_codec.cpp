@@ -140,6 +140,7 @@ Size parse_resolution(std::string_view line) {
 /// Whether this is a finite factor > 0.
 bool is_exposure(std::string_view text) {
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    if (text.starts_with('+')) text.remove_prefix(1);
     float factor = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
     return error == std::errc() && factor > 0 && std::isfinite(factor);
