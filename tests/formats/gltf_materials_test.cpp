@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -83,6 +84,38 @@ TEST(GltfMaterials, MetalsLoseTheirReflection) {
     ASSERT_THAT(warning_kinds(scene), Contains("specular-reflection"));
     EXPECT_THAT(scene.warnings.entries()[0].message, HasSubstr("75.0% of all"));
 }
+
+struct Layer {
+    const char* extension;
+    json factors;
+    bool reflects;
+};
+
+class GltfLayers : public testing::TestWithParam<Layer> {};
+
+TEST_P(GltfLayers, AreReportedIfTheyReflect) {
+    const auto& [extension, factors, reflects] = GetParam();
+    json material = diffuse();
+    material["extensions"][extension] = factors;
+    std::vector<std::string> kinds;
+    material_of(material, &kinds);
+    EXPECT_EQ(std::count(kinds.begin(), kinds.end(), "specular-reflection"), reflects ? 1 : 0) << extension << factors;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, GltfLayers,
+    testing::Values(Layer{"KHR_materials_specular", json::object(), true},
+                    Layer{"KHR_materials_specular", {{"specularFactor", 0.5}}, true},
+                    Layer{"KHR_materials_specular", {{"specularFactor", 0}}, false},  // Interflect's lightmaps
+                    Layer{"KHR_materials_specular", {{"specularColorFactor", {0, 0, 0}}}, false},  // Blender, diffuse
+                    Layer{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}, true},
+                    Layer{"KHR_materials_clearcoat", json::object(), false},
+                    Layer{"KHR_materials_sheen", {{"sheenColorFactor", {0, 0.5, 0}}}, true},
+                    Layer{"KHR_materials_sheen", json::object(), false},
+                    Layer{"KHR_materials_iridescence", {{"iridescenceFactor", 1}}, true},
+                    Layer{"KHR_materials_iridescence", json::object(), false},
+                    Layer{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}, true},
+                    Layer{"KHR_materials_anisotropy", json::object(), false}));
 
 TEST(GltfMaterials, FacesWithoutOneAreGrey) {
     GltfBuilder file;

@@ -156,7 +156,7 @@ TEST_P(MgfBadTexture, IsNamedWithItsFault) {
 INSTANTIATE_TEST_SUITE_P(
     All, MgfBadTexture,
     testing::Values(
-        BadTexture{"NoFile", "texture rd", "expected 'texture rd|ed image'"},
+        BadTexture{"NoFile", "texture rd", "expected 'texture rd|ed|ts image'"},
         BadTexture{"OfWhat", "texture rs image.exr", "a texture is one of rd, ts or ed, not of 'rs'"},
         BadTexture{"MissingImage", "texture rd nowhere.png\nrd .5", "there is no such file"},
         BadTexture{"Folder", "texture rd .\nrd .5", "this is a folder"},

@@ -121,8 +121,15 @@ void ObjReader::coordinate(Words words) {
 void ObjReader::normal(Words words) {
     if (normals_.size() >= none) throw std::invalid_argument("there are more normals than 32 bits can count");
     Imath::V3d n(0);
-    if (words.size() >= 4)
-        for (int k = 0; k < 3; ++k) n[k] = parse_number(words[static_cast<std::size_t>(k) + 1]).value_or(0);
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t word = static_cast<std::size_t>(k) + 1;
+        const auto number = word < words.size() ? parse_number(words[word]) : std::nullopt;
+        if (!number) {
+            n = Imath::V3d(0);
+            break;
+        }
+        n[k] = *number;
+    }
     normals_.push_back(n);
 }
 
