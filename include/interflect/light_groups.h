@@ -46,8 +46,8 @@ void require_sources_of_groups(const Scene& scene);
 /// luminaire. @throws InputError for more than most_light_groups.
 std::vector<LightGroup> groups_by_name(const Scene& scene);
 
-/// Copy of the scene with the sources of each group scaled. @param factors  One per group of source_groups(scene); >=
-/// 0.
+/// Copy of the scene with the sources of each group scaled. Materials keep their order.
+/// @param factors  One per group of source_groups(scene); >= 0.
 Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors);
 
 }  // namespace interflect

@@ -177,6 +177,9 @@ struct Solution {
     std::vector<std::string> group_names;  ///< As in source_groups(scene).
     /// Remaining scale factor of each group's sources: 1, except in files of Solver::save(), whose scene is not dimmed.
     std::vector<float> dimming;
+    /// Largest channel of M + H of each patch before dim() [as H]; empty if not dimmed. Exports choose the faces that
+    /// they show from it, so that all dimmed states have the same faces.
+    std::vector<float> undimmed_light;
     std::vector<float> view_importance;       ///< v; empty without a view.
     std::vector<float> indirect_importance;   ///< psi - v; empty without a view.
     std::vector<float> standard_error;        ///< Estimate for the luminance of H [as H].

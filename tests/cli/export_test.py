@@ -6,7 +6,7 @@ import struct
 import unittest
 import zlib
 
-from command import BAD_INPUT, WRONG_USAGE, CommandTest, room
+from command import BAD_INPUT, WRONG_USAGE, CommandTest, room, vertices
 
 def png_texels(png):
     position, data = 8, b""
@@ -114,6 +114,34 @@ class Export(CommandTest):
         result = self.interflect("export", "scene.h5", "--dim", "x=1", "-o", "out.glb", exit_code=BAD_INPUT)
         self.assertIn("'l'", result.stderr)
         self.interflect("export", "scene.mgf", "--dim", "l=1", "-o", "out.rad", exit_code=WRONG_USAGE)
+
+    def test_lightmaps_of_all_dimmed_states_fit_one_mesh(self):
+        """A lamp in a closed box of sheets: without it, the box is dark inside."""
+        corners = [(x, y, z) for z in (1, 1.5) for y in (1, 1.5) for x in (1, 1.5)]
+        box = "f v0 v2 v3 v1\nf v4 v5 v7 v6\nf v0 v4 v6 v2\nf v1 v3 v7 v5\nf v0 v1 v5 v4\nf v2 v6 v7 v3\n"
+        sheet = "m sheet =\n\tsides 2\n\tc\n\trd .5\n"
+        lamp = "m left =\n\tsides 1\n\tc\n\trd .1\n\ted 50\n"
+        panel, back = (vertices((1.2, 1.2, z), (1.2, 1.3, z), (1.3, 1.3, z), (1.3, 1.2, z)) for z in (1.4, 1.41))
+        face = "f v0 v1 v2 v3\n"
+        self.write("scene.mgf", "o lit\n" + lamp + panel + face + sheet + back + face + vertices(*corners) + box + "o\n"
+                   + room().replace("m lamp", "m right"))  # fmt: skip
+        self.interflect("solve", "scene.mgf", "--rays", "100k", "--group", "l=left", "--group", "r=right", "-o", "scene.h5")
+        undimmed = self.layout()
+        for dimming in (("--dim", "l=0"), ("--dim", "r=0"), ("--dim", "l=0", "--dim", "r=0"), ("--dim", "l=0.5", "--dim", "r=2")):
+            with self.subTest(dimming):
+                self.assertEqual(self.layout(*dimming), undimmed)
+
+    def layout(self, *arguments):
+        """Returns positions and coordinates of a mesh with lightmaps."""
+        scene = self.export("--lightmap", "--texels-per-metre", "2", *arguments)
+        data = base64.b64decode(scene["buffers"][0]["uri"].partition(",")[2])
+        values = []
+        for mesh in scene["meshes"]:
+            for primitive in mesh["primitives"]:
+                for name, number in sorted([*primitive["attributes"].items(), ("indices", primitive["indices"])]):
+                    view = scene["bufferViews"][scene["accessors"][number]["bufferView"]]
+                    values.append((mesh["name"], name, data[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]))
+        return values
 
     def test_lists_light_groups(self):
         self.solve_groups()

@@ -20,6 +20,12 @@ Scene two_squares(float exitance = 0, float height = 1) {
     return scene;
 }
 
+Solution with_light(std::vector<Rgb> irradiance) {
+    Solution solution;
+    solution.irradiance = std::move(irradiance);
+    return solution;
+}
+
 struct Sides {
     const char* name;
     float front, back;  // irradiance
@@ -30,23 +36,35 @@ class ShownPatches : public testing::TestWithParam<Sides> {};
 
 TEST_P(ShownPatches, AreThoseThatLightComesFrom) {
     const auto& [name, front, back, shown] = GetParam();
-    EXPECT_EQ(shown_patches(two_squares(), std::vector<Rgb>{Rgb(front), Rgb(back), Rgb(0)}), shown);
+    EXPECT_EQ(shown_patches(two_squares(), with_light({Rgb(front), Rgb(back), Rgb(0)})), shown);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ShownPatches,
                          testing::Values(Sides{"BothLit", 1, 2, {true, true, true}},
                                          Sides{"DarkBack", 1, 0, {true, false, true}},
                                          Sides{"DarkFront", 0, 2, {false, true, true}},
-                                         Sides{"BothDark", 0, 0, {true, false, true}}),
+                                         Sides{"BothDark", 0, 0, {true, false, true}},
+                                         // 0.001 lx is the limit where the rest is bright, else 1e-4 of the mean
+                                         Sides{"DimBack", 100, 0.9e-3f, {true, false, true}},
+                                         Sides{"DimBackAboveTheLimit", 100, 1.1e-3f, {true, true, true}},
+                                         Sides{"DimBackOfADimFront", 1, 3e-5f, {true, false, true}},
+                                         Sides{"DimBackOfADimFrontAboveTheLimit", 1, 4e-5f, {true, true, true}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ShownPatchesOfALamp, AreBothThoughNothingLightsThem) {
-    EXPECT_EQ(shown_patches(two_squares(100), std::vector<Rgb>(3, Rgb(0))), std::vector<bool>(3, true));
+    EXPECT_EQ(shown_patches(two_squares(100), with_light(std::vector<Rgb>(3, Rgb(0)))), std::vector<bool>(3, true));
+}
+
+TEST(ShownPatchesOfADimmedSolution, AreThoseOfTheUndimmedOne) {
+    const Scene scene = two_squares();
+    Solution solution = with_light({Rgb(1), Rgb(0), Rgb(0)});
+    solution.undimmed_light = {1, 1, 0};
+    EXPECT_EQ(shown_patches(scene, solution), std::vector<bool>(3, true));
 }
 
 TEST(ShownPatchesOfCoincidentFaces, AreThoseThatAnswerRays) {
     const Scene scene = two_squares(0, 0);
-    EXPECT_EQ(shown_patches(scene, std::vector<Rgb>(3, Rgb(1))), (std::vector<bool>{true, true, false}));
+    EXPECT_EQ(shown_patches(scene, with_light(std::vector<Rgb>(3, Rgb(1)))), (std::vector<bool>{true, true, false}));
 }
 
 /// A two-sided floor in two parts (patches 0 to 3). A two-sided box stands on the second part: 4 and 5 are its lid, the
@@ -67,11 +85,11 @@ Scene floor_with_box(float height, float gap) {
 }
 
 /// Returns an irradiance of 1 on the patches whose light can reach them, 0 on those in the box.
-std::vector<Rgb> light_above(const Scene& scene) {
+Solution light_above(const Scene& scene) {
     std::vector<Rgb> irradiance(scene.patches.size(), Rgb(0));
     irradiance[0] = Rgb(1);
     for (std::size_t p = 4; p < irradiance.size(); p += 2) irradiance[p] = Rgb(1);
-    return irradiance;
+    return with_light(irradiance);
 }
 
 TEST(ShownPatchesInABox, AreLeftOutWhereNothingButDarknessIsSeen) {
@@ -79,6 +97,15 @@ TEST(ShownPatchesInABox, AreLeftOutWhereNothingButDarknessIsSeen) {
     const std::vector<bool> shown = shown_patches(scene, light_above(scene));
     EXPECT_TRUE(shown[0]);
     EXPECT_FALSE(shown[2]);  // dark on both sides; it was shown, and drawn along the edges of the box
+    for (std::size_t p = 4; p < shown.size(); ++p) EXPECT_EQ(shown[p], p % 2 == 0) << p;
+}
+
+TEST(ShownPatchesInABox, AreLeftOutDespiteLightThatLeaksIn) {
+    const Scene scene = floor_with_box(0.01f, 0);
+    Solution solution = light_above(scene);
+    for (Rgb& h : solution.irradiance) h = h * 100.0f + Rgb(5e-4f);
+    const std::vector<bool> shown = shown_patches(scene, solution);
+    EXPECT_FALSE(shown[2]);
     for (std::size_t p = 4; p < shown.size(); ++p) EXPECT_EQ(shown[p], p % 2 == 0) << p;
 }
 

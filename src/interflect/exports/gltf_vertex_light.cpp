@@ -97,7 +97,7 @@ using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimi
 
 LitPrimitives primitives_of(const Scene& scene, const Solution& solution, ElementMesh& mesh, float exposure) {
     const ElementForest& forest = *solution.forest;
-    const std::vector<bool> shown = shown_patches(scene, solution.irradiance);
+    const std::vector<bool> shown = shown_patches(scene, solution);
     const VertexLight light(scene, exposure);
     LitPrimitives primitives;
     std::vector<MeshTriangle> triangles;

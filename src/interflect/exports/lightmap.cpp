@@ -324,7 +324,7 @@ V2f Lightmap::coordinate(std::uint32_t patch, Parameters at) const {
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     const LightmapOptions& chosen = *options.lightmap;
     Lightmap lightmap;
-    lightmap.charts = make_charts(scene, shown_patches(scene, solution.irradiance), chosen, options.warnings);
+    lightmap.charts = make_charts(scene, shown_patches(scene, solution), chosen, options.warnings);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
     lightmap.index_in_chart.assign(scene.patches.size(), none);
     const std::vector<Imath::V2i> sizes = pack_charts(lightmap.charts, chosen.gutter, chosen.max_size);

@@ -3,24 +3,44 @@
 #include <algorithm>
 
 #include "interflect/exports/encased_patches.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/ray_caster.h"
+#include "interflect/solver/patch_light.h"
 
 namespace interflect::inline detail {
 
-std::vector<bool> shown_patches(const Scene& scene, std::span<const Rgb> irradiance) {
-    const auto is_dark = [&](std::uint32_t p) {
-        return largest_channel(irradiance[p]) == 0 &&
-               largest_channel(scene.materials[scene.patches[p].material].exitance) == 0;
-    };
+namespace {
+
+/// Light of dark patches, which leaks into solids at their seams: invisible beside lit rooms.
+constexpr double most_dark = 1e-3;          // [lm/m^2]
+constexpr double most_dark_of_mean = 1e-4;  // relative to the mean over the area
+
+std::vector<bool> dark_patches(const Scene& scene, const std::vector<float>& light) {
+    double sum = 0, area = 0;
+    for (std::size_t p = 0; p < light.size(); ++p) {
+        const double own = PatchGeometry(scene, scene.patches[p]).area();
+        sum += own * static_cast<double>(light[p]);
+        area += own;
+    }
+    const double limit = area > 0 ? std::min(most_dark, most_dark_of_mean * sum / area) : 0;
+    std::vector<bool> dark;
+    for (const float each : light) dark.push_back(static_cast<double>(each) <= limit);
+    return dark;
+}
+
+}  // namespace
+
+std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
+    const bool is_dimmed = !solution.undimmed_light.empty();
+    const std::vector<bool> dark =
+        dark_patches(scene, is_dimmed ? solution.undimmed_light : patch_light(scene, solution.irradiance));
     const RayCaster ray_caster(scene);
     std::vector<bool> shown(scene.patches.size(), true);
     for (std::uint32_t p = 0; p < shown.size(); ++p) {
         const std::uint32_t other = scene.patches[p].other_side;
-        if (other != none && is_dark(p)) shown[p] = is_dark(other) && p < other;
+        if (other != none && dark[p]) shown[p] = dark[other] && p < other;
         if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
     }
-    std::vector<bool> dark(shown.size());
-    for (std::uint32_t p = 0; p < dark.size(); ++p) dark[p] = is_dark(p);
     if (std::find(dark.begin(), dark.end(), false) == dark.end())
         return shown;  // a scene without light keeps its faces
     const std::vector<bool> encased = encased_patches(scene, ray_caster, dark);

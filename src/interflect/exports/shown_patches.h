@@ -1,9 +1,9 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "interflect/scene.h"
+#include "interflect/solve.h"
 
 namespace interflect::inline detail {
 
@@ -12,7 +12,9 @@ namespace interflect::inline detail {
 /// show through along lit edges, or where a renderer draws both sides. Unless the whole scene is dark, also excludes
 /// patches surrounded by dark ones (encased_patches()): with multisampling they show through where other faces touch
 /// the same surface.
-/// @param irradiance  One value per element, patches first.
-std::vector<bool> shown_patches(const Scene& scene, std::span<const Rgb> irradiance);
+///
+/// Patches are dark below 0.001 lx, or below 1e-4 of the mean where that is less: light need not be in photometric
+/// units. Light before dim() counts, so all states of a solution show the same patches.
+std::vector<bool> shown_patches(const Scene& scene, const Solution& solution);
 
 }  // namespace interflect::inline detail

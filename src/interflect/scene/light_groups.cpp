@@ -160,20 +160,27 @@ std::vector<LightGroup> groups_by_name(const Scene& scene) {
 }
 
 Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors) {
-    Scene result = scene;
+    const auto factor_of = [&](std::size_t patch) {
+        const bool emits = channel_sum(scene.materials[scene.patches[patch].material].exitance) > 0;
+        return emits ? factors[groups.of_patch[patch]] : 1;
+    };
     std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // material index per (material, factor)
-    for (std::size_t i = 0; i < result.patches.size(); ++i) {
-        std::uint32_t& material = result.patches[i].material;
-        const float factor = factors[groups.of_patch[i]];
-        if (factor == 1 || channel_sum(scene.materials[material].exitance) == 0) continue;
-        const auto [entry, is_new] =
-            scaled.try_emplace({material, factor}, static_cast<std::uint32_t>(result.materials.size()));
-        if (is_new) {
-            result.materials.push_back(scene.materials[material]);
-            result.materials.back().exitance *= factor;
-        }
-        material = entry->second;
+    for (std::size_t i = 0; i < scene.patches.size(); ++i)
+        scaled.try_emplace({scene.patches[i].material, factor_of(i)});
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        const auto used = scaled.lower_bound({m, 0.0f});
+        if (used == scaled.end() || used->first.first != m) scaled.try_emplace({m, 1.0f});
     }
+    Scene result = scene;
+    // The order of the materials stays: exports have the same meshes for all factors.
+    result.materials.clear();
+    for (auto& [key, index] : scaled) {
+        index = static_cast<std::uint32_t>(result.materials.size());
+        result.materials.push_back(scene.materials[key.first]);
+        result.materials.back().exitance *= key.second;
+    }
+    for (std::size_t i = 0; i < result.patches.size(); ++i)
+        result.patches[i].material = scaled.at({scene.patches[i].material, factor_of(i)});
     for (std::size_t i = 0; i < result.luminaires.size(); ++i)
         scale(result.luminaires[i], factors[groups.of_luminaire[i]]);
     return result;

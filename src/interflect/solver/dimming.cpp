@@ -8,6 +8,7 @@
 #include "interflect/error.h"
 #include "interflect/solver/group_light.h"
 #include "interflect/solver/materials.h"
+#include "interflect/solver/patch_light.h"
 
 namespace interflect {
 
@@ -20,6 +21,7 @@ void dim(Scene& scene, Solution& solution, const std::string& group, float facto
         throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));
     std::vector<float> factors(groups.size(), 1);
     factors[g] = factor;
+    if (solution.undimmed_light.empty()) solution.undimmed_light = patch_light(scene, solution.irradiance);
     scene = dimmed(scene, groups, factors);
     for (Rgb& h : solution.groups[g]) h *= factor;
     solution.irradiance = sum_of(solution.groups);
