@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -66,11 +67,25 @@ GltfTextureUse GltfMaterials::use_of(const GltfValue& owner, const char* key) {
 void GltfMaterials::warn_of_ignored(const GltfValue& owner) {
     if (owner.has("normalTexture"))
         asset_.warn("normal-texture", "normal maps are ignored: faces are flat", owner.place());
-    for (const char* layer : {"KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_specular",
-                              "KHR_materials_iridescence", "KHR_materials_anisotropy"})
-        if (owner.extension(layer).exists())
+    const auto warn_of = [&](const char* layer, auto is_visible) {
+        const GltfValue extension = owner.extension(layer);
+        if (extension.exists() && is_visible(extension))
             asset_.warn("specular-reflection", fmt::format("{} is ignored: reflection is diffuse", layer),
                         owner.place());
+    };
+    const auto if_positive = [](const char* factor) {
+        return [=](const GltfValue& extension) { return extension.number(factor, 0) > 0; };
+    };
+    constexpr std::array<double, 3> black{0, 0, 0}, white{1, 1, 1};
+    warn_of("KHR_materials_clearcoat", if_positive("clearcoatFactor"));
+    warn_of("KHR_materials_iridescence", if_positive("iridescenceFactor"));
+    warn_of("KHR_materials_anisotropy", if_positive("anisotropyStrength"));
+    warn_of("KHR_materials_sheen",
+            [&](const GltfValue& sheen) { return sheen.numbers<3>("sheenColorFactor", black) != black; });
+    // Blender writes a diffuse material (Specular 0) with the factor 1 and a black colour.
+    warn_of("KHR_materials_specular", [&](const GltfValue& specular) {
+        return specular.number("specularFactor", 1) > 0 && specular.numbers<3>("specularColorFactor", white) != black;
+    });
     if (owner.extension("KHR_materials_volume").exists())
         asset_.warn("volume", "KHR_materials_volume is ignored: each of its faces is a thin pane", owner.place());
 }
