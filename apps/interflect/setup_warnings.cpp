@@ -11,7 +11,8 @@ std::string text_of(const Finding::Place& place) {
     std::string text = place.where;
     const auto append = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
     if (!place.object.empty()) append(fmt::format("object '{}'", place.object));
-    if (!place.material.empty()) append(fmt::format("'{}'", place.material));
+    // Many programs give a light its object's name.
+    if (!place.material.empty() && place.material != place.object) append(fmt::format("'{}'", place.material));
     if (place.has_position)
         append(fmt::format("at ({:.6g}, {:.6g}, {:.6g})", place.position.x, place.position.y, place.position.z));
     return text;

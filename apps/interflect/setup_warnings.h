@@ -8,7 +8,7 @@
 
 namespace interflect::command {
 
-/// Returns "object 'lamp', 'bulb' at (1, 2, 0.5)".
+/// Returns "object 'lamp', 'bulb', at (1, 2, 0.5)"; equal names once.
 std::string text_of(const Finding::Place& place);
 
 /// Returns a finding's advice and the command's option for it.

@@ -139,12 +139,14 @@ class Addon(unittest.TestCase):
 
     def test_warnings_of_the_add_on_and_of_the_command(self):
         found = self.blender("warnings")
-        spread, ball, metals = found["warnings"]
+        spread, ball, metals, outside, sky = found["warnings"]
         self.assertIn("The spread of the area lamp 'lamp'", spread)
         self.assertIn("left out: ball", ball)
         self.assertFalse(found["ball_hidden"])
         self.assertIn("'metal': specular reflection of metals is left out", metals)
         self.assertTrue(metals.startswith("scene.glb: "), metals)
+        self.assertIn(": object 'outer', at (40, -70, 30); ", outside)
+        self.assertIn(": the world; ", sky)
 
     def test_failures_leave_the_scene_as_it_was(self):
         found = self.blender("failures")

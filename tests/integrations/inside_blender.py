@@ -340,6 +340,8 @@ def warnings() -> dict:
     bpy.data.lights["lamp"].spread = 1
     bpy.ops.object.metaball_add(location=(-1, 0, 1))
     bpy.context.object.name = "ball"
+    put("outer", bpy.data.lights.new("outer", "POINT"), (40, -70, 30)).data.energy = 500
+    new_world()
     found = bake()
     return {**found, "warnings": result.warnings(bpy.context.scene), "ball_hidden": bpy.data.objects["ball"].hide_render}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from . import exchange, pipeline, result, world
+from . import exchange, messages, pipeline, result, world
 from .lit_materials import glTF2ImportUserExtension  # the importer looks for it here
 
 bl_info = {
@@ -168,11 +168,12 @@ class Bake(bpy.types.Operator):
     def _finish(self):
         done = Bake.running
         scene = bpy.data.scenes.get(self._scene)
-        in_folder = str(self.folder) + os.sep  # removed from messages
-        warnings = [each.replace(in_folder, "") for each in dict.fromkeys(self._warnings + done.warnings)]
+        in_folder = str(self.folder) + os.sep
+        of_command = [messages.for_blender(each, in_folder) for each in done.warnings]
+        warnings = list(dict.fromkeys(self._warnings + of_command))
         try:
             if done.error:
-                self.report({"ERROR"}, str(done.error).replace(in_folder, "").removeprefix("error: "))
+                self.report({"ERROR"}, messages.for_blender(str(done.error), in_folder).removeprefix("error: "))
                 return {"CANCELLED"}
             if done.is_cancelled:
                 self.report({"INFO"}, "Interflect: cancelled")
