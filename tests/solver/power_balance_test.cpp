@@ -8,6 +8,7 @@
 
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
 
 namespace interflect {
 namespace {
@@ -40,19 +41,27 @@ Scene open_room() {
     return scene;
 }
 
-/// Escaped power is averaged over the passes, like irradiance. Seen to fail by 0.26% with the escaped power of the last
-/// pass alone, which also shoots the unshot power of the previous pass.
+/// Escaped power is averaged over the passes, like irradiance. Random walks complete each pass, so the balance closes
+/// in the mean over seeds; correct code fails with probability `false_alarm`. Seen to fail with the escaped power of
+/// the last pass alone (-0.26%).
 TEST_P(Balance, OfAnOpenRoomCloses) {
     const Scene scene = open_room();
     const RayCaster ray_caster(scene);
-    std::vector<double> escaped;
-    const Solution solution =
-        solve(scene, ray_caster, {.method = find_method(GetParam()), .limits = {.rays = 300'000}},
-              {.report = [&](const IterationReport& r) { escaped.push_back(r.escaped_power.x); }, .stop = nullptr});
-    const PowerBalance balance = power_balance(scene, solution);
-    EXPECT_GT(balance.escaped.x, 0.03 * balance.emitted.x);
-    EXPECT_NEAR(balance.relative_difference(), 0, 1e-4);
-    for (const double e : escaped) EXPECT_NEAR(e, balance.escaped.x, 0.3 * balance.escaped.x) << "from the first on";
+    std::vector<double> differences;
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+        std::vector<double> escaped;
+        const SolveOptions options{.method = find_method(GetParam()), .limits = {.rays = 60'000}, .seed = seed};
+        const Solution solution =
+            solve(scene, ray_caster, options,
+                  {.report = [&](const IterationReport& r) { escaped.push_back(r.escaped_power.x); }, .stop = nullptr});
+        const PowerBalance balance = power_balance(scene, solution);
+        EXPECT_GT(balance.escaped.x, 0.03 * balance.emitted.x);
+        EXPECT_NEAR(balance.relative_difference(), 0, 2e-3);
+        for (const double e : escaped)
+            EXPECT_NEAR(e, balance.escaped.x, 0.3 * balance.escaped.x) << "from the first on";
+        differences.push_back(balance.relative_difference());
+    }
+    EXPECT_GT(t_test(differences, 0), false_alarm);
 }
 
 /// After dimming, power that escaped before does not count. Seen to fail by 2% otherwise.
