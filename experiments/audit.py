@@ -62,7 +62,7 @@ class Reference:
             self.pictures = [arrays[f"reflected{seed}"].astype(float) for seed in self.SEEDS]
             self.shines, self.surface = arrays["shines"], arrays["surface"]
         # Only reflected light is compared, so lamps, skies and the pixels beside them are excluded.
-        self.counts = ~widened(self.shines)
+        self.counts = ~widened(widened(self.shines))
         self.mean = np.mean(sum(self.pictures)[self.counts]) / 2
         self.side = BLOCK * scale.size[1] // BLOCK_PICTURE_ROWS  # block size in pixels
 
