@@ -34,8 +34,8 @@ struct ValidateOptions {
 
 /// Finds problems that would spoil a solution. Call it with the scene as read, before cut_at_contacts(). Problems:
 /// "degenerate-face" (without area, omitted by the reader), "duplicate-face" (same corners as another), "inverted-face"
-/// (one-sided, with the scene and its light behind it), "inverted-lamp" (its front is against a surface, its back is not),
-/// "hidden-lamp" (covered, or enclosed by close surfaces), "zero-power-lamp", "high-reflectance", "no-light",
+/// (one-sided, with the scene and its light behind it), "inverted-lamp" (its front is against a surface, its back is
+/// not), "hidden-lamp" (covered, or enclosed by close surfaces), "zero-power-lamp", "high-reflectance", "no-light",
 /// "implausible-size", "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane),
 /// "open-edge" (belongs to one face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces
 /// and lamps are sampled with 64 rays a face, for at most 4096 faces of a kind.
@@ -47,12 +47,12 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 /// Fast part of validate(), in milliseconds: probable mistakes in placement, units or axes. Problems: "close-luminaire"
 /// (more than half of its light falls on a surface within 2 cm, or within a hundredth of a scene smaller than 2 m),
 /// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or a quarter of all
-/// directions are free), "wide-opening" (larger than the scene, or through its walls), "enclosed-luminaire" (in a closed
-/// space without a view that is too narrow for a room, or that keeps all light from the views) and "shut-out-sky" (a
-/// sky or a sun, and a closed scene seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT in one scene),
-/// "probable-unit" and "probable-up-axis" (for formats without either). Traces 384 to 1280 rays for each point light,
-/// spot and measured light, and at most 64 x 66 for its opening, for at most 1024 of them; 2^17 rays from views or
-/// points if a space is closed; and 2^14 lines to find openings to the sky.
+/// directions are free), "wide-opening" (larger than the scene, or through its walls), "enclosed-luminaire" (in a
+/// closed space without a view that is too narrow for a room, or that keeps all light from the views) and
+/// "shut-out-sky" (a sky or a sun, and a closed scene seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT
+/// in one scene), "probable-unit" and "probable-up-axis" (for formats without either). Traces 384 to 1280 rays for each
+/// point light, spot and measured light, and at most 64 x 66 for its opening, for at most 1024 of them; 2^17 rays from
+/// views or points if a space is closed; and 2^14 lines to find openings to the sky.
 /// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
 std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
                                     const ValidateOptions& options = {});

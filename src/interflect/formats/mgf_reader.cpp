@@ -29,7 +29,8 @@ const std::unordered_map<std::string_view, MgfReader::Entity>& MgfReader::entiti
         {"ts", {&MgfReader::specular_transmittance, 2, 2, "ts transmittance roughness", Defines::material}},
         {"ed", {&MgfReader::exitance, 1, 1, "ed exitance", Defines::material}},
         {"ir", {&MgfReader::refraction, 2, 2, "ir real imaginary", Defines::material}},
-        {"texture", {&MgfReader::texture, 2, 2, "texture rd|ed|ts image", Defines::material}},  // docs/mgf-extensions.md
+        {"texture",
+         {&MgfReader::texture, 2, 2, "texture rd|ed|ts image", Defines::material}},  // docs/mgf-extensions.md
         {"v", {&MgfReader::vertex, 0, 3, "v [name [= [template]]]"}},
         {"p", {&MgfReader::point, 3, 3, "p x y z"}},
         {"n", {&MgfReader::normal, 3, 3, "n x y z"}},

@@ -195,13 +195,13 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes whose bounces are transported by global lines (Sbert 1993, 1997), see docs/method.md. The lines are uniform in
-/// a sphere of radius R around the scene and independent of the light sources. Every two patches that see each other
+/// Passes whose bounces are transported by global lines (Sbert 1993, 1997), see docs/method.md. The lines are uniform
+/// in a sphere of radius R around the scene and independent of the light sources. Every two patches that see each other
 /// along a line exchange light in both directions. Panes transmit it.
 ///
-/// With N lines and B_a 4 pi R^2 / (2 N) along each segment, the expected power from a to b is A_a F_ab B_a. A line costs
-/// 1 + 2 h rays on average, where h = sum A / (4 pi R^2); this mean gives the number of lines of a step. Constant on
-/// patches: no refinement. Cost: O(N h log(patches)) time.
+/// With N lines and B_a 4 pi R^2 / (2 N) along each segment, the expected power from a to b is A_a F_ab B_a. A line
+/// costs 1 + 2 h rays on average, where h = sum A / (4 pi R^2); this mean gives the number of lines of a step. Constant
+/// on patches: no refinement. Cost: O(N h log(patches)) time.
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {

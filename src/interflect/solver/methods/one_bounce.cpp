@@ -30,7 +30,8 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
         const Radiosity light(state.materials, solution.irradiance);
-        const ImportanceWeights weights = importance_weights(solution, state.neighbourhoods, state.emission, state.part_importance);
+        const ImportanceWeights weights =
+            importance_weights(solution, state.neighbourhoods, state.emission, state.part_importance);
         auto [step, power, weighted_power, lost_leaves] =
             power_step(state.materials, state.emission, solution, light, weights, combined, rays);
         step.groups = group_radiosity(state, solution.groups);
