@@ -13,8 +13,9 @@ namespace interflect::inline detail {
 /// patches surrounded by dark ones (encased_patches()): with multisampling they show through where other faces touch
 /// the same surface.
 ///
-/// Patches are dark below 0.001 lx, or below 1e-4 of the mean where that is less: light need not be in photometric
-/// units. Light before dim() counts, so all states of a solution show the same patches.
+/// Sides are dark at 0.001 lx, or at 1e-4 of the mean where that is less, since light need not be in photometric units;
+/// patches inside solids at 1e-3 of the mean. Light before dim() counts, so all states of a solution show the same
+/// patches.
 std::vector<bool> shown_patches(const Scene& scene, const Solution& solution);
 
 }  // namespace interflect::inline detail
