@@ -61,6 +61,13 @@ class Addon(unittest.TestCase):
                 self.assertLess(found["sky"], 1e-6)
                 self.assertEqual(found["through_corners"], 0)
 
+    def test_faces_move_straight_forward(self):
+        found = self.blender("moves")
+        self.assertEqual(found["result"], ["FINISHED"])
+        for forward in found["forward"]:
+            self.assertAlmostEqual(forward, 1, delta=0.1)  # rounding of coordinates
+        self.assertLess(found["within"], 9)
+
     def test_three_bakes_leave_what_one_leaves(self):
         for kind in ("three_vertex", "three_lightmaps"):
             with self.subTest(kind):

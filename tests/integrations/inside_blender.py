@@ -275,6 +275,28 @@ def sheets(kind: str, magnified: float = 1) -> dict:
     return {**found, "sky": sky, "through_corners": through_corners}
 
 
+def moves() -> dict:
+    """Returns how far each corner of a lit mesh moves, in units of lit_sides.py: forward and within its plane."""
+    make_room()
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12, radius=0.3, location=(-1, -0.5, 0.25))
+    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(-1, 0.5, 0.2), rotation=(0.1, 0.05, 0.7))
+    separate, lit_sides.separate = lit_sides.separate, lambda _: None
+    found = bake()
+    meshes, before = lit_meshes(), []
+    for lit in meshes:  # splitting keeps the order of the corners
+        before += [(face.normal.copy(), [lit.data.vertices[i].co.copy() for i in face.vertices]) for face in lit.data.polygons]
+    separate(meshes)
+    after = [[lit.data.vertices[i].co for i in face.vertices] for lit in meshes for face in lit.data.polygons]
+    unit = lit_sides.RELATIVE_DISTANCE * 2.5  # height of the room
+    forward, within = [], []
+    for (normal, old), new in zip(before, after):
+        for start, end in zip(old, new):
+            step = (end - start) / unit
+            forward.append(step.dot(normal))
+            within.append((step - forward[-1] * normal).length)
+    return {**found, "forward": [min(forward), max(forward)], "within": max(within)}
+
+
 SHAPES = {"SQUARE": (0.8, 0.3), "RECTANGLE": (0.9, 0.4), "DISK": (0.8, 0.3), "ELLIPSE": (0.9, 0.4)}
 
 
@@ -466,7 +488,7 @@ CASES = {
     "sheets_magnified": lambda: sheets("LIGHTMAP", 256),
     "three_vertex": lambda: three_bakes("VERTEX"),
     "three_lightmaps": lambda: three_bakes("LIGHTMAP"),
-    **{each.__name__: each for each in (visibility, user, scenes, instances, panels, warnings, failures)},
+    **{each.__name__: each for each in (moves, visibility, user, scenes, instances, panels, warnings, failures)},
     **{each.__name__: each for each in (plain_world, hdri_world, cancel, disable)},
 }
 Path(out).write_text(json.dumps(CASES[case]()))

@@ -9,12 +9,13 @@ from mathutils import Vector
 # that, 0.015 mm.
 RELATIVE_DISTANCE = 2**-18
 PARALLEL = 1 - 2**-15  # cosine of half the angle (0.9 degrees) between faces that count as one plane
+OVERLAP = 1 + 2**-4  # growth of faces, in distances; more than 1, to meet other planes despite rounding
 LARGEST_GROWTH = 8  # of sharp corners, in distances; reached at 14 degrees
 
 
 def separate(objects) -> None:
-    """Moves each face of lit meshes of triangles forward. It also grows by the same distance at the edges of its plane,
-    and so overlaps or touches the faces of other planes: corners stay closed."""
+    """Moves each face of lit meshes of triangles forward. Faces also grow by that distance at the edges of their planes,
+    and so meet the faces of other planes: corners stay closed."""
     meshes = [each for each in objects if each.type == "MESH"]
     corners = [each.matrix_world @ Vector(corner) for each in meshes for corner in each.bound_box]
     largest = max((abs(coordinate) for corner in corners for coordinate in corner), default=0)
@@ -42,16 +43,17 @@ def _move(mesh, distance: float) -> None:
     places = _read(mesh.vertices, "co", numpy.float32, 3)
     starts, edges, normals = _read(mesh.loops, "vertex_index", numpy.int32, 1), _edges(mesh), _normals(mesh)
     ends = numpy.roll(starts.reshape(-1, 3), -1, axis=1).ravel()
-    outwards = _scaled(numpy.cross(places[ends] - places[starts], normals), lambda length: 1 / length)
+    outwards = numpy.cross(places[ends] - places[starts], normals)
+    outwards /= numpy.maximum(_lengths(outwards), numpy.finfo(numpy.float32).tiny)
     outwards[numpy.bincount(edges)[edges] > 1] = 0  # only the rim grows
-    steps = numpy.zeros_like(places)  # in distances
+    growth, forward = numpy.zeros_like(places), numpy.zeros_like(places)  # in distances
     for vertices in (starts, ends):
-        numpy.add.at(steps, vertices, outwards)
-    # For unit vectors m and n, x = 2 (m + n) / |m + n|^2 has x . m = x . n = 1.
-    steps = _scaled(steps, lambda length: numpy.minimum(2 / length, LARGEST_GROWTH) / length)
-    forward = numpy.zeros_like(places)
+        numpy.add.at(growth, vertices, outwards)
     forward[starts] = normals
-    mesh.vertices.foreach_set("co", (places + distance * (steps + forward)).ravel())
+    growth -= numpy.sum(growth * forward, axis=1, keepdims=True) * forward  # rounding of the normals of slivers
+    # For unit vectors m and n, x = 2 (m + n) / |m + n|^2 has x . m = x . n = 1. Ends of slits, where m = -n, stay.
+    growth *= 2 * OVERLAP / numpy.maximum(_lengths(growth), 2 / LARGEST_GROWTH) ** 2
+    mesh.vertices.foreach_set("co", (places + distance * (growth + forward)).ravel())
     mesh.update()
 
 
@@ -71,7 +73,5 @@ def _normals(mesh):
     return numpy.repeat(_read(mesh.polygons, "normal", numpy.float32, 3), 3, axis=0)
 
 
-def _scaled(vectors, factor):
-    """Multiplies vectors by a function of their lengths. Zeros stay."""
-    length = numpy.linalg.norm(vectors, axis=1, keepdims=True)
-    return numpy.where(length > 0, vectors * factor(numpy.where(length > 0, length, 1)), 0)
+def _lengths(vectors):
+    return numpy.linalg.norm(vectors, axis=1, keepdims=True)
