@@ -14,8 +14,8 @@ LARGEST_GROWTH = 8  # of sharp corners, in distances; reached at 14 degrees
 
 
 def separate(objects) -> None:
-    """Moves each face of lit meshes of triangles forward. Faces also grow by that distance at the edges of their planes,
-    and so meet the faces of other planes: corners stay closed."""
+    """Moves each face of lit meshes of triangles forward. Faces also grow by that distance at the edges of their
+    planes, and so meet the faces of other planes: corners stay closed."""
     meshes = [each for each in objects if each.type == "MESH"]
     corners = [each.matrix_world @ Vector(corner) for each in meshes for corner in each.bound_box]
     largest = max((abs(coordinate) for corner in corners for coordinate in corner), default=0)
