@@ -61,6 +61,7 @@ struct LineFinder {
         if (state.emission.has_sky()) {
             // Directions have density cos(theta) / pi, so irradiance is pi times the mean radiance.
             std::vector<double> of_radiance;
+            of_radiance.reserve(importance.size());
             for (const double i : importance) of_radiance.push_back(i * std::numbers::pi);
             keep_escaping(batch.rays, of_radiance, none, lines);
         }
