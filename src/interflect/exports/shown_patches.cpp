@@ -30,6 +30,7 @@ double mean_of(const Scene& scene, const std::vector<float>& light) {
 
 std::vector<bool> at_most(const std::vector<float>& light, double limit) {
     std::vector<bool> dark;
+    dark.reserve(light.size());
     for (const float each : light) dark.push_back(static_cast<double>(each) <= limit);
     return dark;
 }
