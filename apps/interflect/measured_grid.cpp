@@ -90,6 +90,7 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
     });
     warn_of_misplaced_points(scene, ray_caster, points, measured);
     std::vector<MeasuredGrid> result;
+    result.reserve(grids.size());
     for (MeasuringGrid& grid : grids) result.push_back({std::move(grid), {}, 0, {}});
     if (solution && !result.empty()) compare_with_paths(scene, ray_caster, points, measured, options, result);
     std::size_t next = 0, lost = 0;
