@@ -74,7 +74,7 @@ std::vector<Source> sources() {
     std::vector<Source> all = {{"uniform", {"", 0, UniformSky{Rgb(50)}}, through_hole([](const V3d&) { return 50; })},
                                {"sun", {"", 0, DirectionalLight{slanted, Rgb(5000)}}, through},
                                {"disc", {"", 0, DirectionalLight{slanted, Rgb(5000), 0.533f}}, through}};
-    const KnownSky& dome = known_skies().front();
+    const KnownSky dome = known_skies().front();
     all.push_back({"dome", dome.luminaire, through_hole(dome.radiance)});
     return all;
 }
