@@ -188,7 +188,8 @@ class LongRuns(MemoryCase):
     def peak_after(self, iterations):
         few = ("--one-bounce", "--rays-per-iteration", "1000", "--rays", str(1000 * iterations))
         mesh = ("--view", "room-0", "--mesh-size", "none", "--epsilon", "1e-3")  # no new elements
-        return self.peak("solve", "maze:2", "-o", str(self.folder / "out.h5"), *mesh, *few)[0]
+        run = ("solve", "maze:2", "-o", str(self.folder / "out.h5"), *mesh, *few)
+        return min(self.peak(*run)[0] for _ in range(2))  # peaks vary by half a MiB with the timing of threads
 
     def test_take_no_more_memory_than_short_ones(self):
         growth = self.peak_after(self.ITERATIONS) - self.peak_after(self.ITERATIONS // 20)
