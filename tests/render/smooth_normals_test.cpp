@@ -116,7 +116,7 @@ TEST(SmoothNormals, KeepTheMeanOfEachPatch) {
 }
 
 /// A shadow edge between two nearly coplanar patches, whose corners have very different normals because of others: G
-/// would be the step over 0.1 degrees. Seen to fail without a bound: irradiance grew to 80 times the largest.
+/// would be the step over 0.1 degrees. Seen to fail without a bound: irradiance grew to 16 times the largest.
 TEST(SmoothNormals, AreNotExtrapolatedFromNearlyCoplanarNeighbours) {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(0));
