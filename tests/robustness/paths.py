@@ -7,6 +7,7 @@ from case import BAD_INPUT, DONE, WRONG_USAGE, Case
 from seeds import ENTITIES, PICTURES, ROOM_RAYS, SCENE, TINY, WRITERS
 
 REFUSED = frozenset({BAD_INPUT})
+NAME_REFUSED = frozenset({WRONG_USAGE, BAD_INPUT})  # before anything is read, or when the file is written
 SECONDS_TO_READ = 45  # through a pipe: with a sanitizer on a busy machine, a report takes over 15 s
 LONGEST_NAME = 255  # bytes, in most file systems
 ODD = ("with space", " ", "new\nline", "\x1b[31mred", "tab\tand\rreturn", "caf\u00e9", "\udcff\udcfe")
@@ -101,7 +102,8 @@ def longest_name(rng, seeds):
 
 
 def too_long_name(rng, seeds):
-    return named_output(rng, seeds, rng.choice(("n" * LONGEST_NAME, "n/" * 3000)), "writes", allowed=REFUSED, prepare=None)
+    odd = rng.choice(("n" * LONGEST_NAME, "n/" * 3000))
+    return named_output(rng, seeds, odd, "writes", allowed=NAME_REFUSED, prepare=None)
 
 
 def leading_dash(rng, seeds):
@@ -110,7 +112,7 @@ def leading_dash(rng, seeds):
 
 
 def in_missing_folder(rng, seeds):
-    return named_output(rng, seeds, "nowhere/deep/out", "writes", allowed=REFUSED, prepare=None)
+    return named_output(rng, seeds, "nowhere/deep/out", "writes", allowed=NAME_REFUSED, prepare=None)
 
 
 def over_a_folder(rng, seeds):
@@ -121,7 +123,7 @@ def over_a_folder(rng, seeds):
         (folder / command.output()).mkdir()
 
     files = seeds.some(*command.inputs)
-    return Case(f"{key}: over a folder", list(command.arguments), files, allowed=REFUSED, prepare=prepare)
+    return Case(f"{key}: over a folder", list(command.arguments), files, allowed=NAME_REFUSED, prepare=prepare)
 
 
 def through_link(rng, seeds):
@@ -192,7 +194,7 @@ def same_file_twice(rng, seeds):
     )
     files = seeds.some(*SCENE, *PICTURES, "corner.vf")
     use = rng.choice(uses)
-    return Case(f"same file twice: {' '.join(use)}", use, files, allowed=REFUSED)
+    return Case(f"same file twice: {' '.join(use)}", use, files, allowed=NAME_REFUSED)
 
 
 def read_only_folder(rng, seeds):

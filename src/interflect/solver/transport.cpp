@@ -261,7 +261,7 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
         if (hit.patch == none) return;
-        walks.add(batch.shot.rays[ray], hit, shooting.carried.power(source) * RgbD(transmittance), walkers);
+        walks.add(batch.shot.rays[ray], hit, shooting.carried.power(source), transmittance, walkers);
         for (std::size_t g = 0; g < step.groups.size(); ++g)
             walkers.received_groups.push_back(shooting.carried.power(source, g) * RgbD(transmittance));
     };

@@ -29,9 +29,10 @@ Walks::Walks(const Materials& materials, const ElementForest& forest, const RayC
       elements_(elements),
       key_(key) {}
 
-void Walks::add(const Ray& ray, const Hit& hit, const RgbD& power, Walkers& walkers) const {
+void Walks::add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const {
     const Parameters at = forest_.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
-    walkers.received.push_back({forest_.leaf_at(hit.patch, at, elements_), hit.patch, at, power});
+    const std::uint32_t leaf = forest_.leaf_at(hit.patch, at, elements_);
+    walkers.received.push_back({leaf, hit.patch, at, power * RgbD(transmittance), channel_sum(power)});
 }
 
 void Walks::follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) const {
@@ -45,8 +46,8 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) con
     receiver.finish_batch();
 }
 
-/// Russian roulette: a particle survives with probability p, the reflected share of its power (all channels), and its
-/// reflected power is divided by p. Systematic sampling reduces the variance of the number of survivors.
+/// Russian roulette: a particle survives with probability p, the reflected share of the power of its ray (all
+/// channels), and its reflected power is divided by p. Systematic sampling reduces the variance of the number of survivors.
 void Walks::survive(double offset, Walkers& walkers) const {
     const std::size_t groups = step_.groups.size();
     walkers.reflected.clear();
@@ -54,9 +55,8 @@ void Walks::survive(double offset, Walkers& walkers) const {
     double cumulative = offset;
     for (std::size_t i = 0; i < walkers.received.size(); ++i) {
         ReflectedPower particle = walkers.received[i];
-        const double before = channel_sum(particle.power);
         const RgbD rho(materials_.surface(particle.patch, particle.leaf).reflectance);
-        const double share = before > 0 ? channel_sum(rho * particle.power) / before : 0;
+        const double share = particle.of_ray > 0 ? channel_sum(rho * particle.power) / particle.of_ray : 0;
         const double last = std::floor(cumulative);
         cumulative += share;
         if (std::floor(cumulative) == last) continue;
@@ -71,7 +71,7 @@ void Walks::survive(double offset, Walkers& walkers) const {
 void Walks::shoot(std::uint64_t key, Walkers& walkers) const {
     walkers.rays.resize(walkers.reflected.size());
     for (std::size_t i = 0; i < walkers.rays.size(); ++i) {
-        const auto& [leaf, patch, at, power] = walkers.reflected[i];
+        const auto& [leaf, patch, at, power, of_ray] = walkers.reflected[i];
         const PatchGeometry& geometry = forest_.geometry(patch);
         const float offset = ray_caster_.ray_offset(patch);
         Parameters start;
@@ -107,7 +107,7 @@ void Walks::deposit(const Ray& ray, const Hit& hit, const Rgb& transmittance, st
         walkers.group_terms.insert(walkers.group_terms.end(), terms.begin(), terms.end());
         walkers.received_groups.push_back(of_group);
     }
-    add(ray, hit, power, walkers);
+    add(ray, hit, walkers.reflected[walker].power, transmittance, walkers);
     receiver.deposit(walkers.received.back().leaf, contribution, walkers.group_terms);
 }
 

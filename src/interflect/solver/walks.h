@@ -18,6 +18,7 @@ struct ReflectedPower {
     std::uint32_t leaf, patch;
     Parameters at;  ///< Where the leaf received it.
     RgbD power;     ///< [lm or W]
+    double of_ray;  ///< Power of the ray that brought it, before any pane, all channels.
 };
 
 /// Particles of one task; one object per thread, reused.
@@ -32,15 +33,20 @@ struct Walkers {
 };
 
 /// Random walks complete the transport of a pass (TransportStep::to_the_end). A particle survives with the probability
-/// of its reflectance. Unlike a bounce, a walk costs no time for elements that it does not visit.
+/// of its reflectance, times the transmittance of the panes that it crossed: a ray through panes arrives several times,
+/// and without this factor the number of particles would grow from bounce to bounce. Unlike a bounce, a walk costs no
+/// time for elements that it does not visit.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step. Newer elements receive through ancestors.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const Units& units, std::uint32_t elements, std::uint64_t key);
 
-    /// Adds a particle at a hit point. The caller appends its power by light group to `received_groups`.
-    void add(const Ray& ray, const Hit& hit, const RgbD& power, Walkers& walkers) const;
+    /// Adds a particle at a hit point. The caller appends its power by light group, filtered by the transmittance, to
+    /// `received_groups`.
+    /// @param power  Power of the ray before any pane.
+    /// @param transmittance  Of the panes in front of the hit.
+    void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
     /// Traces particles until they are absorbed or escape. @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) const;
 
