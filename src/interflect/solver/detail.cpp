@@ -69,25 +69,49 @@ float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint
     return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
+/// Levels below the leaves in which the estimate extrapolates the signal.
+constexpr std::size_t finer_levels = 6;
+
+/// Returns what pictures show of the variation among the descendants of a leaf, by level. Pixels show little of what is
+/// smaller than they are, but never nothing: elements are not aligned with pixels.
+std::array<float, finer_levels> left_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf) {
+    std::array<float, finer_levels> left;
+    float area = state.forest->area(leaf);
+    for (float& of_level : left) {
+        area /= 4;
+        of_level = measure == ErrorMeasure::surfaces ? 1 : left_of_siblings_by_pixels(area, pixel_area(state, leaf));
+    }
+    return left;
+}
+
 /// Mean square errors of every element; bias may be negative.
 struct ElementErrors {
     std::vector<float> noise, bias;
     std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
 };
 
-/// Ratio of an element's noise to the area-weighted mean noise of its siblings. Bright siblings are noisier; shrinkage
-/// of their differences moves the ratio towards 1.
-float share_of_noise(const SolverState& state, std::uint32_t first, std::uint32_t e) {
+/// Factors of the differences of four siblings from their parent, and what remains of the noise of each, relative to
+/// its area-weighted mean.
+struct Shrinkage {
+    std::array<float, 4> kept, noise;
+};
+
+/// The Wiener filter of each sibling has its own noise. The mean of the siblings is kept: what they lose is divided in
+/// proportion to the remaining variance, as if the parent's mean were another measurement.
+Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
-    if (state.history[first] == 0) return 1;
-    float variance = 0, area = 0;
-    const auto variance_of = [&](std::uint32_t k) {
-        return state.noise.variance(forest, state.solution.irradiance, k, state.history[first]);
-    };
-    for (std::uint32_t k = first; k < first + 4; ++k)
-        variance += forest.area(k) * variance_of(k), area += forest.area(k);
-    const float kept = uses_shrinkage(state) ? detail_of(state, first).shrinkage() : 1;
-    return variance > 0 ? 1 + kept * (variance_of(e) * area / variance - 1) : 1;
+    const Detail detail = detail_of(state, first);
+    Shrinkage s{{1, 1, 1, 1}, state.noise.shares(forest, state.solution.irradiance, first, state.history[first])};
+    if (!uses_shrinkage(state) || detail.noise == unknown) return s;
+    const float kept = detail.shrinkage();
+    float sum = 0, area = 0;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        s.kept[k] = kept > 0 ? kept / (kept + (1 - kept) * s.noise[k]) : 0;
+        s.noise[k] = kept > 0 ? s.noise[k] * s.kept[k] : 1;
+        sum += forest.area(first + k) * s.noise[k], area += forest.area(first + k);
+    }
+    for (float& noise : s.noise) noise = sum > 0 ? noise * area / sum : 1;
+    return s;
 }
 
 ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
@@ -107,8 +131,9 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
         const auto [noise, bias] = added_error(state, first);
         const std::uint32_t parent = forest.parent(first);
         const float left = left_of_siblings(state, measure, first);
+        const Shrinkage shrinkage = shrinkage_of(state, first);
         for (std::uint32_t e = first; e < first + 4; ++e) {
-            const float share = share_of_noise(state, first, e);
+            const float share = shrinkage.noise[e - first];
             errors.noise[e] = share * (errors.noise[parent] + left * noise);
             errors.noise_of_patch[e] = share * errors.noise_of_patch[parent];
             errors.bias[e] = errors.bias[parent] + left * bias;
@@ -132,13 +157,15 @@ struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
     double noise_of_patches = 0;              // variance of patch means, part of `noise`
     double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
-    double assumed = 0;                       // variation within leaves without siblings
-    double within = 0;                        // part of `signal` that pixels resolve
+    double assumed = 0;                       // error by the variation within leaves without siblings
+    /// What pixels show of `signal`, if it were that among a leaf's children, their children, ...
+    std::array<double, finer_levels> within{};
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
         signal += o.signal, signal_of_parent += o.signal_of_parent;
-        assumed += o.assumed, within += o.within;
+        assumed += o.assumed;
+        for (std::size_t level = 0; level < finer_levels; ++level) within[level] += o.within[level];
         return *this;
     }
 };
@@ -194,18 +221,16 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
             sums.noise_of_patches += w * errors.noise_of_patch[e];
-            // Variation within a pixel is not an error of the picture.
-            const double resolved =
-                measure == ErrorMeasure::surfaces ? 1 : std::max(0.0f, 1 - pixel_area(state, e) / forest.area(e));
+            const std::array<float, finer_levels> left = left_within(state, measure, e);
             if (e < forest.patch_count()) {
-                sums.assumed += w * resolved * std::pow(assumed_variation * h, 2);
+                sums.assumed += w * left[0] * std::pow(assumed_variation * h, 2);
                 continue;
             }
             const std::uint32_t parent = forest.parent(e);
             const double signal_of_parent = signal_beside(state, parent);
             const bool is_new = state.history[e] == 0;  // extrapolate from the parent's siblings
             const double signal = is_new ? least_decay * signal_of_parent : signal_beside(state, e);
-            sums.within += w * resolved * signal;
+            for (std::size_t level = 0; level < finer_levels; ++level) sums.within[level] += w * left[level] * signal;
             if (is_new) continue;
             sums.signal += w * signal;
             sums.signal_of_parent += w * signal_of_parent;
@@ -279,7 +304,8 @@ SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = measure == ErrorMeasure::surfaces ? sums.weight : 1;
     const double decay = decay_of(sums);
-    const double within_leaves = std::max(0.0, sums.within) * decay / (1 - decay) + sums.assumed;
+    double within_leaves = sums.assumed, decays = decay;
+    for (const double of_level : sums.within) within_leaves += std::max(0.0, of_level) * decays, decays *= decay;
     const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
     const double all = sums.noise_of_patches + of_details + within_leaves;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
@@ -353,23 +379,32 @@ void finish_solution(SolverState& state) {
     GroupLight reduced_groups = solution.groups;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
-        const Detail detail = detail_of(state, first);
-        const float kept = uses_shrinkage(state) && detail.noise != unknown ? detail.shrinkage() : 1.0f;
-        std::array<Rgb, 4> difference;
-        for (std::uint32_t k = 0; k < 4; ++k)
-            difference[k] = kept * (solution.irradiance[first + k] - solution.irradiance[parent]);
+        const Shrinkage shrinkage = shrinkage_of(state, first);
+        const auto differences = [&](const std::vector<Rgb>& irradiance) {
+            std::array<Rgb, 4> difference;
+            Rgb sum(0);
+            float area = 0;
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                difference[k] = shrinkage.kept[k] * (irradiance[first + k] - irradiance[parent]);
+                sum += forest.area(first + k) * difference[k], area += forest.area(first + k);
+            }
+            for (std::uint32_t k = 0; k < 4; ++k) difference[k] -= shrinkage.noise[k] * sum / area;
+            return difference;
+        };
+        const std::array<Rgb, 4> difference = differences(solution.irradiance);
+        Rgb factor(1);  // If a child would become negative, scale all four differences equally.
         for (int c = 0; c < 3; ++c) {
-            // If a child would become negative, scale all four differences equally.
             float lowest = 0;
             for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
-            const float mean = reduced[parent][c], factor = -lowest > mean ? mean / -lowest : 1;
-            for (std::uint32_t k = 0; k < 4; ++k) {
-                reduced[first + k][c] = std::max(0.0f, mean + factor * difference[k][c]);
-                for (std::size_t g = 0; g < reduced_groups.size(); ++g)
-                    reduced_groups[g][first + k][c] =
-                        reduced_groups[g][parent][c] +
-                        factor * kept * (solution.groups[g][first + k][c] - solution.groups[g][parent][c]);
-            }
+            const float mean = reduced[parent][c];
+            if (-lowest > mean) factor[c] = mean / -lowest;
+            for (std::uint32_t k = 0; k < 4; ++k)
+                reduced[first + k][c] = std::max(0.0f, mean + factor[c] * difference[k][c]);
+        }
+        for (std::size_t g = 0; g < reduced_groups.size(); ++g) {
+            const std::array<Rgb, 4> of_group = differences(solution.groups[g]);
+            for (std::uint32_t k = 0; k < 4; ++k)
+                reduced_groups[g][first + k] = reduced_groups[g][parent] + factor * of_group[k];
         }
     });
     solution.irradiance = std::move(reduced);

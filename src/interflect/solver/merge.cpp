@@ -1,6 +1,7 @@
 #include "interflect/solver/merge.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "interflect/base/parallel.h"
@@ -62,17 +63,24 @@ void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::
                    const IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const auto rays = static_cast<float>(plan.rays);
-    const auto tau = [&](std::uint32_t e) { return rays / (state.history[e] + rays); };
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
-        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] -= mean[forest.parent(first)];
-    });
+    const auto merged = [&](std::uint32_t e) {
+        return mean[e] + (received[e] - mean[e]) * (rays / (state.history[e] + rays));
+    };
     parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] += tau(e) * (received[e] - mean[e]);
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] = merged(e);
     });
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const std::uint32_t parent = forest.parent(first);
-        for (std::uint32_t e = first; e < first + 4; ++e)
-            mean[e] += mean[parent] + tau(e) * (received[e] - received[parent] - mean[e]);
+        Rgb sum(0);
+        float area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            mean[e] = merged(e);
+            sum += mean[e] * forest.area(e);
+            area += forest.area(e);
+        }
+        const Rgb missing = mean[forest.parent(first)] - sum / area;
+        const std::array<float, 4> shares =
+            state.noise.shares(forest, state.solution.irradiance, first, state.history[first] + rays);
+        for (std::uint32_t k = 0; k < 4; ++k) mean[first + k] += missing * shares[k];
     });
 }
 

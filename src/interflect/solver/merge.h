@@ -15,8 +15,9 @@ void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<R
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan);
 
-/// Merges estimates that are not shot again. Differences from the parent are averaged, so means may be negative, but
-/// they are unbiased with known noise.
+/// Merges estimates that are not shot again. Siblings are averaged over their own rays; their parent's mean may contain
+/// more rays, and what they lack of it is divided among them in proportion to their noise. So the noise of a bright
+/// sibling does not spread to a dark one. Means may be negative.
 void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                    const IterationPlan& plan);
 

@@ -12,6 +12,8 @@ namespace {
 /// Decay of earlier iterations, because mesh and sampling weights change.
 constexpr double memory = 0.75;
 constexpr double largest_scale = 100;
+/// Number of arrivals at siblings below which their measured shares of the noise count less than equal shares.
+constexpr float few_arrivals = 16;
 
 }  // namespace
 
@@ -26,6 +28,19 @@ NoiseModel::Spread& NoiseModel::Spread::operator+=(const Spread& other) {
 void NoiseModel::grow(const ElementForest& forest, std::uint32_t first) {
     inherit(forest, first, per_ray_);
     for (std::uint32_t e = first; e < forest.size(); ++e) per_ray_[e] = 4 * per_ray_[forest.parent(e)];
+}
+
+std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
+                                        float rays) const {
+    float variance = 0, area = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) variance += forest.area(e) * per_ray_[e], area += forest.area(e);
+    std::array<float, 4> shares{1, 1, 1, 1};
+    if (!(variance > 0) || !(rays > 0)) return shares;
+    variance /= area;
+    const float h = luminance(mean[forest.parent(first)]);
+    const float arrivals = 4 * rays * h * h / variance, trust = arrivals / (arrivals + few_arrivals);
+    for (std::uint32_t k = 0; k < 4; ++k) shares[k] = trust * per_ray_[first + k] / variance + (1 - trust);
+    return shares;
 }
 
 void NoiseModel::add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,

@@ -36,6 +36,12 @@ class NoiseModel {
     }
     bool is_known() const { return iterations_ > 1; }
 
+    /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its area-weighted mean. Bright
+    /// siblings are noisier. If few rays arrived at all, one may be dark by chance, so the shares tend to 1.
+    /// @param rays  Rays in the mean of the siblings.
+    std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
+                                float rays) const;
+
     /// Initialises new elements (index >= first): a quarter of their parents' rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 

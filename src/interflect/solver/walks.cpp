@@ -47,7 +47,8 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Receiver& receiver) con
 }
 
 /// Russian roulette: a particle survives with probability p, the reflected share of the power of its ray (all
-/// channels), and its reflected power is divided by p. Systematic sampling reduces the variance of the number of survivors.
+/// channels), and its reflected power is divided by p. Systematic sampling reduces the variance of the number of
+/// survivors.
 void Walks::survive(double offset, Walkers& walkers) const {
     const std::size_t groups = step_.groups.size();
     walkers.reflected.clear();
