@@ -130,17 +130,19 @@ TEST(RiskCheck, MeasuresTheErrorOfReducedDifferences) {
     Setting s(20, 1);  // 2400 patches, each divided once
     const auto signal = [](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.02f : -0.02f; };
     for (int k = 0; k < 4; ++k) s.iterate(1000, {0, 1}, 0.1f, signal);
-    double measured = 0, expected = 0;
+    double measured = 0, expected = 0, found_signal = 0;
     for (int k = 0; k < 8; ++k) {
         const double risk = 6 * true_risk(s, signal);  // times the area of the walls [m^2]
         s.state.risk_check = {};
         s.iterate(1000, {0, 1}, 0.1f, signal);
         measured += s.state.risk_check.measured / risk / 8;
         expected += s.state.risk_check.expected / risk / 8;
+        found_signal += s.state.risk_check.signal / s.state.risk_check.weight / 8;
     }
     // 2400 products, with noise of four times the risk. Each of the eight iterations shares most data with the next.
     EXPECT_NEAR(measured, 1, 0.1);
     EXPECT_NEAR(expected, 1, 0.1);
+    EXPECT_NEAR(found_signal / (6 * 0.02 * 0.02), 1, 0.1);
 }
 
 TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {

@@ -69,9 +69,6 @@ float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint
     return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
-/// Levels below the leaves in which the estimate extrapolates the signal.
-constexpr std::size_t finer_levels = 6;
-
 /// Returns what pictures show of the variation among the descendants of a leaf, by level. Pixels show little of what is
 /// smaller than they are, but never nothing: elements are not aligned with pixels.
 std::array<float, finer_levels> left_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf) {
@@ -155,57 +152,90 @@ float signal_beside(const SolverState& state, std::uint32_t e) {
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
-    double noise_of_patches = 0;              // variance of patch means, part of `noise`
-    double signal = 0, signal_of_parent = 0;  // of the leaves' siblings, and of their parents' siblings
-    double assumed = 0;                       // error by the variation within leaves without siblings
-    /// What pixels show of `signal`, if it were that among a leaf's children, their children, ...
-    std::array<double, finer_levels> within{};
+    double noise_of_patches = 0;  // variance of patch means, part of `noise`
+    double assumed = 0;           // error by the variation within leaves without siblings
 
     ErrorSums& operator+=(const ErrorSums& o) {
-        weight += o.weight, noise += o.noise, bias += o.bias, noise_of_patches += o.noise_of_patches;
-        signal += o.signal, signal_of_parent += o.signal_of_parent;
-        assumed += o.assumed;
-        for (std::size_t level = 0; level < finer_levels; ++level) within[level] += o.within[level];
+        weight += o.weight, noise += o.noise, bias += o.bias;
+        noise_of_patches += o.noise_of_patches, assumed += o.assumed;
         return *this;
     }
 };
 
-/// Measures the squared error after shrinkage k with the next iteration. For averaged differences y, true differences d
-/// and new differences z, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z). Unlike Stein's estimate, this needs no noise
-/// model. It measures earlier iterations only.
+/// Averaged differences y of siblings from their parent times new ones, z: the area-weighted mean of the four.
+/// E y z = |d|^2 for true differences d.
+double measured_signal(const SolverState& state, const FreshEstimate& fresh, std::uint32_t first) {
+    const ElementForest& forest = *state.forest;
+    const std::uint32_t parent = forest.parent(first);
+    const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
+        return luminance(irradiance[e]) - luminance(irradiance[parent]);
+    };
+    double product = 0, area = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) {
+        product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
+                                       difference(fresh.irradiance, e));
+        area += forest.area(e);
+    }
+    return product / area;
+}
+
+/// Measures squared errors with the next iteration. After shrinkage k, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z).
+/// Unlike Stein's estimate, this needs no noise model. It measures earlier iterations only.
 RiskCheck check_risk(const SolverState& state, const FreshEstimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
     const ErrorMeasure measure = default_measure(state);
-    const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
-        return luminance(irradiance[e]) - luminance(irradiance[forest.parent(e)]);
+    const auto check_siblings = [&](std::uint32_t first, RiskCheck& sum) {
+        const Detail detail = detail_of(state, first);
+        const std::uint32_t parent = forest.parent(first);
+        const double w = error_weight(state, measure, parent) * forest.area(parent);
+        if (detail.noise == unknown || !(w > 0)) return;
+        const double signal = measured_signal(state, fresh, first), k = detail.shrinkage();
+        const double left = left_of_siblings(state, measure, first);
+        const AddedError expected = added_error(state, first);
+        sum.measured += w * left * (k * k * detail.spread + (1 - 2 * k) * signal);
+        sum.expected += w * left * static_cast<double>(expected.noise + expected.bias);
+        const double of_parent = parent < roots ? 0 : measured_signal(state, fresh, first_sibling(forest, parent));
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const double of_leaf = error_weight(state, measure, e) * forest.area(e);
+            const std::array<float, finer_levels> left_of_level = left_within(state, measure, e);
+            sum.signal += of_leaf * signal;
+            sum.signal_of_parents += of_leaf * of_parent;
+            for (std::size_t level = 0; level < finer_levels; ++level)
+                sum.within[level] += of_leaf * left_of_level[level] * signal;
+        }
     };
-    return parallel_sum(
-        (forest.size() - roots) / 4, elements_at_once, RiskCheck(), [&](std::size_t begin, std::size_t end) {
-            RiskCheck sum;
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint32_t first = roots + 4 * static_cast<std::uint32_t>(i);
-                const Detail detail = detail_of(state, first);
-                if (detail.noise == unknown) continue;
-                const std::uint32_t parent = forest.parent(first);
-                const double w = left_of_siblings(state, measure, first) * error_weight(state, measure, parent);
-                if (!(w > 0)) continue;
-                double product = 0;
-                for (std::uint32_t e = first; e < first + 4; ++e)
-                    product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
-                                                   difference(fresh.irradiance, e));
-                const double k = detail.shrinkage(), area = forest.area(parent);
-                const AddedError expected = added_error(state, first);
-                sum.measured += w * (k * k * detail.spread * area + (1 - 2 * k) * product);
-                sum.expected += w * area * static_cast<double>(expected.noise + expected.bias);
-            }
-            return sum;
-        });
+    RiskCheck sum = parallel_sum((forest.size() - roots) / 4, elements_at_once, RiskCheck(),
+                                 [&](std::size_t begin, std::size_t end) {
+                                     RiskCheck part;
+                                     for (std::size_t i = begin; i < end; ++i)
+                                         check_siblings(roots + 4 * static_cast<std::uint32_t>(i), part);
+                                     return part;
+                                 });
+    sum.weight = 1;
+    return sum;
 }
 
-double decay_of(const ErrorSums& sums) {
-    if (!(sums.signal > 0) || !(sums.signal_of_parent > 0)) return least_decay;
-    return std::clamp(sums.signal / sums.signal_of_parent, least_decay, most_decay);
+/// Returns the squared error by variation within the leaves, extrapolated from that among them.
+double error_within_leaves(const RiskCheck& check) {
+    if (!(check.weight > 0)) return 0;
+    const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
+    const double decay =
+        is_known ? std::clamp(check.signal / check.signal_of_parents, least_decay, most_decay) : least_decay;
+    double sum = 0, of_level = 1;
+    for (const double within : check.within) sum += std::max(0.0, within) * (of_level *= decay);
+    return sum / check.weight;
+}
+
+/// Returns the squared error of the differences between siblings, from what the noise model expects. In hard shadows,
+/// well-distributed points leave less noise than it expects, by so much that its estimate of the error is too small or
+/// negative; what earlier iterations measured is then more reliable.
+double error_of_details(const RiskCheck& check, double noise, double bias) {
+    const double expected = noise + bias;
+    const bool is_reliable = bias > -noise / 2;
+    return is_reliable || !(check.weight > 0) ? check.factor() * expected
+                                              : std::max(0.0, check.measured / check.weight);
 }
 
 ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const ElementErrors& errors) {
@@ -216,24 +246,13 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             if (!forest.is_leaf(e)) continue;
             const double w = error_weight(state, measure, e) * forest.area(e);
             if (!(w > 0)) continue;
-            const float h = luminance(state.solution.irradiance[e]);
             sums.weight += w;
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
             sums.noise_of_patches += w * errors.noise_of_patch[e];
-            const std::array<float, finer_levels> left = left_within(state, measure, e);
-            if (e < forest.patch_count()) {
-                sums.assumed += w * left[0] * std::pow(assumed_variation * h, 2);
-                continue;
-            }
-            const std::uint32_t parent = forest.parent(e);
-            const double signal_of_parent = signal_beside(state, parent);
-            const bool is_new = state.history[e] == 0;  // extrapolate from the parent's siblings
-            const double signal = is_new ? least_decay * signal_of_parent : signal_beside(state, e);
-            for (std::size_t level = 0; level < finer_levels; ++level) sums.within[level] += w * left[level] * signal;
-            if (is_new) continue;
-            sums.signal += w * signal;
-            sums.signal_of_parent += w * signal_of_parent;
+            if (e >= forest.patch_count()) continue;
+            const float variation = assumed_variation * luminance(state.solution.irradiance[e]);
+            sums.assumed += w * left_within(state, measure, e)[0] * variation * variation;
         }
         return sums;
     });
@@ -303,11 +322,8 @@ SolutionError solution_error(const SolverState& state, ErrorMeasure measure) {
     const ErrorSums sums = sum_errors(state, measure, element_errors(state, measure));
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = measure == ErrorMeasure::surfaces ? sums.weight : 1;
-    const double decay = decay_of(sums);
-    double within_leaves = sums.assumed, decays = decay;
-    for (const double of_level : sums.within) within_leaves += std::max(0.0, of_level) * decays, decays *= decay;
-    const double of_details = state.risk_check.factor() * (sums.noise - sums.noise_of_patches + sums.bias);
-    const double all = sums.noise_of_patches + of_details + within_leaves;
+    const double of_details = error_of_details(state.risk_check, sums.noise - sums.noise_of_patches, sums.bias);
+    const double all = sums.noise_of_patches + of_details + error_within_leaves(state.risk_check) + sums.assumed;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
     // Pixels without a surface have no error, but count in the mean.
     const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
