@@ -351,7 +351,8 @@ double error_reference(const SolverState& state, ErrorMeasure measure) {
         }
         return sum;
     });
-    return sums.weight > 0 ? sums.light / sums.weight : 0;
+    // The view importance of the surfaces that pixels show first sums to 1; those behind panes only add light.
+    return of_pictures ? sums.light : sums.light / sums.weight;
 }
 
 double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element) {

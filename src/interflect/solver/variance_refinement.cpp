@@ -105,7 +105,7 @@ class VarianceOracle {
 
     /// Returns the power to which misplaced power is compared: what the pictures show, or what all surfaces receive.
     double reference_power() const {
-        if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures) * state_.view.shown_share();
+        if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures);
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
             sum += static_cast<double>(luminance(state_.solution.irradiance[i])) * forest_.area(i);
