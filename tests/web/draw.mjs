@@ -17,6 +17,7 @@ const server = createServer((request, response) => {
     : path.startsWith("/three/") ? join(here, "node_modules", path)
     : path === "/lightmap.js" ? join(here, "../../integrations/three", path)
     : join(here, path);
+  response.setHeader("Cache-Control", "no-store");
   response.setHeader("Content-Type", types[extname(source)] ?? "application/octet-stream");
   createReadStream(source).on("error", () => response.writeHead(404).end()).pipe(response);
 });
@@ -27,18 +28,17 @@ const browser = await chromium.launch({
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 try {
+  const page = await browser.newPage();
+  page.on("console", (message) => console.error(message.text()));
+  page.on("pageerror", (error) => console.error(error.message));
+  await page.goto(`http://127.0.0.1:${server.address().port}/page.html`);
+  await page.waitForFunction(() => window.draw);
   const pictures = [];
   for (file of files) {
-    const page = await browser.newPage();
-    page.on("console", (message) => console.error(message.text()));
-    page.on("pageerror", (error) => console.error(error.message));
-    await page.goto(`http://127.0.0.1:${server.address().port}/page.html`);
-    await page.waitForFunction(() => window.draw);
     const { png, ...drawn } = await page.evaluate(
       ([name, w, h]) => window.draw(name, w, h), [camera, Number(width), Number(height)]);
     writeFileSync(`${file}.png`, Buffer.from(png.split(",")[1], "base64"));
     pictures.push(drawn);
-    await page.close();
   }
   console.log(JSON.stringify(pictures));
 } finally {
