@@ -30,7 +30,8 @@ def blender(out: Path, script: str, *arguments) -> None:
     try:
         done = subprocess.run(command, capture_output=True, text=True)
     except FileNotFoundError:
-        raise program.ExperimentError("blender is missing: install it with scripts/setup") from None
+        message = "blender is missing: install it with scripts/setup experiments"
+        raise program.ExperimentError(message) from None
     if not out.is_file():
         raise program.ExperimentError(f"{script} has not made {out}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
 

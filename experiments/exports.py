@@ -39,7 +39,7 @@ SCENES = {
 def measure() -> None:
     command = program.find_program()
     if not shutil.which("blender"):
-        raise program.ExperimentError("blender is missing: install it with scripts/setup")
+        raise program.ExperimentError("blender is missing: install it with scripts/setup experiments")
     rows = []
     for name, (scene, views, options) in SCENES.items():
         print(name, file=sys.stderr, flush=True)

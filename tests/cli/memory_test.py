@@ -12,7 +12,7 @@ import unittest
 
 from command import BAD_INPUT, COMMAND, DONE, FAILED, LAMP, CommandTest, room, vertices
 
-FINE = ("--refinement-criterion", "power", "--rays", "1500k", "--view", "room-0", "--min-area", "1e-7", "--epsilon")
+FINE = ("--refinement-criterion", "power", "--view", "room-0", "--min-area", "1e-7", "--rays")
 MIB = 1 << 20
 
 
@@ -41,17 +41,17 @@ class MemoryLimit(MemoryCase):
         return json.loads(stats.read_text().splitlines()[-1])["elements"], peak, said
 
     def test_ends_refinement_and_says_so(self):
-        limit = 400 * MIB
-        elements, peak, said = self.solve("1e-12", "--memory", "400M")
+        limit = 180 * MIB
+        elements, peak, said = self.solve("500k", "--epsilon", "1e-12", "--memory", "180M")
         self.assertIn("refinement ended at", said)
         self.assertIn("--memory", said)
-        self.assertGreater(elements, 2_000_000)
+        self.assertGreater(elements, 500_000)
         self.assertLess(peak, limit)
 
     def test_takes_what_info_predicts_for_each_element(self):
-        few, few_peak, _ = self.solve("1e-10")  # many: the allocator's cache of small arrays is negligible
-        many, many_peak, _ = self.solve("1e-12")
-        self.assertGreater(many, few + 2_000_000)
+        few, few_peak, _ = self.solve("500k", "--epsilon", "1e-11")  # many: the allocator's cache of small arrays is negligible
+        many, many_peak, _ = self.solve("500k", "--epsilon", "1e-12")
+        self.assertGreater(many, few + 500_000)
         self.assertLess((many_peak - few_peak) / (many - few), self.json("info", "maze:2")["memory"]["per_element"])
 
     def test_is_refused_where_not_even_the_patches_fit(self):
@@ -83,7 +83,7 @@ class LimitedAddressSpace(CommandTest):
             self.assertIn("elements", self.under(2000 * MIB, *few, *options, *importance))
 
     def test_ends_refinement_before_the_limit(self):
-        said = self.under(850 * MIB, "solve", "maze:2", "-o", "out.h5", *FINE, "1e-12")
+        said = self.under(450 * MIB, "solve", "maze:2", "-o", "out.h5", *FINE, "500k", "--epsilon", "1e-12")
         self.assertIn("refinement ended at", said)
 
     def test_says_what_is_missing(self):

@@ -10,8 +10,15 @@ import unittest
 
 from command import ROOT, CommandTest
 
-SMALL = "--size 160x90"
-LESS_WORK = {r"--rays \d+M": "--rays 300k", r"--time \d+": "--time 1", r"--until \d+%": "--until 20%", r"--size \d+x\d+": SMALL}
+SMALL = "--size 80x45"
+LESS_WORK = {
+    r"--rays \d+M": "--rays 100k",
+    r"--time \d+": "--time 0.5",
+    r"--until \d+%": "--until 30%",
+    r"--size \d+x\d+": SMALL,
+    r"--texels-per-metre \d+": "--texels-per-metre 2",
+}
+MORE_OPTIONS = {"bench": "--rays 100k --rounds 1", "report": "--samples 2"}
 
 
 def examples():
@@ -36,10 +43,9 @@ class Readme(CommandTest):
             for amount, less in LESS_WORK.items():
                 example = re.sub(amount, less, example)
             arguments = shlex.split(example)
-            if arguments[0] == "bench":
-                arguments += ["--rays", "100k", "--rounds", "1"]
-            if arguments[0] == "report":
-                arguments += ["--samples", "32"]
+            arguments += shlex.split(MORE_OPTIONS.get(arguments[0], ""))
+            if "--lightmap" in arguments and "--texels-per-metre" not in arguments:
+                arguments += ["--texels-per-metre", "2"]
             if arguments[0] in ("render", "report") and "--size" not in arguments:
                 arguments += shlex.split(SMALL)
             subcommands.add(arguments[0])

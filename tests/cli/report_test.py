@@ -77,18 +77,18 @@ class Report(CommandTest):
         self.write("rooms.mgf", two_rooms())
         self.interflect("solve", "rooms.mgf", "-o", "rooms.h5", "--rays", "200k")
 
-    def report(self, *arguments, samples=64):
+    def report(self, *arguments, samples=16):
         self.interflect("report", "rooms.h5", "-o", "page.html", *FEW, samples, *arguments)
         page = Page((self.folder / "page.html").read_text())
         self.assertEqual(page.open, [])
         return page
 
     def test_has_the_numbers_of_probe(self):
-        page = self.report("--ugr", "--eye-height", "1.1", samples=1024)
+        page = self.report("--ugr", "--eye-height", "1.1", samples=256)
         head, *rows = page.tables["results"]
         self.assertEqual(head[0], "Measuring area")
         for name, row in zip(("office", "hall"), rows, strict=True):
-            (area,) = self.json("probe", "rooms.h5", "--plane", "0.75", "--over", f"{name}.floor", "--samples", "1024")["areas"]
+            (area,) = self.json("probe", "rooms.h5", "--plane", "0.75", "--over", f"{name}.floor", "--samples", "256")["areas"]
             self.assertEqual(row[0], f"{name}.floor, z = 0.75 m")
             self.assertEqual(int(row[1]), area["points"])
             mean, error = float(row[3]), float(row[8])
@@ -99,7 +99,7 @@ class Report(CommandTest):
         self.assertEqual(lamp[1:], ["surface", "1", "1000", "318"])
         glare = {row[0]: float(row[2]) for row in page.tables["glare"][1:]}
         ratings = self.json(
-            "probe", "rooms.h5", "--quantity", "ugr", "--plane", "1.1", "--over", "office.floor", "--samples", "1024"
+            "probe", "rooms.h5", "--quantity", "ugr", "--plane", "1.1", "--over", "office.floor", "--samples", "256"
         )["areas"]
         self.assertAlmostEqual(glare["office.floor, z = 1.1 m"], max(area["max"] for area in ratings), delta=0.2)
 
@@ -117,7 +117,7 @@ class Report(CommandTest):
     def test_draws_the_views_of_the_scene(self):
         page = self.report()
         self.assertEqual(page.text.count("and illuminance on what is seen"), 1)
-        self.interflect("report", "rooms.h5", "-o", "view.html", *FEW, 64, "--eye", "1,1,1", "--look-at", "3,1,1")
+        self.interflect("report", "rooms.h5", "-o", "view.html", *FEW, 16, "--eye", "1,1,1", "--look-at", "3,1,1")
         self.assertEqual((self.folder / "view.html").read_text().count("data:image/png"), 2 + 2)
 
     def test_is_the_same_on_any_number_of_threads(self):

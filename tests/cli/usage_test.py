@@ -38,28 +38,29 @@ class WrongUsage(CommandTest):
         self.assert_wrong([*SOLVE, "--threads", "1", "--threads", "2"], "--threads")
 
     def test_numbers(self):
+        """One parser reads all counts, shares and sizes; each option has a value beyond its own range."""
         for option, values in {
-            "--rays": ("0", "-1", "many", "5X", "1e30", "nan", ""),
+            "--rays": ("0", "many", "5X", "1e30", "nan", ""),
             "--rays-per-iteration": ("0",),
             "--max-patches": ("-1",),
             "--seed": ("-1", "1.5", "18446744073709551616"),
-            "--time": ("0", "-1", "nan", "inf", "soon"),
-            "--until": ("0", "-1%", "100%", "2", "nan"),
-            "--threads": ("-1", "x", "100000"),
-            "--mesh-size": ("0", "-1", "nan", "inf", "fine"),
-            "--curve-divisions": ("0", "x"),
-            "--unit": ("0", "-1", "nan", "inf", "1e10", "yard", "2m", ""),
+            "--time": ("0", "nan", "inf"),
+            "--until": ("-1%", "100%"),
+            "--threads": ("-1", "100000"),
+            "--mesh-size": ("0", "nan", "fine"),
+            "--curve-divisions": ("0",),
+            "--unit": ("0", "1e10", "yard", "2m", ""),
             "--warm-up": ("-1",),
-            "--epsilon": ("0", "-1", "nan", "small"),
-            "--epsilon-decay": ("-1", "1.5", "nan"),
+            "--epsilon": ("0", "nan"),
+            "--epsilon-decay": ("-1", "1.5"),
             "--importance-smoothing": ("-0.1", "1.1"),
-            "--importance-exponent": ("-0.1", "1.1"),
-            "--min-area": ("-1", "nan"),
+            "--importance-exponent": ("1.1",),
+            "--min-area": ("-1",),
             "--max-elements": ("0", "5G"),
-            "--memory": ("0", "-1G", "1X", "many"),
-            "--inherited-weight": ("-0.1", "1.1"),
-            "--alpha": ("-0.1", "1.1", "nan"),
-            "--beta": ("-0.1", "1.1"),
+            "--memory": ("0", "1X"),
+            "--inherited-weight": ("1.1",),
+            "--alpha": ("-0.1", "nan"),
+            "--beta": ("1.1",),
             "--camera-rays": ("0",),
         }.items():
             for value in values:
@@ -78,17 +79,17 @@ class WrongUsage(CommandTest):
 
     def test_pictures(self):
         for option, values in {
-            "--size": ("64", "0x9", "9x-1", "1.5x9", "99999x9", "64x36x3"),
+            "--size": ("64", "0x9", "1.5x9", "99999x9", "64x36x3"),
             "--samples": ("0",),
-            "--exposure": ("nan", "inf", "1000", "auto1", "auto+", "auto+x", "auto+1000", "automatic", "1 auto", ""),
-            "--display-luminance": ("0", "-1", "nan", "bright"),
-            "--scale": ("5", "5..", "..5", "5..5", "9..3", "-1..2", "0..1e30", "nan..2", "1..2..3"),
-            "--isolines": ("", "0", "-5", "100,", ",100", "1,nan", "1;2", "automatic", "1e30"),
-            "--plan": ("low", "nan", ""),
-            "--section": ("x", "x=", "w=3", "x=3,4", "1,2,3", "1,2,3,0,0,0", "x=nan", "3", "+x=3", "1,2,3,4,5,6,7"),
-            "--extent": ("0", "-1", "nan"),
+            "--exposure": ("nan", "1000", "auto1", "auto+x", "auto+1000", "1 auto", ""),
+            "--display-luminance": ("0", "bright"),
+            "--scale": ("5", "5..", "..5", "5..5", "-1..2", "0..1e30", "1..2..3"),
+            "--isolines": ("", "0", "100,", "1,nan", "automatic"),
+            "--plan": ("low", "nan"),
+            "--section": ("x=", "w=3", "1,2,3", "1,2,3,0,0,0", "x=nan", "+x=3"),
+            "--extent": ("0", "nan"),
             "--centre": ("1,2",),
-            "--fov": ("0", "180", "nan"),
+            "--fov": ("0", "180"),
             "--up": ("1,2", "x,y,z", "0,0,nan"),
             "--eye": ("1e16,0,0", "1e30,0,0"),
         }.items():
@@ -164,12 +165,12 @@ class WrongUsage(CommandTest):
         help_texts = [self.interflect(subcommand, "--help").stdout for subcommand in subcommands]
         extensions = set(re.findall(r"(?<!\w)\.[a-z]\w+", "".join(help_texts))) - {".json"}
         self.assertLessEqual({".mgf", ".obj", ".h5", ".png", ".exr", ".glb", ".rad", ".ies", ".html"}, extensions)
+        probe = ["probe", "room.mgf", "--point", "1,1,1"]
+        resume = ["resume", "run.h5", "-o", "out.h5"]
         for extension in sorted(extensions | {".MGF", ".mtl"}):
-            other = "other" + extension
-            self.assert_wrong([*SOLVE, "--stats", other], "--stats", extension.lower())
-            self.assert_wrong([*RENDER, "--stats", other], "--stats", extension.lower())
-            self.assert_wrong(["resume", "run.h5", "-o", "out.h5", "--stats", other], "--stats", extension.lower())
-            self.assert_wrong(["probe", "room.mgf", "--point", "1,1,1", "-o", other], "--output", extension.lower())
+            self.assert_wrong([*SOLVE, "--stats", "other" + extension], "--stats", extension.lower())
+        for subcommand, option in ((RENDER, "--stats"), (resume, "--stats"), (probe, "--output")):
+            self.assert_wrong([*subcommand, option, "other.mgf"], option, ".mgf")
 
     def test_options_that_the_format_of_an_export_does_not_use(self):
         for scene, output, *options in (
@@ -196,14 +197,14 @@ class WrongUsage(CommandTest):
         self.inputs = ["room.h5", "room.mgf"]
         outputs = (("export", "-o", "out.rad"), ("render", "-o", "out.png"))
         for subcommand in (("info",), ("probe", "--point", "1,1,1"), *outputs):
-            for option, *value in (
-                ("--sky", "overcast"),
-                ("--luminaire", "none.ies@1,1,1"),
-                ("--unit", "cm"),
-                ("--curve-divisions", "7"),
-                ("--outside-files",),
-            ):
-                self.assert_wrong([*subcommand, "room.h5", option, *value], option, "solved already")
+            self.assert_wrong([*subcommand, "room.h5", "--sky", "overcast"], "--sky", "solved already")
+        for option, *value in (
+            ("--luminaire", "none.ies@1,1,1"),
+            ("--unit", "cm"),
+            ("--curve-divisions", "7"),
+            ("--outside-files",),
+        ):
+            self.assert_wrong(["info", "room.h5", option, *value], option, "solved already")
 
     def test_options_without_effect(self):
         for arguments, option in (

@@ -1,12 +1,13 @@
-// Draws a glTF file with three.js in headless Chromium: node draw.mjs FILE CAMERA WIDTH HEIGHT [OUT.png]
-// Prints JSON: {meshes, materials, pixels: [[r, g, b], ...] row by row from the top, of an sRGB display, 0 to 255}.
+// Draws glTF files with three.js in headless Chromium: node draw.mjs CAMERA WIDTH HEIGHT FILE... Writes FILE.png.
+// Prints a JSON list: {meshes, materials, pixels: [[r, g, b], ...] row by row from the top, of an sRGB display, 0 to 255}.
 import { createReadStream, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { dirname, extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-const [file, camera, width, height, picture] = process.argv.slice(2);
+const [camera, width, height, ...files] = process.argv.slice(2);
+let file;
 const here = dirname(fileURLToPath(import.meta.url));
 const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript" };
 
@@ -16,6 +17,7 @@ const server = createServer((request, response) => {
     : path.startsWith("/three/") ? join(here, "node_modules", path)
     : path === "/lightmap.js" ? join(here, "../../integrations/three", path)
     : join(here, path);
+  response.setHeader("Cache-Control", "no-store");
   response.setHeader("Content-Type", types[extname(source)] ?? "application/octet-stream");
   createReadStream(source).on("error", () => response.writeHead(404).end()).pipe(response);
 });
@@ -31,10 +33,14 @@ try {
   page.on("pageerror", (error) => console.error(error.message));
   await page.goto(`http://127.0.0.1:${server.address().port}/page.html`);
   await page.waitForFunction(() => window.draw);
-  const { png, ...drawn } = await page.evaluate(
-    ([name, w, h]) => window.draw(name, w, h), [camera, Number(width), Number(height)]);
-  if (picture) writeFileSync(picture, Buffer.from(png.split(",")[1], "base64"));
-  console.log(JSON.stringify(drawn));
+  const pictures = [];
+  for (file of files) {
+    const { png, ...drawn } = await page.evaluate(
+      ([name, w, h]) => window.draw(name, w, h), [camera, Number(width), Number(height)]);
+    writeFileSync(`${file}.png`, Buffer.from(png.split(",")[1], "base64"));
+    pictures.push(drawn);
+  }
+  console.log(JSON.stringify(pictures));
 } finally {
   await browser.close();
   server.close();

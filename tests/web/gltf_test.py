@@ -53,17 +53,17 @@ class GltfTest(CommandTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         return result.stdout
 
-    def draw(self, file, camera, width, height, *picture):
-        """Draws with three.js; if modules are missing, run `npm ci --prefix tests/web`."""
-        return json.loads(self.run_tool("node", WEB / "draw.mjs", file, camera, width, height, *picture))
+    def draw(self, files, camera, width, height):
+        """Draws with three.js into FILE.png; if modules are missing, run `npm ci --prefix tests/web`."""
+        return json.loads(self.run_tool("node", WEB / "draw.mjs", camera, width, height, *files))
 
-    def import_to_blender(self, file):
+    def import_to_blender(self, *files):
         plain = {"HOME": str(self.folder), "PATH": "/usr/bin:/bin"}  # Blender takes its modules from any python3 first
         output = self.run_tool(
             "blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", WEB / "load_in_blender.py",
-            "--", file, env=plain,
+            "--", *files, env=plain,
         )  # fmt: skip
-        return json.loads(next(line for line in output.splitlines() if line.startswith("IMPORTED "))[9:])
+        return [json.loads(line[9:]) for line in output.splitlines() if line.startswith("IMPORTED ")]
 
 
 class ValidatorTest(GltfTest):
@@ -103,8 +103,8 @@ class ThreeTest(GltfTest):
         self.plate(view)
         radiance = self.REFLECTANCE * self.SKY_ILLUMINANCE / math.pi
         expected = radiance * 2**self.EXPOSURE
-        for name in EXPORTS:
-            drawn = self.draw(self.export(name, "--exposure", self.EXPOSURE), "camera", 16, 16)
+        files = [self.export(name, "--exposure", self.EXPOSURE) for name in EXPORTS]
+        for name, drawn in zip(EXPORTS, self.draw(files, "camera", 16, 16), strict=True):
             for pixel in drawn["pixels"]:
                 for value in pixel:
                     self.assertAlmostEqual(linear(value) / expected, 1, delta=0.02, msg=f"{name}: {srgb(expected)}")
@@ -120,9 +120,10 @@ class ThreeTest(GltfTest):
         view = self.json("info", "scene.h5")["views"][0]["name"]
         self.interflect("render", "scene.h5", "--view", view, "--shading", "smooth", "--exposure", "-7",
                         "--size", "320x180", "-o", "render.png")  # fmt: skip
-        for name, largest in LARGEST_DIFFERENCE.items():
-            self.draw(self.export(name, "--exposure", "-7"), view, 320, 180, f"{name}.png")
-            blocks = self.json("compare", f"{name}.png", "render.png")["blocks"]
+        files = [self.export(name, "--exposure", "-7") for name in LARGEST_DIFFERENCE]
+        self.draw(files, view, 320, 180)
+        for file, (name, largest) in zip(files, LARGEST_DIFFERENCE.items(), strict=True):
+            blocks = self.json("compare", f"{file}.png", "render.png")["blocks"]
             relative_rmse = next(b["relative_rmse"] for b in blocks if b["block"] == 9)  # edges differ in single pixels
             self.assertLess(relative_rmse, largest, name)
 
@@ -160,8 +161,9 @@ class EdgesTest(GltfTest):
 
     def check_edges(self, sides):
         self.solved(self.slabs(sides), "--rays", "4M", "--min-area", "0.01", view=self.VIEW)
-        for name in ("vertices", "irradiance"):
-            drawn = self.draw(self.export(name, "--exposure", "-9"), "camera", *self.SIZE, f"{name}.png")
+        names = ("vertices", "irradiance")
+        files = [self.export(name, "--exposure", "-9") for name in names]
+        for name, drawn in zip(names, self.draw(files, "camera", *self.SIZE), strict=True):
             self.assertEqual(self.dips(drawn["pixels"]), 0, name)
 
     # Before encased patches were omitted, 155 and 430 pixels of the picture of the vertices were dark.
@@ -175,9 +177,9 @@ class EdgesTest(GltfTest):
 class BlenderTest(GltfTest):
     def test_loads_every_export(self):
         self.solved(room())
-        for name in EXPORTS:
+        files = [self.export(name) for name in EXPORTS]
+        for name, imported in zip(EXPORTS, self.import_to_blender(*files), strict=True):
             with self.subTest(name):
-                imported = self.import_to_blender(self.export(name))
                 # A material has a copy for each image of the lightmap: "paint.001".
                 self.assertEqual({m.split(".")[0] for m in imported["materials"]}, {"lamp", "paint"})
                 self.assertEqual(imported["cameras"], ["camera"])
@@ -187,9 +189,9 @@ class BlenderTest(GltfTest):
 
     def test_has_what_the_file_has(self):
         self.textured()
-        self.assertEqual(self.import_to_blender(self.export("vertices"))["colours"], ["Col"])
-        imported = self.import_to_blender(self.export("irradiance"))
-        self.assertEqual(imported["uv_maps"], ["UVMap", "UVMap.001"])
+        with_colours, with_lightmap = self.import_to_blender(self.export("vertices"), self.export("irradiance"))
+        self.assertEqual(with_colours["colours"], ["Col"])
+        self.assertEqual(with_lightmap["uv_maps"], ["UVMap", "UVMap.001"])
 
 
 if __name__ == "__main__":
