@@ -29,9 +29,10 @@ struct AdvanceReport {
 /// Solves Eq. 1 of Prikryl et al. 2000 step by step; see solve().
 ///
 /// SolveOptions are the plan of the whole run: they determine the size of its iterations and its end. The Limits of
-/// advance() only determine when it returns; the next call continues the unfinished iteration. Many small calls, also
-/// with save() and open() in between, therefore give the same bits as one call, on any number of threads. The exception
-/// is Limits::time of the plan, which makes iterations depend on speed.
+/// advance() only determine when it returns. An iteration ends or leaves no trace: one that is stopped is discarded and
+/// repeated by the next call. Many small calls, also with save() and open() in between, therefore give the same bits as
+/// one call, on any number of threads. The exception is Limits::time of the plan, which makes iterations depend on
+/// speed.
 class Solver {
   public:
     /// @throws InputError listing every option out of range and every fault of the scene; also for a view that defines
@@ -48,7 +49,7 @@ class Solver {
     /// Continues until a limit is reached, the plan is complete, or another thread or a signal handler sets
     /// Monitor::stop. Rays requested beyond a complete plan extend it.
     /// @param limits  Rays and time count from this call. The last iteration is completed, so `rays` may be exceeded.
-    ///                No step of rays begins after `time`, but at least one is traced.
+    ///                No iteration begins after `time`, but at least one is completed; it takes a second or two.
     AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
 
     /// Continues with other views. Keeps the light; recomputes importance.

@@ -5,8 +5,8 @@
 
 namespace interflect::inline detail {
 
-/// Iterations of one family of methods. If a function throws Interrupted, the next call resumes with the interrupted
-/// step.
+/// Iterations of one family of methods. If prepare() or iterate() throws Interrupted, the method is as before the call,
+/// and the caller restores the SolverState (IterationStart).
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
@@ -24,9 +24,6 @@ class IterationMethod {
     virtual void finish(SolverState& state) const;
     /// Updates view importance for the current views, and resets indirect importance.
     virtual void retarget(SolverState& state);
-
-    /// Scales the stored light of a group by `factor`, like its sources.
-    virtual void scale_group(SolverState&, std::size_t /*group*/, float /*factor*/) {}
 
     virtual void archive(StateArchive& archive) = 0;
     /// Whether archive() has read a state that fits this run.

@@ -51,6 +51,9 @@ class NoiseModel {
     void add(const ElementForest& forest, const FreshEstimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
+    /// Drops the elements from `size` on.
+    void shrink(std::size_t size) { per_ray_.resize(size); }
+
     void scale_by_patch(const ElementForest& forest, std::span<const float> factor) {
         for (std::uint32_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] *= factor[forest.patch(e)];
     }

@@ -35,11 +35,12 @@ struct Solver::Run {
     bool is_prepared = false, is_finished = false;
     double error = std::numeric_limits<double>::infinity();  // estimate for the current views
     int iteration = 0;
-    IterationPlan plan;                // current iteration; 0 rays: none
     std::optional<Solution> finished;  // cached solution()
     std::vector<float> known_dimming;  // factors for which the stored light was computed
 
     void iterate_until(const Limits& limits);
+    template <class Work>
+    void atomically(const Work& work);
     IterationPlan next_plan(std::int64_t rays_asked_for);
     void limit_time();
     Solution snapshot();
@@ -63,7 +64,6 @@ void Solver::Run::dim(std::size_t group, float factor) {
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
-    method->scale_group(state, group, change);
     dim_sources();
     state.escaped_power_rays = 0;  // unknown until the next iteration ends
 }
@@ -83,27 +83,42 @@ IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     return method->plan(state);
 }
 
+/// Discards what was interrupted. @throws Interrupted
+template <class Work>
+void Solver::Run::atomically(const Work& work) {
+    const IterationStart start(state);
+    try {
+        work();
+    } catch (const Interrupted&) {
+        if (state.options.method.is_stochastic) start.restore(state);  // links are kept as far as they were made
+        throw;
+    }
+}
+
 /// @throws Interrupted
 void Solver::Run::iterate_until(const Limits& limits) {
     const std::int64_t all = std::numeric_limits<std::int64_t>::max(), before = state.schedule.rays();
     const std::int64_t rays_asked_for = limits.rays < all - before ? before + limits.rays : all;
+    bool has_advanced = !is_prepared;
     if (!state.options.method.is_stochastic) limit_time();  // others always compute a first estimate
-    if (!is_prepared) method->prepare(state);
+    if (!is_prepared) atomically([&] { method->prepare(state); });
     is_prepared = true;
     limit_time();
+    is_finished = false;
     while (!(error <= std::max(limits.until, state.options.limits.until)) && state.schedule.rays() < rays_asked_for) {
-        if (plan.rays == 0) plan = next_plan(rays_asked_for);
+        if (has_advanced && state.seconds_of_this_call() >= limits.time) return;
+        IterationPlan plan = next_plan(rays_asked_for);
         is_finished = plan.rays == 0;
         if (is_finished) return;
-        if (state.stop.is_due() || !state.may_begin_step()) throw Interrupted();
-        const RgbD escaped_power = method->iterate(state, plan);
-        state.has_traced_step = true;
+        if (state.stop.is_due()) throw Interrupted();
+        RgbD escaped_power;
+        atomically([&] { escaped_power = method->iterate(state, plan); });
         state.schedule.done(plan);
-        plan = {};
         report(state, ++iteration, escaped_power);
         error = state.solution.iterations.back().error_estimate;
+        has_advanced = true;
     }
-    is_finished = plan.rays == 0 && (error <= state.options.limits.until || method->is_fulfilled(state));
+    is_finished = error <= state.options.limits.until || method->is_fulfilled(state);
 }
 
 /// Copies the forest, because that of the run grows.
@@ -154,7 +169,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     Run& run = *run_;
     SolverState& state = run.state;
     run.finished.reset();
-    state.begin_work(monitor, limits.time);
+    state.begin_work(monitor);
     state.solution.interrupted = false;
     const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // otherwise 0 is the exact solution
     try {
@@ -241,9 +256,6 @@ void Solver::archive(StateArchive& archive) {
                             run_->state.solution.dimming.size() != run_->state.groups.size()))
         throw std::runtime_error("the state of the run: expected the dimming of every light group");
     if (archive.reads()) run_->dim_sources();
-    archive("plan/rays", run_->plan.rays);
-    archive("plan/warms_up", run_->plan.warms_up);
-    archive("plan/is_final", run_->plan.is_final);
 }
 
 }  // namespace interflect

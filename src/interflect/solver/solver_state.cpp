@@ -66,16 +66,50 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
     look(*this);
 }
 
-void SolverState::begin_work(const Monitor& monitor, double step_seconds) {
-    using Clock = StopRequest::Clock;
-    constexpr double for_ever = 1e9;
+void SolverState::begin_work(const Monitor& monitor) {
     on_report = monitor.report;
     stop = StopRequest(monitor.stop);
-    start = Clock::now();
-    has_traced_step = false;
-    last_step = step_seconds < for_ever
-                    ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_seconds))
-                    : Clock::time_point::max();
+    start = StopRequest::Clock::now();
+}
+
+IterationStart::IterationStart(const SolverState& state)
+    : elements_(state.forest->size()),
+      streams_(state.streams),
+      targets_(state.targets),
+      part_importance_(state.part_importance),
+      indirect_importance_(state.solution.indirect_importance),
+      power_rays_(state.power_rays),
+      importance_rays_(state.importance_rays),
+      escaped_rays_(state.escaped_rays),
+      non_finite_(state.solution.non_finite),
+      quanta_(state.quanta),
+      reports_(state.solution.iterations.size()) {}
+
+void IterationStart::restore(SolverState& state) const {
+    Solution& solution = state.solution;
+    if (state.forest->size() > elements_) {
+        while (state.forest->size() > elements_) state.forest->drop_last_siblings();
+        solution.irradiance.resize(elements_);
+        for (std::vector<Rgb>& of_group : solution.groups) of_group.resize(elements_);
+        state.history.resize(elements_);
+        state.noise.shrink(elements_);
+        state.view.shrink(elements_);
+        state.materials = Materials(*state.lit, state.ray_caster);
+        state.materials.grow(*state.forest);
+        if (!state.view.empty())
+            solution.view_importance =
+                state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
+    }
+    if (state.targets != targets_) set_targets(state, targets_);
+    state.part_importance = part_importance_;
+    state.streams = streams_;
+    solution.indirect_importance = indirect_importance_;
+    state.power_rays = power_rays_;
+    state.importance_rays = importance_rays_;
+    state.escaped_rays = escaped_rays_;
+    solution.non_finite = non_finite_;
+    state.quanta = quanta_;
+    solution.iterations.resize(reports_);
 }
 
 void set_sources(SolverState& state, const Scene& lit) {
@@ -221,11 +255,9 @@ void SolverState::archive(StateArchive& archive) {
 }
 
 Received run_step(SolverState& state, TransportStep step) {
-    if (!state.may_begin_step()) throw Interrupted();
     const std::uint32_t before = state.forest->size();
     Received received = transport(state.materials, *state.forest, state.ray_caster, std::move(step), state.streams,
                                   state.arrivals, state.stop);
-    state.has_traced_step = true;
     state.escaped_rays += received.escaped_rays;
     for (std::size_t i = 0; i < received.part_importance.size(); ++i) {
         state.part_importance[i].found += received.part_importance[i].found;

@@ -2,11 +2,9 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/solver/state_archive.h"
 
 namespace interflect::inline detail {
 
@@ -32,9 +30,6 @@ class StartPoints {
 
     /// @param points  At least one, sampled by power. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
-
-    void archive(StateArchive& archive, const std::string& name) { archive(name, points_); }
-    bool fit(std::size_t elements) const { return points_.empty() || points_.back().leaf < elements; }
 
   private:
     std::vector<StartPoint> points_;  // by leaf, then along a Morton curve

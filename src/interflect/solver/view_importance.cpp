@@ -67,6 +67,11 @@ void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaste
     ++rounds_;
 }
 
+void ViewImportance::shrink(std::uint32_t size) {
+    for (Point& p : points_)
+        if (p.leaf >= size) p.leaf = p.patch;
+}
+
 void ViewImportance::archive(StateArchive& archive) {
     archive("view/points", points_);
     archive("view/rounds", rounds_);

@@ -36,6 +36,9 @@ class ViewImportance {
     /// @param at_patches  Spread V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
+    /// Prepares for a forest that loses its elements from `size` on.
+    void shrink(std::uint32_t size);
+
     void archive(StateArchive& archive);
     bool fits(const ElementForest& forest) const;
 

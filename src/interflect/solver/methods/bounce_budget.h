@@ -1,9 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-
-#include "interflect/solver/state_archive.h"
 
 namespace interflect::inline detail {
 
@@ -27,17 +24,6 @@ class BounceBudget {
     /// Returns the unshot power, summed over the bounces of this pass, relative to the first. Omitted bounces are
     /// extrapolated as a geometric series.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
-
-    void archive(StateArchive& archive, const std::string& name) {
-        archive(name + "/rays", rays_);
-        archive(name + "/left", left_);
-        archive(name + "/bounces", bounces_);
-        archive(name + "/last_unshot", last_unshot_);
-        archive(name + "/unshot_sum", unshot_sum_);
-        archive(name + "/decay", decay_);
-        archive(name + "/is_known", is_known_);
-        archive(name + "/is_last", is_last_);
-    }
 
   private:
     std::int64_t rays_ = 0, left_ = 0;

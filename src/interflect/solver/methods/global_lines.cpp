@@ -209,20 +209,14 @@ class GlobalLines final : public Passes {
             area_ += state.forest->area(i) * state.ray_caster.uncovered_share(i);
     }
 
-    void archive(StateArchive& archive) override {
-        Passes::archive(archive);
-        archive("global_lines/steps", steps_);
-    }
-
   protected:
     Received trace(SolverState& state, TransportStep step) override {
-        if (!state.may_begin_step()) throw Interrupted();
         const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
         // Each bounce has its own lines: the product of bounces is unbiased only if they are independent.
-        const std::uint64_t key = mix(mix(state.options.seed, line_purpose), steps_);
+        const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};
         const auto trace_some = [&](std::size_t begin, std::size_t end) {
@@ -242,8 +236,7 @@ class GlobalLines final : public Passes {
         };
         parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop, trace_some);
         if (is_cut_short) throw Interrupted();
-        ++steps_;
-        state.has_traced_step = true;
+        ++state.streams.allocations;
         Received received = sums.received(forest);
         state.escaped_rays += received.escaped_rays;
         state.streams.used.resize(forest.size(), 0);
@@ -256,8 +249,7 @@ class GlobalLines final : public Passes {
     static constexpr std::uint64_t line_purpose = 0x6c696e6573;
     const LineDomain domain_;
     const Panes panes_;
-    double area_ = 0;          // area of the patches that lines can hit [m^2]
-    std::uint64_t steps_ = 0;  // number of traced bounces; each has its own lines
+    double area_ = 0;  // area of the patches that lines can hit [m^2]
 };
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include "interflect/solver/detail.h"
 #include "interflect/solver/merge.h"
 #include "interflect/solver/radiosity.h"
-#include "interflect/solver/state_archive.h"
 #include "interflect/solver/transport_steps.h"
 
 namespace interflect::inline detail {
@@ -18,14 +17,11 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     const bool combined = with_importance && !state.options.experimental.separate_iterations;
     const std::int64_t for_importance =
         with_importance ? std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays)) : 0;
-    if (!importance_step_is_done_) {
-        elements_before_ = state.forest->size();
-        if (with_importance && !combined && for_importance > 0) {
-            const Received received =
-                run_step(state, importance_step(state.materials, solution, importance_of(solution), for_importance));
-            merge(state, solution.indirect_importance, received.importance, plan);
-        }
-        importance_step_is_done_ = true;
+    const std::uint32_t elements_before = state.forest->size();
+    if (with_importance && !combined && for_importance > 0) {
+        const Received received =
+            run_step(state, importance_step(state.materials, solution, importance_of(solution), for_importance));
+        merge(state, solution.indirect_importance, received.importance, plan);
     }
     const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
     if (rays > 0) {
@@ -50,14 +46,8 @@ RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
     }
     state.importance_rays += for_importance;
     state.power_rays += plan.rays - for_importance;
-    update_history(state, plan, elements_before_);
-    importance_step_is_done_ = false;
+    update_history(state, plan, elements_before);
     return state.escaped_power;
-}
-
-void OneBounce::archive(StateArchive& archive) {
-    archive("one_bounce/importance_step_is_done", importance_step_is_done_);
-    archive("one_bounce/elements_before", elements_before_);
 }
 
 }  // namespace interflect::inline detail

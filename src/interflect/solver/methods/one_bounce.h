@@ -10,11 +10,7 @@ namespace interflect::inline detail {
 class OneBounce : public IterationMethod {
   public:
     RgbD iterate(SolverState& state, IterationPlan& plan) override;
-    void archive(StateArchive& archive) override;
-
-  private:
-    bool importance_step_is_done_ = false;
-    std::uint32_t elements_before_ = 0;  // at the start of the iteration
+    void archive(StateArchive&) override {}
 };
 
 }  // namespace interflect::inline detail

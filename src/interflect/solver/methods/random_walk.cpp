@@ -24,10 +24,8 @@ struct BatchResult {
 
 /// Traces this number of paths and updates the counts of rays.
 BatchResult follow_paths(SolverState& state, const Payload& payload, std::int64_t paths, std::uint64_t key) {
-    if (!state.may_begin_step()) throw Interrupted();
     PathBatch batch(state, payload, paths, key);
     const PathSums& sums = batch.follow();
-    state.has_traced_step = true;
     state.escaped_rays += sums.escaped_rays;
     state.streams.used.resize(sums.started.size(), 0);
     BatchResult arrived;
@@ -129,6 +127,7 @@ RandomWalks::RandomWalks(const SolverState& state)
       importance_{sub_key(state.options.seed, WalkPurpose::importance)} {}
 
 void RandomWalks::prepare(SolverState& state) {
+    importance_.batches = 0, importance_.pilot_rays = 0, importance_history_ = 0;
     walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
     state.schedule.began_with(0, state.importance_rays);
 }
@@ -169,7 +168,6 @@ void RandomWalks::retarget(SolverState& state) {
     IterationMethod::retarget(state);
     importance_history_ = 0;
     importance_.pilot_rays = 0;
-    importance_is_done_ = false;
 }
 
 void RandomWalks::archive(StateArchive& archive) {
@@ -177,21 +175,21 @@ void RandomWalks::archive(StateArchive& archive) {
     archive("random_walk/importance", importance_);
     archive("random_walk/escaped", escaped_);
     archive("random_walk/importance_history", importance_history_);
-    archive("random_walk/importance_is_done", importance_is_done_);
-    archive("random_walk/for_importance", for_importance_);
-    archive("random_walk/rays_before", rays_before_);
 }
 
 RgbD RandomWalks::iterate(SolverState& state, IterationPlan& plan) {
-    if (!importance_is_done_) {
-        rays_before_ = state.power_rays + state.importance_rays;
-        for_importance_ = std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
-        walk_importance(state, for_importance_);
-        importance_is_done_ = true;
+    const RandomWalks before = *this;
+    const std::int64_t rays_before = state.power_rays + state.importance_rays;
+    const std::int64_t for_importance =
+        std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
+    try {
+        walk_importance(state, for_importance);
+        walk_light(state, plan.rays - for_importance, plan);
+    } catch (const Interrupted&) {
+        *this = before;
+        throw;
     }
-    walk_light(state, plan.rays - for_importance_, plan);
-    importance_is_done_ = false;
-    const std::int64_t traced = state.power_rays + state.importance_rays - rays_before_;
+    const std::int64_t traced = state.power_rays + state.importance_rays - rays_before;
     if (traced > 0) plan.rays = traced;  // otherwise no visible surface reflects, and the plan is used up
     return escaped_;
 }

@@ -51,8 +51,6 @@ class RandomWalks : public IterationMethod {
     PathSeries light_, importance_;
     RgbD escaped_{0, 0, 0};                // power, mean of all batches
     std::int64_t importance_history_ = 0;  // planned rays of the batches in the mean of psi
-    bool importance_is_done_ = false;      // of this iteration
-    std::int64_t for_importance_ = 0, rays_before_ = 0;
 };
 
 }  // namespace interflect::inline detail
