@@ -366,6 +366,19 @@ void SolverOptions::add_importance(CLI::App& app) {
 void SolverOptions::add_schedule(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
     ExperimentalOptions& o = solve_.experimental;
+    // Takes effect while the command line is parsed, before the options that replace its settings.
+    group(app.add_option_function<std::string>(
+                 "--preset",
+                 [this](const std::string&) {
+                     use_published_algorithm(solve_);
+                     solve_.experimental.rays_per_iteration = 0;  // depends on --rays
+                     is_published_ = true;
+                 },
+                 "paper: the algorithm as published in 2000, in 10 iterations that warm up and 100 that are averaged; "
+                 "other options replace its settings")
+              ->type_name("paper")
+              ->check(CLI::IsMember({"paper"}))
+              ->trigger_on_parse());
     group(add_choice<PointSet>(app, "--points", o.points, {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
                                "Sample points: scrambled Sobol' or pseudo-random")
               ->default_str("sobol"));
@@ -434,6 +447,11 @@ SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspec
     options.method.importance = importance_.value_or(options.method.importance);
     for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
     if (limits_.any()) options.limits = limits_.resolved();
+    if (is_published_ && options.experimental.rays_per_iteration == 0) {
+        SolveOptions published = options;
+        use_published_algorithm(published);
+        options.experimental.rays_per_iteration = published.experimental.rays_per_iteration;
+    }
     return options;
 }
 

@@ -111,6 +111,7 @@ struct SolverOptions {
 
     SolveOptions solve_;
     LimitOptions limits_;
+    bool is_published_ = false;  // --preset paper
     std::optional<Method> method_;
     std::optional<ImportanceUse> importance_;
 };

@@ -33,6 +33,17 @@ class Reproducibility(CommandTest):
         self.assertNotEqual(self.solve("sobol.h5"), one)
 
 
+    def test_the_preset_of_the_paper_is_its_settings(self):
+        settings = "--one-bounce --warm-up 10 --iterations 100 --refinement-criterion power --no-shrinkage --inherited-weight 1"
+        settings += " --epsilon-decay 0 --importance-smoothing 0 --importance-exponent 1"
+        size = ("--rays-per-iteration", "1818")  # 200,000 / 110
+        published = self.solve("published.h5", *settings.split(), *size)
+        self.assertEqual(self.solve("preset.h5", "--preset", "paper"), published)
+        other = self.solve("other.h5", "--inherited-weight", "0.5", "--preset", "paper")
+        settings = settings.replace("--inherited-weight 1", "--inherited-weight 0.5")
+        self.assertEqual(other, self.solve("changed.h5", *settings.split(), *size))
+
+
 class Dark(CommandTest):
     def test_a_scene_without_light_is_solved_with_one_warning(self):
         self.write("dark.mgf", room().replace("ed 1000", "ed 0"))

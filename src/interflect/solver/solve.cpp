@@ -1,5 +1,7 @@
 #include "interflect/solve.h"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -18,6 +20,21 @@ const Method& find_method(const std::string& name) {
 }
 
 const Method& default_method(bool has_views) { return find_method(has_views ? "ihsrr" : "hsrr"); }
+
+void use_published_algorithm(SolveOptions& options) {
+    options.refinement.criterion = RefinementCriterion::power;
+    options.importance.smoothing = 0;
+    options.importance.exponent = 1;
+    ExperimentalOptions& o = options.experimental;
+    o.one_bounce = true;
+    o.warm_up = 10;
+    o.iterations = 100;
+    const bool is_finite = options.limits.rays < std::numeric_limits<std::int64_t>::max();
+    o.rays_per_iteration = is_finite ? std::max<std::int64_t>(1, options.limits.rays / (o.warm_up + o.iterations)) : 0;
+    o.shrinkage = false;
+    o.epsilon_decay = 0;
+    o.inherited_weight = 1;
+}
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
     // Non-owning, because the arguments outlive the solver.
