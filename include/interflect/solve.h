@@ -148,8 +148,8 @@ struct SolveOptions {
 
 /// Changes the settings to the algorithm as published in Prikryl et al. 2000: iterations of one bounce from darkness,
 /// of which 10 warm up and 100 of equal size are averaged; refinement by Eq. 14 and 15 with one threshold; importance
-/// as it is; no shrinkage. Iterations have 1/110 of Limits::rays, or grow if those are unlimited. This is the variant
-/// ci+hi; ExperimentalOptions has the others.
+/// without smoothing; no shrinkage. Iterations have 1/110 of Limits::rays, or grow if those are unlimited. This is the
+/// variant ci+hi; ExperimentalOptions has the others.
 void use_published_algorithm(SolveOptions& options);
 
 /// State of a run after an iteration. Counts since the start.

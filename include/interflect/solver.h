@@ -29,8 +29,8 @@ struct AdvanceReport {
 /// Solves Eq. 1 of Prikryl et al. 2000 step by step; see solve().
 ///
 /// SolveOptions are the plan of the whole run: they determine the size of its iterations and its end. The Limits of
-/// advance() only determine when it returns. An iteration ends or leaves no trace: one that is stopped is discarded and
-/// repeated by the next call. Many small calls, also with save() and open() in between, therefore give the same bits as
+/// advance() only determine when it returns. Iterations are atomic: a stopped iteration is discarded, and the next
+/// call repeats it. Many small calls, also with save() and open() in between, therefore give the same bits as
 /// one call, on any number of threads. The exception is Limits::time of the plan, which makes iterations depend on
 /// speed.
 class Solver {

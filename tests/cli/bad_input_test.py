@@ -1,6 +1,6 @@
 """Bad input: exit code 3 at once, a message that names file and line, no output.
 
-The faults that a reader finds in a file are in tests/formats and tests/fuzz; here is one of each kind.
+tests/formats and tests/fuzz cover the faults in files; this file has one of each kind.
 """
 
 import json

@@ -35,7 +35,7 @@ class Scene(NamedTuple):
     noise: float  # tolerance on equal elements
     lines: float  # tolerance of global-lines, which are noisy for small lamps
     links: float | None  # tolerance of hr; None: too many pairs of faces
-    elements: float | None  # tolerance for elements chosen by the methods; None: large and like the office of the project
+    elements: float | None  # tolerance for elements chosen by the methods; None: a large scene, similar to the office of this repository
 
 
 SHIPPED = {

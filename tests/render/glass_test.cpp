@@ -82,8 +82,8 @@ TEST_P(EveryMethod, FillsAFurnaceThroughGlass) {
 }
 
 /// A pass ends with random walks. A ray that crosses many panes arrives at each of them, and a walk continues from each
-/// arrival. Did not end, and filled the memory, while walks survived by the reflectance alone: 16 panes that reflect 10%
-/// continued 1.6 walks for each one, in addition to those on the walls.
+/// arrival. Did not end, and filled the memory, while walks survived by the reflectance alone: 16 panes that reflect
+/// 10% continued 1.6 walks for each one, in addition to those on the walls.
 TEST(Glass, ManyPanesInARowDoNotMultiplyWalks) {
     Scene scene = closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(30)}});
     const std::uint32_t glass = add_glass(scene, Rgb(0.9f), Rgb(0.1f));

@@ -69,8 +69,8 @@ float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint
     return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
 }
 
-/// Returns what pictures show of the variation among the descendants of a leaf, by level. Pixels show little of what is
-/// smaller than they are, but never nothing: elements are not aligned with pixels.
+/// Returns the share of the variation among the descendants of a leaf that pictures show, by level. The share is small
+/// for elements smaller than a pixel, but not 0, because elements are not aligned with pixels.
 std::array<float, finer_levels> left_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf) {
     std::array<float, finer_levels> left;
     float area = state.forest->area(leaf);
@@ -87,14 +87,14 @@ struct ElementErrors {
     std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
 };
 
-/// Factors of the differences of four siblings from their parent, and what remains of the noise of each, relative to
+/// Factors of the differences of four siblings from their parent, and the remaining noise variance of each, relative to
 /// its area-weighted mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
 
-/// The Wiener filter of each sibling has its own noise. The mean of the siblings is kept: what they lose is divided in
-/// proportion to the remaining variance, as if the parent's mean were another measurement.
+/// The Wiener filter of each sibling has its own noise. The mean of the siblings does not change: their common loss is
+/// divided in proportion to the remaining variance, as if the parent's mean were another measurement.
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const Detail detail = detail_of(state, first);
@@ -228,9 +228,9 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Returns the squared error of the differences between siblings, from what the noise model expects. In hard shadows,
-/// well-distributed points leave less noise than it expects, by so much that its estimate of the error is too small or
-/// negative; what earlier iterations measured is then more reliable.
+/// Returns the squared error of the differences between siblings. The noise model expects too much noise in hard
+/// shadows, where points are well distributed. Its estimate of the error may then even be negative, and the
+/// measurements of earlier iterations replace it.
 double error_of_details(const RiskCheck& check, double noise, double bias) {
     const double expected = noise + bias;
     const bool is_reliable = bias > -noise / 2;

@@ -16,7 +16,7 @@ void merge(const SolverState& state, std::vector<float>& mean, const std::vector
            const IterationPlan& plan);
 
 /// Merges estimates that are not shot again. Siblings are averaged over their own rays; their parent's mean may contain
-/// more rays, and what they lack of it is divided among them in proportion to their noise. So the noise of a bright
+/// more rays, and the difference is divided among them in proportion to their noise. So the noise of a bright
 /// sibling does not spread to a dark one. Means may be negative.
 void merge_details(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                    const IterationPlan& plan);

@@ -12,12 +12,12 @@ inline constexpr std::size_t finer_levels = 6;
 /// Products of irradiance and of an independent iteration, summed over siblings with their weights. Their expected
 /// values are squared errors and squared differences without noise, so they need no noise model.
 struct RiskCheck {
-    double weight = 0;             ///< Of the iterations; 0: no data.
+    double weight = 0;             ///< Sum of the weights of the iterations; 0: no data.
     double expected = 0;           ///< Squared errors after shrinkage by Detail::risk().
     double measured = 0;           ///< The same, measured by later iterations.
     double signal = 0;             ///< Squared differences of the leaves from their parents.
-    double signal_of_parents = 0;  ///< Of their parents from theirs.
-    /// What pixels show of `signal`, if it were that among the leaves' children, their children, ...
+    double signal_of_parents = 0;  ///< The same of their parents.
+    /// Share of `signal` that pixels show, if it were the signal among the leaves' children, their children, ...
     std::array<double, finer_levels> within{};
 
     RiskCheck& operator+=(const RiskCheck& o) { return add(1, o, 1); }

@@ -83,14 +83,14 @@ IterationPlan Solver::Run::next_plan(std::int64_t rays_asked_for) {
     return method->plan(state);
 }
 
-/// Discards what was interrupted. @throws Interrupted
+/// Discards interrupted work. @throws Interrupted
 template <class Work>
 void Solver::Run::atomically(const Work& work) {
     const IterationStart start(state);
     try {
         work();
     } catch (const Interrupted&) {
-        if (state.options.method.is_stochastic) start.restore(state);  // links are kept as far as they were made
+        if (state.options.method.is_stochastic) start.restore(state);  // finished links are kept
         throw;
     }
 }

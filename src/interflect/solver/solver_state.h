@@ -83,13 +83,12 @@ void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 /// Computes the view importance of every element. Resets the indirect importance.
 void look(SolverState& state);
 
-/// What an iteration changes before it ends. Iterations end or leave no trace: an interrupted one is discarded and
-/// repeated, so a run that was stopped, saved and opened again has the bits of one that was not. Memory: 12 bytes an
-/// element.
+/// Copies of all data that an iteration changes before it ends, for discarding an interrupted iteration. The run then
+/// repeats the iteration and has the bits of an uninterrupted run. Memory: 12 bytes per element.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);
-    /// Discards what the iteration has done since. Irradiance and its statistics may only have grown with the mesh.
+    /// Discards the changes since the constructor. Irradiance and its statistics may only have grown with the mesh.
     void restore(SolverState& state) const;
 
   private:

@@ -103,7 +103,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Returns the power to which misplaced power is compared: what the pictures show, or what all surfaces receive.
+    /// Returns the reference for misplaced power: the light in the pictures or, without a view, all received power.
     double reference_power() const {
         if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures);
         double sum = 0;

@@ -102,7 +102,7 @@ void find_importance(SolverState& state, std::int64_t rays) {
 
 }  // namespace
 
-/// Traces one bounce and adds it to the pass. @return Whether there was light to trace.
+/// Traces one bounce and adds it to the pass. @return Whether it had light to trace.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
     // Only the first bounce, which has the most rays, transports importance.
@@ -301,7 +301,7 @@ RgbD Passes::iterate(SolverState& state, IterationPlan& plan) {
     std::optional<Pass> pass;
     if (plan.rays > for_importance) pass.emplace(trace_pass(state, plan.rays - for_importance, by_power));
 
-    // Nothing interrupts the rest.
+    // The remaining work is not interrupted.
     state.schedule.count_other_rays(rays_before - rays_before_adaptation);
     scale_history(state, change_of_history);
     finds_importance_ = false;
