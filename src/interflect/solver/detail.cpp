@@ -55,28 +55,41 @@ float left_of_pairs(float a) {
     return a / 2 - beyond / a;
 }
 
-/// The same in two dimensions. Differences of four siblings change sign along one side, the other, or both.
-float left_of_patches_by_pixels(float area, float pixel_area) {
-    return std::pow(left_of_steps(std::sqrt(area / pixel_area)), 2.0f);
-}
-float left_of_siblings_by_pixels(float area, float pixel_area) {
-    const float a = std::sqrt(area / pixel_area), opposite = left_of_pairs(a);
-    return opposite * (2 * left_of_steps(2 * a) + opposite) / 3;
+/// Extents of an element along the edges of its patch [pixel widths].
+struct Extents {
+    float u, v;
+};
+Extents extents_in_pixels(const SolverState& state, std::uint32_t element) {
+    const ElementForest& forest = *state.forest;
+    const PatchGeometry::Shape& shape = forest.geometry(forest.patch(element)).shape();
+    const float u2 = shape.edge_u.length2(), v2 = shape.edge_v.length2();
+    const float across = shape.edge_u.cross(shape.edge_v).length();  // the shorter extent times the longer edge
+    const float aspect = !(across > 0) ? 1 : u2 > v2 ? u2 / across : across / v2;
+    const float pixels = forest.area(element) / pixel_area(state, element);
+    return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
 }
 
+/// The fractions in two dimensions. Differences of four siblings change sign along one side, the other, or both.
+float left_of_patch(const Extents& patch) { return left_of_steps(patch.u) * left_of_steps(patch.v); }
+float left_of_siblings(const Extents& sibling) {
+    const float u = left_of_pairs(sibling.u), v = left_of_pairs(sibling.v);
+    return (u * left_of_steps(2 * sibling.v) + left_of_steps(2 * sibling.u) * v + u * v) / 3;
+}
 float left_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
-    if (measure == ErrorMeasure::surfaces) return 1;
-    return left_of_siblings_by_pixels(state.forest->area(first), pixel_area(state, first));
+    return measure == ErrorMeasure::surfaces ? 1 : left_of_siblings(extents_in_pixels(state, first));
 }
 
-/// Returns the share of the variation among the descendants of a leaf that pictures show, by level. The share is small
-/// for elements smaller than a pixel, but not 0, because elements are not aligned with pixels.
+/// Returns the share of the variation among the descendants of a leaf that pictures show, by level. Gradients and edges
+/// of shadows vary along one side only, and continue in the neighbours along the other. The share is small for elements
+/// smaller than a pixel, but not 0, because elements are not aligned with pixels.
 std::array<float, finer_levels> left_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf) {
     std::array<float, finer_levels> left;
-    float area = state.forest->area(leaf);
+    left.fill(1);
+    if (measure == ErrorMeasure::surfaces) return left;
+    Extents extents = extents_in_pixels(state, leaf);
     for (float& of_level : left) {
-        area /= 4;
-        of_level = measure == ErrorMeasure::surfaces ? 1 : left_of_siblings_by_pixels(area, pixel_area(state, leaf));
+        extents.u /= 2, extents.v /= 2;
+        of_level = (left_of_pairs(extents.u) + left_of_pairs(extents.v)) / 2;
     }
     return left;
 }
@@ -117,9 +130,7 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
     for (std::uint32_t root = 0; root < forest.patch_count(); ++root) {
-        const float left = measure == ErrorMeasure::pictures
-                               ? left_of_patches_by_pixels(forest.area(root), pixel_area(state, root))
-                               : 1;
+        const float left = measure == ErrorMeasure::pictures ? left_of_patch(extents_in_pixels(state, root)) : 1;
         const float rays = std::max(state.history[root], 1.0f);
         errors.noise[root] = left * state.noise.variance(forest, state.solution.irradiance, root, rays);
     }
