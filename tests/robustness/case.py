@@ -9,6 +9,7 @@ from typing import Callable
 
 DONE, FAILED, WRONG_USAGE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3, 130
 PATIENCE = 5.0  # [s] allowed beyond the limits that the run was given
+REPORT = 15.0  # [s] allowed in addition for a report, which takes 2 s on an idle machine
 
 # Kinds of faults, in the order of the report.
 CRASH, HANG, EXIT_CODE, LEFTOVER, RESULT, UNNOTICED, MESSAGE = SORTS = (

@@ -9,7 +9,7 @@ import stat
 import subprocess
 import time
 
-from case import PATIENCE, Run, write_files
+from case import PATIENCE, REPORT, Run, write_files
 
 LONGEST_READ = 1 << 16
 A_DAY = 86400.0  # [s]
@@ -131,7 +131,8 @@ def watched(program, case, folder, patience):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )
-    watch = Watch(process, case.signals, (case.seconds + PATIENCE) * patience)
+    allowed = case.seconds + PATIENCE + (REPORT if list(case.arguments[:1]) == ["report"] else 0)
+    watch = Watch(process, case.signals, allowed * patience)
     stdout, stderr = (watch.read[stream] for stream in (process.stdout, process.stderr))
     seconds = watch.run()
 
