@@ -26,18 +26,17 @@ TARGETS = {"mean": (0.99, 1.01), "blocks": (0.0, 0.03), "estimate": (0.8, 1.25),
 RUNS = [(method, limit) for method in ("ihsrr", "hsrr") for limit in ("rays", "5%")]
 
 # Known reasons for missed targets; printed beside misses.
-HARD_SHADOWS = "the estimate leaves out edges of hard shadows within elements of a pixel's size"
+HARD_SHADOWS = "hard shadows: well-distributed points continue from pass to pass, so products of passes underestimate variation"
 REASONS: dict[str, str] = {
-    "slit": "early passes run on elements that extend into both rooms, and stay in the mean: the bias falls as 1 / rays",
+    "slit": "elements of a pixel's width at the slit extend into the lit room; the wall in both rooms is noisy beside them",
     "one-sided-sheet": "one-sided faces let light through from behind but stop paths (docs/mgf-extensions.md); solve warns",
     "sun-window": HARD_SHADOWS,
     "tiny-lamp": HARD_SHADOWS,
-    "outdoor": HARD_SHADOWS,
     "non-planar-tiles": HARD_SHADOWS,
     "thousand-lamps": "lamps smaller than a pixel are in the pictures but not among the reference's pixels of lamps",
     "hall": "noise: few of the rays in 100 m reach the 2 m of the view",
     "black-wall": "noise of the dim wall",
-    "landscape-window": "noise; the noise model lags behind where targets change the distribution of rays",
+    "landscape-window": "noise",
 }
 
 
