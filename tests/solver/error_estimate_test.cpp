@@ -190,7 +190,7 @@ TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
     EXPECT_LT(grey.iterations.back().rays, options.limits.rays);
 }
 
-/// A pane that transmits all light fills the picture. Seen to fail, by a factor of 2, if the mean of the picture is
+/// A pane that transmits all light fills the picture. Seen to fail, by a factor of 1.7, if the mean of the picture is
 /// divided by the importance of all surfaces, which the pane doubles.
 TEST(ErrorEstimateThroughGlass, IsThatWithoutAClearPane) {
     Scene scene = room();
