@@ -27,7 +27,7 @@ constexpr double negligible_gain = 2e-7;
 /// light escapes less easily from a bright corner of a lamp's housing.
 constexpr double negligible_misplacement = 3e-7;
 /// Leaves above this share of the light in the pictures reflect where they receive. Then total power is within 0.05% in
-/// rooms with lights 2 cm from a ceiling, and the light behind a slit of 1 cm within 2%. Without this (at 1) the error
+/// rooms with lights 2 cm from a ceiling, and the light behind a slit of 1 cm within 6%. Without this (at 1) the error
 /// is 5% and, behind the slit, many times the light.
 constexpr double tolerable_misplacement = 3e-5;
 /// Relative weight of errors on invisible surfaces. Their effect on the view is blurred.
