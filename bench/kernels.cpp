@@ -1,5 +1,5 @@
-// Benchmarks of the solver's main kernels: `build/release/bin/kernels`. Items per second are points, rays, arrivals or
-// elements. To compare two commits use bench/compare.
+// Benchmarks of the solver's main kernels: `build/release/bin/kernels`. Items per second are points, rays,
+// contributions or elements. To compare two commits use bench/compare.
 
 #include <benchmark/benchmark.h>
 
@@ -12,15 +12,18 @@
 #include "interflect/generators/maze.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solve.h"
-#include "interflect/solver/arrivals.h"
-#include "interflect/solver/probabilities.h"
-#include "interflect/solver/radiosity.h"
-#include "interflect/solver/ray_allocation.h"
-#include "interflect/solver/ray_source.h"
-#include "interflect/solver/transport.h"
-#include "interflect/solver/transport_steps.h"
+#include "interflect/solver/deposit/contributions.h"
+#include "interflect/solver/light/radiosity.h"
+#include "interflect/solver/refinement/oracle_threshold.h"
+#include "interflect/solver/sampling/probabilities.h"
+#include "interflect/solver/sampling/ray_allocation.h"
+#include "interflect/solver/sampling/ray_maker.h"
+#include "interflect/solver/sampling/ray_plan.h"
+#include "interflect/solver/transport/transport.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr std::size_t block = 1024;
@@ -45,9 +48,9 @@ struct SolvedMaze {
         return o;
     }
     TransportStep step(std::int64_t rays, bool refines) {
-        TransportStep step = power_step(materials, Emission(), solution, Radiosity(materials, solution.irradiance),
-                                        importance_weights(solution, Neighbourhoods(forest)), true, rays)
-                                 .step;
+        TransportStep step(plan_power(materials, Emission(), solution, Radiosity(materials, solution.irradiance),
+                                      importance_weights(solution, Neighbourhoods(forest)), true, rays)
+                               .rays);
         if (refines) step.oracle = make_oracle(solution, solution.options.limits.rays, 1e-6);
         step.oracle.max_elements = forest.size();
         return step;
@@ -109,9 +112,9 @@ BENCHMARK(trace_the_solvers_rays);
 
 void add_arrivals(benchmark::State& state) {
     const auto elements = static_cast<std::uint32_t>(state.range(0));
-    Arrivals arrivals(elements);
-    arrivals.begin(elements);
-    Arrivals::ScatterBuffer buffer(arrivals);
+    ContributionSums sums(elements);
+    sums.begin(elements);
+    ContributionSums::ScatterBuffer buffer(sums);
     std::uint32_t random = 1;
     for (auto _ : state) {
         const std::uint32_t source = buffer.add_source({1, 2, 3, 4});

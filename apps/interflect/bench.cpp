@@ -16,15 +16,20 @@
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/parallel.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/json_text.h"
 #include "interflect/ray_caster.h"
+#include "interflect/raycast/prepared_rays.h"
 #include "interflect/solve.h"
-#include "interflect/solver/transport.h"
-#include "interflect/solver/transport_steps.h"
+#include "interflect/solver/refinement/oracle_threshold.h"
+#include "interflect/solver/sampling/ray_plan.h"
+#include "interflect/solver/state/solver_state.h"
+#include "interflect/solver/transport/transport.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -70,7 +75,9 @@ struct Workload {
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
         const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
-        step = power_step(materials, Emission(), solution, light, weights, combined, options.limits.rays).step;
+        step = TransportStep(
+            plan_power(materials, Emission(), solution, light, weights, combined, options.limits.rays).rays);
+        step.importance_at_patches = options.experimental.importance_at_patches;
         if (options.method.refines && !refines_by_variance(options))
             step.oracle = make_oracle(solution, options.limits.rays, options.refinement.min_area);
         step.oracle.max_elements = forest->size();

@@ -5,9 +5,11 @@
 #include "apps/interflect/messages.h"
 #include "apps/interflect/parse.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

@@ -12,13 +12,15 @@
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 #include "interflect/image/pending_image.h"
-#include "interflect/image_files.h"
 #include "interflect/metrics/flip.h"
 #include "interflect/metrics/metrics.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

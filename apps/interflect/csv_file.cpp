@@ -8,6 +8,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 CsvFile::CsvFile(PendingFile& file, const std::string& header)
     : file_(file), stream_(file.temporary_path(), std::ios::binary) {
     add_line(header);

@@ -10,13 +10,13 @@ namespace interflect::command {
 /// A table written line by line; commit() renames it.
 class CsvFile {
   public:
-    CsvFile(PendingFile& file, const std::string& header);
+    CsvFile(detail::PendingFile& file, const std::string& header);
     void add_line(const std::string& line);
     /// @throws std::runtime_error if writing failed.
     void commit();
 
   private:
-    PendingFile& file_;
+    detail::PendingFile& file_;
     std::ofstream stream_;
 };
 

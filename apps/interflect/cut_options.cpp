@@ -2,10 +2,12 @@
 
 #include <spdlog/spdlog.h>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 void CutOptions::add_to(CLI::App& app, const std::vector<std::string>& others) {
     const auto group = [](CLI::Option* option) {

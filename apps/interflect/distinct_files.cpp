@@ -12,6 +12,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 namespace fs = std::filesystem;

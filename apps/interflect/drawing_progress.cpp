@@ -8,12 +8,12 @@ DrawingProgress::DrawingProgress() { end_on_signal(); }
 
 DrawingProgress::~DrawingProgress() { stop_on_signal(); }
 
-PictureMonitor DrawingProgress::monitor() {
+Monitor DrawingProgress::monitor() {
     start_ = std::chrono::steady_clock::now();
-    return {[this](const PictureProgress& progress) { show(progress); }, nullptr};
+    return {[this](const Progress& progress) { show(progress); }, nullptr};
 }
 
-void DrawingProgress::show(const PictureProgress& progress) {
+void DrawingProgress::show(const Progress& progress) {
     constexpr double patience = 1;  // [s]
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     if (!bar_ && (seconds < patience || progress.fraction == 1)) return;

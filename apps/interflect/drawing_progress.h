@@ -17,10 +17,10 @@ class DrawingProgress {
     DrawingProgress(const DrawingProgress&) = delete;
     DrawingProgress& operator=(const DrawingProgress&) = delete;
     /// Serves one drawing at a time; refers to this.
-    PictureMonitor monitor();
+    Monitor monitor();
 
   private:
-    void show(const PictureProgress& progress);
+    void show(const Progress& progress);
 
     std::chrono::steady_clock::time_point start_;
     std::optional<ProgressBar> bar_;

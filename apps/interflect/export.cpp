@@ -1,7 +1,5 @@
 #include "interflect/export.h"
 
-#include "interflect/export_scene.h"
-
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -23,14 +21,16 @@
 #include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
 #include "interflect/checks/up_axis.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/extension.h"
+#include "interflect/image.h"
 #include "interflect/render.h"
 #include "interflect/scene/view.h"
-#include "interflect/solution_file.h"
-#include "interflect/tone_map.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -115,9 +115,9 @@ std::vector<std::filesystem::path> write(const std::filesystem::path& path, cons
     const auto export_light = [&] { return export_solution(path, solved.scene, solved.solution, options); };
     if (!traces_rays(path, options)) return export_light();
     std::vector<std::filesystem::path> written;
-    with_path_progress([&](const PathMonitor& monitor) {
+    with_path_progress([&](const Monitor& monitor) {
         options.monitor = monitor;
-        options.monitor.on_progress = [&](const PathProgress& progress) {
+        options.monitor.on_progress = [&](const Progress& progress) {
             stop_on_signal();
             work.postpone();
             monitor.on_progress(progress);

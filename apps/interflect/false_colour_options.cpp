@@ -1,11 +1,13 @@
 #include "apps/interflect/false_colour_options.h"
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/isolines.h"
 #include "interflect/image/legend.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

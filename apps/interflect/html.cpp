@@ -7,6 +7,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 /// RFC 4648.

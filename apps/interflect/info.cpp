@@ -15,16 +15,18 @@
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/solution_info.h"
+#include "interflect/checks/memory_need.h"
 #include "interflect/checks/up_axis.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
-#include "interflect/photometry.h"
-#include "interflect/solution_file.h"
-#include "interflect/solver/materials.h"
-#include "interflect/solver/memory.h"
+#include "interflect/measure.h"
+#include "interflect/solution.h"
+#include "interflect/solver/light/materials.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

@@ -15,10 +15,12 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/render/path_samples.h"
 #include "interflect/scene/core.h"
-#include "interflect/solver/materials.h"
-#include "interflect/solver/ray_source.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/sampling/ray_maker.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "interflect/dimming.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 

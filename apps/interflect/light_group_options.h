@@ -6,7 +6,7 @@
 
 #include "apps/interflect/parse.h"
 #include "interflect/scene.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 

@@ -12,6 +12,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 constexpr std::chrono::seconds silence{5};  // longer than most phases; shorter than a user's patience

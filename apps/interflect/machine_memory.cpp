@@ -14,6 +14,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 /// Returns the path of the process's control group (version 2), or "".

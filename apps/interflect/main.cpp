@@ -11,7 +11,7 @@
 #include "apps/interflect/messages.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/standard_streams.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace {
 
@@ -26,7 +26,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
     } else {
         command += " " + chosen.front()->get_name();
     }
-    return "error: " + interflect::escaped(message) + "\n`" + command + " --help` tells what may be given.\n";
+    return "error: " + interflect::detail::escaped(message) + "\n`" + command + " --help` tells what may be given.\n";
 }
 
 constexpr const char* footer =

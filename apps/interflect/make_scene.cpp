@@ -11,7 +11,7 @@
 #include "apps/interflect/commands.h"
 #include "apps/interflect/parse.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/formats/write_mgf.h"
@@ -21,6 +21,8 @@
 #include "interflect/generators/two_rooms.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

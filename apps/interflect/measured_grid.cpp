@@ -10,10 +10,12 @@
 
 #include "apps/interflect/path_progress.h"
 #include "interflect/checks/measuring_places.h"
-#include "interflect/error.h"
-#include "interflect/photometry.h"
+#include "interflect/core.h"
+#include "interflect/measure.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -51,7 +53,7 @@ void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const s
         first += size;
     }
     std::vector<MeasuredIrradiance> traced;
-    with_path_progress([&](const PathMonitor& monitor) {
+    with_path_progress([&](const Monitor& monitor) {
         traced = measure_irradiance(scene, nullptr, ray_caster, compared, options, monitor);
     });
     std::span<const MeasuredIrradiance> gathered = measured, rest = traced;
@@ -85,7 +87,7 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
                                         const PathOptions& options) {
     std::vector<MeasuredIrradiance> measured;
-    with_path_progress([&](const PathMonitor& monitor) {
+    with_path_progress([&](const Monitor& monitor) {
         measured = measure_irradiance(scene, solution, ray_caster, points, options, monitor);
     });
     warn_of_misplaced_points(scene, ray_caster, points, measured);

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "interflect/measure.h"
-#include "interflect/measuring_grid.h"
-#include "interflect/photometry.h"
 
 namespace interflect::command {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect::command {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/interflect/parse.h"
-#include "interflect/measuring_grid.h"
+#include "interflect/measure.h"
 #include "interflect/scene.h"
 
 namespace interflect::command {

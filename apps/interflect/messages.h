@@ -16,7 +16,7 @@ void log_to_stderr();
 
 template <class... Arguments>
 void print_line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-    fmt::print("{}\n", escaped(fmt::format(format, std::forward<Arguments>(arguments)...)));
+    fmt::print("{}\n", detail::escaped(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
 }  // namespace interflect::command

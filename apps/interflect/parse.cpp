@@ -11,6 +11,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {

@@ -9,11 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/colour.h"
-#include "interflect/daylight.h"
-#include "interflect/error.h"
-#include "interflect/light_groups.h"
-#include "interflect/load_luminaire.h"
+#include "interflect/core.h"
+#include "interflect/load.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

@@ -9,13 +9,13 @@
 
 namespace interflect::command {
 
-double with_path_progress(const std::function<void(const PathMonitor&)>& work) {
+double with_path_progress(const std::function<void(const Monitor&)>& work) {
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
     ProgressBar bar;
-    const auto show = [&](const PathProgress& p) {
+    const auto show = [&](const Progress& p) {
         const bool has_error = !std::isnan(p.relative_error);
         bar.show({p.fraction, seconds(), p.rays, has_error ? std::optional(p.relative_error) : std::nullopt});
     };

@@ -2,11 +2,11 @@
 
 #include <functional>
 
-#include "interflect/path_tracer.h"
+#include "interflect/render.h"
 
 namespace interflect::command {
 
 /// Calls `work` with a monitor that shows a progress bar and obeys stop_flag(). @return  Duration [s].
-double with_path_progress(const std::function<void(const PathMonitor&)>& work);
+double with_path_progress(const std::function<void(const Monitor&)>& work);
 
 }  // namespace interflect::command

@@ -24,11 +24,13 @@
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/exports/json_text.h"
-#include "interflect/photometry.h"
+#include "interflect/measure.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

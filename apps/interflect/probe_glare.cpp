@@ -14,10 +14,12 @@
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/print_views.h"
 #include "apps/interflect/signals.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/exports/json_text.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -105,7 +107,7 @@ std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, 
         for (const Imath::V3d& eye : grid.points) eyes.push_back({eye, {}, Receiver::cylindrical});
     warn_of_misplaced_points(scene, ray_caster, eyes, {});
     std::vector<GlareRating> ratings;
-    with_path_progress([&](const PathMonitor& monitor) {
+    with_path_progress([&](const Monitor& monitor) {
         ratings = rate_glare(scene, solution, ray_caster, observers, options, monitor);
     });
     std::vector<RatedGrid> result;

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "interflect/base/pending_file.h"
-#include "interflect/glare.h"
-#include "interflect/measuring_grid.h"
+#include "interflect/measure.h"
 
 namespace interflect::command {
 
@@ -27,7 +26,7 @@ std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, 
                                   const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
                                   const PathOptions& options);
 
-void write_ratings(PendingFile& output, const std::vector<RatedGrid>& grids);
+void write_ratings(detail::PendingFile& output, const std::vector<RatedGrid>& grids);
 
 /// Prints the worst rating of each grid and its sources.
 void print_ratings(const std::vector<RatedGrid>& grids, bool json);

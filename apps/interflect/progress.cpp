@@ -41,14 +41,6 @@ std::string magnitude(double number) {
     return fmt::format("{:.1f} T", number);
 }
 
-double fraction_done(const SolveOptions& options, const IterationReport& report) {
-    double fraction = static_cast<double>(report.rays) / static_cast<double>(options.limits.rays);
-    if (std::isfinite(options.limits.time)) fraction = std::max(fraction, report.seconds / options.limits.time);
-    if (options.limits.until > 0)
-        fraction = std::max(fraction, std::pow(options.limits.until / report.error_estimate, 2));
-    return std::clamp(fraction, 0.0, 1.0);
-}
-
 ProgressBar::ProgressBar() : terminal_(stderr_is_terminal()) {}
 
 ProgressBar::~ProgressBar() {

@@ -35,9 +35,6 @@ bool stderr_is_terminal();
 /// Flushes stderr; ignores errors.
 void print_progress(const std::string& text);
 
-/// Returns the completed share, in [0, 1], by the limit that comes first.
-double fraction_done(const SolveOptions& options, const IterationReport& report);
-
 /// "3.5 s", "2 min 10 s", "1 h 5 min".
 std::string duration(double seconds);
 /// "950", "1.5 k", "20.0 M".

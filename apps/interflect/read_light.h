@@ -2,7 +2,7 @@
 
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/shared_options.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 

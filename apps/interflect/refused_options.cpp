@@ -9,7 +9,7 @@
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/shared_options.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 

@@ -26,20 +26,21 @@
 #include "apps/interflect/threads.h"
 #include "apps/interflect/view_check.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/legend.h"
 #include "interflect/image/pending_image.h"
-#include "interflect/image_files.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/render.h"
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/outlines.h"
 #include "interflect/scene/view.h"
-#include "interflect/solution_file.h"
-#include "interflect/tone_map.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -164,8 +165,8 @@ Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster
 Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
     DrawingProgress progress;
-    const Rendering rendering = render(solved.scene, *solved.solution.forest, ray_caster, view,
-                                       solved.solution.irradiance, options.render, progress.monitor());
+    const Rendering rendering =
+        interflect::render(solved.scene, solved.solution, ray_caster, view, options.render, progress.monitor());
     Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,

@@ -21,14 +21,15 @@
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/denoise.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/extension.h"
-#include "interflect/gather.h"
+#include "interflect/image.h"
+#include "interflect/render.h"
 #include "interflect/scene/view.h"
-#include "interflect/tone_map.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -95,7 +96,7 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
     path.seed = options.seed;
     const auto draw = [&] {
         Image image;
-        with_path_progress([&](const PathMonitor& monitor) {
+        with_path_progress([&](const Monitor& monitor) {
             image = denoise(gather(solved.scene, solved.solution, ray_caster, view, path, monitor).layers);
         });
         return image;

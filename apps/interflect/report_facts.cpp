@@ -8,9 +8,11 @@
 
 #include "interflect/luminaires/emission.h"
 #include "interflect/scene/patch_area.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "interflect/power_balance.h"
 #include "interflect/ray_caster.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 

@@ -11,6 +11,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 // Units of a figure: its longer side is figure_side.

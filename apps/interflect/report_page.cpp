@@ -12,7 +12,7 @@
 #include "apps/interflect/print_views.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/report_figures.h"
-#include "interflect/photometry.h"
+#include "interflect/measure.h"
 
 namespace interflect::command {
 

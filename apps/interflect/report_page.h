@@ -9,7 +9,7 @@
 #include "apps/interflect/report_facts.h"
 #include "apps/interflect/report_plan.h"
 #include "interflect/image.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 

@@ -13,6 +13,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 using V2d = Imath::V2d;
@@ -133,7 +135,7 @@ Image illuminance_over(const Scene& scene, const Solution& solution, const RayCa
     std::vector<MeasuringPoint> points;
     for (const Imath::V3d& p : grid.points) points.push_back({p});
     std::vector<MeasuredIrradiance> measured;
-    with_path_progress([&](const PathMonitor& monitor) {
+    with_path_progress([&](const Monitor& monitor) {
         measured = measure_irradiance(scene, &solution, ray_caster, points, options, monitor);
     });
     CellValues cells(grid);

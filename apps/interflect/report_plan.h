@@ -4,9 +4,9 @@
 
 #include "interflect/image.h"
 #include "interflect/image/false_colour.h"
-#include "interflect/measuring_grid.h"
-#include "interflect/path_tracer.h"
+#include "interflect/measure.h"
 #include "interflect/ray_caster.h"
+#include "interflect/render.h"
 #include "interflect/solve.h"
 
 namespace interflect::command {
@@ -16,7 +16,7 @@ struct ReportPlan {
     Imath::V2d low{0, 0}, high{0, 0};  ///< World corners of the pictures [m].
     Image outlines;                    ///< Outlines of objects, black on white.
     Image illuminance;                 ///< The outlines over false colours with isolines.
-    ColourScale scale;                 ///< Scale of the false colours [lx].
+    detail::ColourScale scale;         ///< Scale of the false colours [lx].
 };
 
 /// Draws a plan with a progress bar; stop_flag() ends it early. @param height  World z of the plane [m].

@@ -13,13 +13,14 @@
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/denoise.h"
-#include "interflect/error.h"
-#include "interflect/gather.h"
-#include "interflect/image_files.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
+#include "interflect/render.h"
 #include "interflect/render/path_picture.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -115,7 +116,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     PathTracing traced;
     stop_on_signal();
-    const double seconds = with_path_progress([&](const PathMonitor& monitor) {
+    const double seconds = with_path_progress([&](const Monitor& monitor) {
         traced = solution ? gather(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);
     });

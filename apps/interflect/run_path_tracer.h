@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "apps/interflect/parse.h"
-#include "interflect/image_files.h"
-#include "interflect/path_tracer.h"
+#include "interflect/image.h"
+#include "interflect/render.h"
 #include "interflect/solve.h"
 
 namespace interflect::command {

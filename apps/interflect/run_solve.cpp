@@ -12,12 +12,14 @@
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
-#include "interflect/error.h"
-#include "interflect/power_balance.h"
-#include "interflect/solver/materials.h"
-#include "interflect/solver/memory.h"
+#include "interflect/checks/memory_need.h"
+#include "interflect/core.h"
+#include "interflect/solution.h"
+#include "interflect/solver/light/materials.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -109,17 +111,17 @@ Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveO
     warn_of_covered_emission(scene, ray_caster);
     const SolveOptions options = within_limits(scene, ray_caster, asked_for, memory);
     const std::shared_ptr<void> unowned;  // both outlive the solver
-    return run_to_end(Solver(std::shared_ptr<const Scene>(unowned, &scene),
-                             std::shared_ptr<const RayCaster>(unowned, &ray_caster), options),
+    return run_to_end(Solver(std::shared_ptr<const Scene>(unowned, &scene), options,
+                             std::shared_ptr<const RayCaster>(unowned, &ray_caster)),
                       checkpoints);
 }
 
 Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
     {
         ProgressBar bar;
-        const SolveOptions options = solver.options();
-        const auto show = [&](const IterationReport& report) {
-            bar.show({fraction_done(options, report), report.seconds, report.rays, report.error_estimate});
+        const auto show = [&](const Progress& progress) {
+            const IterationReport& report = *progress.iteration;
+            bar.show({progress.fraction, report.seconds, report.rays, report.error_estimate});
         };
         stop_on_signal();
         const Monitor monitor{show, &stop_flag()};

@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
-#include "interflect/validate.h"
 
 namespace interflect::command {
 

@@ -11,14 +11,16 @@
 #include "apps/interflect/long_work.h"
 #include "apps/interflect/machine_memory.h"
 #include "apps/interflect/refused_options.h"
-#include "interflect/contacts.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"
+#include "interflect/prepare.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/scene/view.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

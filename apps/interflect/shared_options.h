@@ -8,7 +8,7 @@
 
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/parse.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 

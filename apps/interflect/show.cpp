@@ -3,11 +3,13 @@
 #include <vector>
 
 #include "apps/interflect/parse.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/render/camera_samples.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -79,7 +81,7 @@ void add_show(CLI::App& app, Shown& shown) {
 }
 
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                              const CameraSampling& sampling, const PictureMonitor& monitor) {
+                              const CameraSampling& sampling, const Monitor& monitor) {
     const std::vector<float> values = values_of(shown, solved.solution);
     Quantity quantity = described(shown);
     quantity.values = values;

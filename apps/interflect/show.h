@@ -4,7 +4,7 @@
 
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/quantity_picture.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 
@@ -25,8 +25,8 @@ void add_show(CLI::App& app, Shown& shown);
 constexpr bool is_quantity(Shown shown) { return shown != Shown::light && shown != Shown::mesh; }
 
 /// @throws InputError if the solution lacks the quantity.
-QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                              const CameraSampling& sampling, const PictureMonitor& monitor);
+detail::QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster,
+                                      const View& view, const detail::CameraSampling& sampling, const Monitor& monitor);
 
 /// Returns name and unit for metadata.
 std::string label_of(Shown shown);

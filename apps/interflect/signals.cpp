@@ -11,6 +11,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 constexpr std::array<int, 3> stop_signals = {SIGINT, SIGTERM, SIGHUP};

@@ -9,9 +9,11 @@
 #include "apps/interflect/print_views.h"
 #include "interflect/base/crc32.h"
 #include "interflect/exports/solve_report.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

@@ -16,10 +16,12 @@
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
-#include "interflect/solution_file.h"
+#include "interflect/core.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 

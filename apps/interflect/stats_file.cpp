@@ -13,6 +13,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 Json header_of(const Scene& scene, int threads, const SolveOptions& o, const RgbD& emitted_power) {

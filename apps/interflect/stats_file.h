@@ -19,7 +19,7 @@ class StatsFile {
 
   private:
     int threads_;
-    std::optional<PendingFile> file_;
+    std::optional<detail::PendingFile> file_;
 };
 
 }  // namespace interflect::command

@@ -10,13 +10,15 @@
 #include "apps/interflect/setup_warnings.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
+#include "interflect/checks/memory_need.h"
 #include "interflect/exports/json_text.h"
 #include "interflect/exports/solve_report.h"
+#include "interflect/prepare.h"
 #include "interflect/solve.h"
-#include "interflect/solver/memory.h"
-#include "interflect/validate.h"
 
 namespace interflect::command {
+
+using namespace detail;
 
 namespace {
 
@@ -58,7 +60,7 @@ Json json_of(const Finding& finding) {
         places.push_back({{"object", place.object},
                           {"material", place.material},
                           {"where", place.where},
-                          {"position", place.has_position ? interflect::json_of(place.position) : Json(nullptr)}});
+                          {"position", place.has_position ? detail::json_of(place.position) : Json(nullptr)}});
     return {{"kind", finding.kind},     {"problem", finding.is_problem}, {"message", finding.message},
             {"advice", finding.advice}, {"count", finding.count},        {"places", places}};
 }

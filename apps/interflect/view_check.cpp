@@ -11,6 +11,8 @@
 
 namespace interflect::command {
 
+using namespace detail;
+
 namespace {
 
 constexpr int check_rows = 36;

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "interflect/path_tracer.h"
-#include "interflect/probes.h"
+#include "interflect/core.h"
+#include "interflect/measure.h"
+#include "interflect/render.h"
 #include "interflect/scene.h"
 #include "interflect/solve.h"
-#include "interflect/warnings.h"
 
 namespace interflect {
 
@@ -51,7 +51,7 @@ struct ExportOptions {
     V3f up{0, 0, 1};                          ///< Up axis of the scene; rotated for formats with a fixed one.
     std::optional<LightmapOptions> lightmap;  ///< nullopt: the light is stored at the vertices of the elements.
     ProbeOptions probes;                      ///< For formats that store probes instead of surfaces.
-    PathMonitor monitor;                      ///< Monitors gathering and probes.
+    Monitor monitor;                          ///< Monitors gathering and probes.
     Warnings* warnings = nullptr;             ///< Receives features that could not be exported unchanged; may be null.
 };
 
@@ -86,5 +86,28 @@ const ExportFormat& require_export_format(const std::filesystem::path& path);
 ///         some light, or each probe all of it; std::runtime_error if writing fails.
 std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
                                                    const Solution& solution, const ExportOptions& options = {});
+
+struct SceneExportOptions {
+    int width = 1280, height = 720;  ///< Size of the pictures [pixels], >= 1.
+    int samples = 256;               ///< Samples per pixel, >= 1; Radiance has no such setting.
+};
+
+/// Files written, and warnings about unsupported features.
+struct SceneExport {
+    std::vector<std::filesystem::path> files;
+    Warnings warnings;
+};
+
+/// Extensions of export_scene(): .rad (Radiance), .xml (Mitsuba 3), .pbrt (pbrt-v4), .py (a script for Blender).
+extern const std::span<const char* const> scene_export_extensions;
+
+/// Whether export_scene() supports the extension of this path.
+bool is_scene_export(const std::filesystem::path& path);
+
+/// Writes a scene for another renderer: faces with diffuse materials and images, emitters, light sources, skies as an
+/// image, views as cameras. Referenced files are written beside it. Radiance is M / pi. Photometric values are kept,
+/// except for Radiance, which needs them divided by 179 lm/W. Coordinates are relative to Scene::origin.
+/// @throws InputError for an unknown extension, an option out of range and a path that cannot be written.
+SceneExport export_scene(const std::filesystem::path& path, const Scene& scene, const SceneExportOptions& options = {});
 
 }  // namespace interflect

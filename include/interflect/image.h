@@ -2,9 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 
@@ -44,5 +49,97 @@ Image box_downsample(const Image& image, int factor);
 
 /// Number of pixels with an infinite or NaN channel.
 std::int64_t count_non_finite(const Image& image);
+
+enum class ImageFormat {
+    png,   ///< 8-bit sRGB, for display. Needs a tone-mapped image.
+    jpeg,  ///< As png, lossy. Can be written, and read as texture only.
+    exr,   ///< OpenEXR, linear 32-bit float, for measuring. Stores ImageMetadata.
+    hdr,   ///< Radiance RGBE, linear, 8-bit mantissas with a common exponent.
+};
+
+/// Image format for a file name's extension (.png .jpg .jpeg .exr .hdr, ignoring case).
+/// @throws InputError, listing the extensions, for any other.
+ImageFormat require_image_format(const std::filesystem::path& path);
+
+/// Whether the format stores 8-bit sRGB values and therefore needs a tone-mapped image.
+constexpr bool needs_tone_mapping(ImageFormat format) {
+    return format == ImageFormat::png || format == ImageFormat::jpeg;
+}
+
+/// Content and origin of an image. OpenEXR files store it in the attributes interflect.view, .eye, .look_at (both in
+/// world coordinates, double precision), .up, .fov or .extent, .quantity, .scene, .exposure, .seed (text, since it has
+/// 64 bits) and .version; names are escaped() (base/escapes.h).
+struct ImageMetadata {
+    View view;
+    std::string quantity = "radiance [cd/m^2]";  ///< With its unit.
+    std::string scene;                           ///< Source file.
+    std::string version;                         ///< Version of this program.
+    std::uint64_t seed = 0;
+    float exposure = 0;  ///< Suggested for display [stops]: see exposure in tone_map.h.
+};
+
+/// An additional layer of an OpenEXR file.
+struct ImageLayer {
+    std::string name;               ///< Prefix of the channels: name.R and so on; empty: R.
+    std::string channels;           ///< One letter each: "RGB", "XYZ", "Z".
+    std::span<const float> values;  ///< Row by row, row 0 at the top, channels interleaved.
+};
+
+/// Writes an image in the format of the extension of `path`. The same arguments give the same bytes.
+/// @param image     Linear Rec. 709. For .png and .jpg tone-mapped and clamped to [0, 1]; for .hdr clamped to [0,
+///                  2^126]. These three formats show non-finite pixels as pure magenta.
+/// @param metadata, layers  Stored by .exr only.
+/// @throws InputError for an unknown extension and as require_pixels() does; std::runtime_error with the path and the
+///         reason if the file cannot be written.
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
+                 std::span<const ImageLayer> layers = {});
+
+/// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png is decoded from sRGB). An .exr
+/// file must have channels R, G and B; its data window is the image. Alpha is ignored.
+/// @throws InputError with the path and the reason for a file that is missing, is not such an image, is a JPEG, is
+///         truncated or damaged, or claims more than `most_pixels`.
+Image read_image(const std::filesystem::path& path, std::int64_t most_pixels = most_image_pixels);
+
+/// Vertical field of view [degrees] stored in an .exr file by write_image(); nullopt without this attribute and for all
+/// other formats.
+/// @throws InputError as read_image() does, and for a value outside (0, 180).
+std::optional<float> read_field_of_view(const std::filesystem::path& path);
+
+/// Tone mapping operators from luminance to display values in [0, 1]. All are monotonic and preserve black.
+///
+/// The first four are curves for values scaled by an exposure to about 1, in any unit. The last three model an observer
+/// of the scene and one of the display. They need luminances in cd/m^2 and choose the brightness from the adaptation
+/// luminance L_wa, so dim scenes look dim. L_wa is the logarithmic mean of luminance, over the same pixels as in
+/// automatic_exposure().
+enum class Tonemap {
+    srgb,      ///< Linear, clipped at 1: displays true ratios of light.
+    reinhard,  ///< On luminance, which preserves hue; 4 becomes white (Eq. 4 of Reinhard et al. 2002).
+    filmic,    ///< Narkowicz's fit of the ACES response, per channel; keeps mid-grey 0.18, 10 becomes white.
+    agx,       ///< Sobotka's AgX: bright colours desaturate as on film; 0.18 becomes 0.22, 6.5 stops more become white.
+    ward,      ///< A single factor that preserves the visibility of threshold contrasts (Ward 1994).
+    tumblin,  ///< Preserves brightness by Stevens' law (Tumblin and Rushmeier 1993, as revised by Tumblin et al. 1999).
+    ferwerda,  ///< Thresholds of cones and rods; colours fade below 20 cd/m^2 (Ferwerda et al. 1996, without acuity).
+};
+
+/// Whether an operator needs luminances in cd/m^2 of the scene and the display, and chooses the brightness itself.
+constexpr bool is_absolute(Tonemap curve) { return curve >= Tonemap::ward; }
+
+/// Approximate white of an sRGB display [cd/m^2] (IEC 61966-2-1 has 80; most are brighter).
+inline constexpr float usual_display_luminance = 100;
+
+/// Exposure for a natural impression of a lit room [stops]: the logarithmic mean of luminance becomes 0.2, near the
+/// normal key of Reinhard et al. 2002. Ignores black and non-finite pixels, and the darkest and brightest 5% of the
+/// others, to exclude visible lamps and dark windows. 0 for a picture without light.
+float automatic_exposure(const Image& image);
+
+/// Maps a picture to display values in [0, 1] (linear; image_files.h encodes it as sRGB). Black and non-finite pixels
+/// are unchanged.
+/// @param image     Radiance. [cd/m^2] if is_absolute(curve): a picture in W/(m^2 sr) then looks too dark.
+/// @param exposure  [stops]; one more doubles the brightness. Curves receive values times 2^exposure: at 0 a luminance
+///                  of 1 cd/m^2 is 1. If is_absolute(curve) the result is multiplied; 0 is as published.
+/// @param display_luminance  White of the display [cd/m^2], > 0; used if is_absolute(curve).
+/// @throws InputError for an exposure that is not finite, and a display luminance that is not finite and > 0.
+Image tone_map(const Image& image, float exposure, Tonemap curve = Tonemap::srgb,
+               float display_luminance = usual_display_luminance);
 
 }  // namespace interflect

@@ -1,25 +1,34 @@
-/// \file
-/// Includes the whole library: read, solve, render and save scenes.
+/// @file
+/// The whole library. From files to pictures:
+///
+///     Scene scene = load_scene("office.mgf");              // load.h, scene.h, light_sources.h
+///     for (const Finding& f : validate(...)) ...           // prepare.h: faults that would spoil the light
+///     scene = cut_at_contacts(scene);                      // prepare.h: light does not leak below walls
+///     const RayCaster ray_caster(scene);                   // ray_caster.h
+///     SolveOptions options;                                // solve_options.h: method, views, limits
+///     options.views = {{scene.views.at(0)}};
+///     const Solution solution = solve(scene, ray_caster, options);    // solve.h; step by step: Solver in solver.h
+///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
+///     render(scene, solution, ray_caster, scene.views[0]); // render.h; image.h writes files
+///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
+///     export_solution("office.glb", scene, solution);      // export.h: lit glTF, lightmaps, other renderers
+///
+/// Lengths are in metres, colours linear Rec. 709, light in photometric or radiometric units, as the scene has them.
+/// Wrong input causes an InputError that lists every fault (core.h). The same seed gives the same bits for any number
+/// of threads. Objects are values; const functions may be called from several threads.
 #pragma once
 
-#include "interflect/contacts.h"
-#include "interflect/denoise.h"
-#include "interflect/dimming.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/export.h"
-#include "interflect/export_scene.h"
-#include "interflect/gather.h"
-#include "interflect/glare.h"
-#include "interflect/image_files.h"
-#include "interflect/load_scene.h"
+#include "interflect/image.h"
+#include "interflect/light_sources.h"
+#include "interflect/load.h"
 #include "interflect/measure.h"
-#include "interflect/measuring_grid.h"
-#include "interflect/path_tracer.h"
-#include "interflect/photometry.h"
-#include "interflect/power_balance.h"
-#include "interflect/probes.h"
+#include "interflect/prepare.h"
+#include "interflect/ray_caster.h"
 #include "interflect/render.h"
-#include "interflect/solution_file.h"
+#include "interflect/scene.h"
+#include "interflect/solution.h"
+#include "interflect/solve.h"
+#include "interflect/solve_options.h"
 #include "interflect/solver.h"
-#include "interflect/tone_map.h"
-#include "interflect/validate.h"

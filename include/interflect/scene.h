@@ -1,18 +1,90 @@
 #pragma once
 
+#include <ImathVec.h>
+
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "interflect/colour.h"
-#include "interflect/light_groups.h"
-#include "interflect/luminaire.h"
-#include "interflect/texture.h"
-#include "interflect/warnings.h"
+#include "interflect/core.h"
+#include "interflect/light_sources.h"
 
 namespace interflect {
+
+/// Texture coordinates (u, v): (0, 0) is the lower left corner of the image, (1, 1) the upper right. The image repeats.
+using V2f = Imath::V2f;
+
+/// An image that multiplies a material's reflectance, exitance or transmittance.
+struct Texture {
+    std::string name;  ///< Source file.
+    std::uint32_t width = 0, height = 0;
+    std::vector<Rgb> texels;  ///< Linear Rec. 709, >= 0, row by row, row 0 at the top: [y * width + x].
+};
+
+/// Limits: texels of all textures of a scene, 12 bytes each; texels along the side of an image.
+inline constexpr std::uint64_t most_texels = std::uint64_t{1} << 26;
+inline constexpr std::uint32_t most_texels_of_side = 1u << 14;
+
+/// Largest texture coordinate. Single precision resolves 1 / 2000 texel there.
+inline constexpr float farthest_texture_coordinate = 4096;
+
+/// Bilinear interpolation of the texture at (u, v), between texel centres.
+Rgb texel_at(const Texture& texture, const V2f& coordinate);
+
+/// Maximum of each channel: an upper bound of the interpolated texture.
+Rgb largest_texel(const Texture& texture);
+
+/// Fault of a texture (its size, a texel that is negative or not finite), in words without a subject; empty if valid.
+std::string texture_fault(const Texture& texture);
+
+/// Fault of texture coordinates, in the same form.
+std::string texture_coordinate_fault(const V2f& coordinate);
+
+struct Scene;
+
+/// Light sources that are dimmed together.
+struct LightGroup {
+    std::string name;
+    /// Pattern of the names of objects, materials or luminaires: '*' matches any characters, '?' one. An object
+    /// includes nested objects ("lamps" includes "lamps.left").
+    std::string pattern;
+};
+
+/// Maximum number of groups, including that of unmatched sources.
+inline constexpr std::size_t most_light_groups = 32;
+
+/// Whether a pattern matches all of `name`. O(product of both lengths).
+bool matches(std::string_view pattern, std::string_view name);
+
+/// Group of each source: the first whose pattern matches.
+struct SourceGroups {
+    std::vector<std::string> names;          ///< Those of Scene::light_groups, then "other" if some sources match none.
+    std::vector<std::uint8_t> of_patch;      ///< Index into names; undefined for patches that do not emit.
+    std::vector<std::uint8_t> of_luminaire;  ///< Index into names.
+
+    bool empty() const { return names.empty(); }
+    std::size_t size() const { return names.size(); }
+    /// @throws InputError that lists the names, for an unknown group.
+    std::size_t index_of(const std::string& name) const;
+};
+
+/// Empty for a scene without groups. @throws InputError for more than most_light_groups or a duplicate name.
+SourceGroups source_groups(const Scene& scene);
+
+/// @throws InputError for a group without sources, and as source_groups().
+void require_sources_of_groups(const Scene& scene);
+
+/// One group for each top-level object with a source; if at most one object has sources, one for each material and
+/// luminaire. @throws InputError for more than most_light_groups.
+std::vector<LightGroup> groups_by_name(const Scene& scene);
+
+/// Copy of the scene with the sources of each group scaled. Materials keep their order.
+/// @param factors  One per group of source_groups(scene); >= 0.
+Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors);
 
 /// Invalid index.
 inline constexpr std::uint32_t none = 0xffffffffu;

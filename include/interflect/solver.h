@@ -1,3 +1,5 @@
+/// @file
+/// A run of the solver that can be continued, changed and saved.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +11,14 @@
 
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
-#include "interflect/solve.h"
-
-namespace interflect::inline detail {
-class StateArchive;
-}  // namespace interflect::inline detail
+#include "interflect/solution.h"
+#include "interflect/solve_options.h"
 
 namespace interflect {
+
+namespace detail {
+struct Run;
+}
 
 /// State of a run when advance() returns.
 struct AdvanceReport {
@@ -33,15 +36,17 @@ struct AdvanceReport {
 /// call repeats it. Many small calls, also with save() and open() in between, therefore give the same bits as
 /// one call, on any number of threads. The exception is Limits::time of the plan, which makes iterations depend on
 /// speed.
+///
+/// Const functions may be called from several threads at a time.
 class Solver {
   public:
     /// @throws InputError listing every option out of range and every fault of the scene; also for a view that defines
     ///         no picture. A scene without light is valid.
     Solver(Scene scene, const SolveOptions& options);
-    Solver(const std::shared_ptr<const Scene>& scene, const SolveOptions& options);
-    /// @param ray_caster  Of the same scene, otherwise InputError.
-    Solver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> ray_caster,
-           const SolveOptions& options);
+    /// The same without a copy of the scene.
+    /// @param ray_caster  Of this scene, otherwise InputError; null: made here.
+    Solver(std::shared_ptr<const Scene> scene, const SolveOptions& options,
+           std::shared_ptr<const RayCaster> ray_caster = nullptr);
     ~Solver();
     Solver(Solver&&) noexcept;
     Solver& operator=(Solver&&) noexcept;
@@ -58,7 +63,7 @@ class Solver {
     /// Scales the sources of a light group and their light, relative to the original scene.
     /// @throws InputError for an unknown group, for a factor that is negative or not finite, and for methods that do
     ///         not average iterations (Method::follows_dimming).
-    void set_exitance(const std::string& group, float factor);
+    void set_dimming(const std::string& group, float factor);
     /// Replaces SolveOptions::limits, which count from the beginning of the run.
     /// @throws InputError for a limit out of range.
     void set_plan(const Limits& limits);
@@ -67,7 +72,7 @@ class Solver {
     const Solution& solution() const;
     /// The same without a copy. The solver must not be used afterwards.
     Solution take_solution() &&;
-    /// With its sources as scaled by set_exitance().
+    /// With its sources as scaled by set_dimming().
     const Scene& scene() const { return *shared_scene(); }
     const RayCaster& ray_caster() const { return *shared_ray_caster(); }
     std::shared_ptr<const Scene> shared_scene() const;
@@ -76,18 +81,13 @@ class Solver {
 
     /// Writes the complete state to a solution file (docs/solution-file.md), through a temporary file.
     /// @throws std::runtime_error if it cannot be written.
-    void save(const std::filesystem::path& path);
+    void save(const std::filesystem::path& path) const;
     /// Reads a file of save(). @throws InputError for a file that is missing, damaged, without the state of a run, or
     /// of another version of Interflect.
     static Solver open(const std::filesystem::path& path);
 
   private:
-    struct Run;
-    void archive(StateArchive& archive);
-    std::shared_ptr<const Scene> undimmed_scene() const;
-    const std::vector<float>& dimming() const;
-
-    std::unique_ptr<Run> run_;
+    std::unique_ptr<detail::Run> run_;
 };
 
 }  // namespace interflect

@@ -5,6 +5,8 @@
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(Crc32, HasTheCheckValueOfItsDefinition) { EXPECT_EQ(text_of_crc32(crc32("123456789")), "cbf43926"); }

@@ -6,6 +6,8 @@
 #include <utility>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(Escapes, LeaveValidTextAsItIs) {

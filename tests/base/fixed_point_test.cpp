@@ -9,6 +9,8 @@
 #include "interflect/base/parallel.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 std::vector<RgbD> random_colours(std::size_t count) {

@@ -7,6 +7,8 @@
 #include <vector>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(ParallelForRanges, CoversEachIndexOnceInAlignedRanges) {

@@ -13,10 +13,12 @@
 #include <thread>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,8 @@
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::bonferroni;

@@ -8,6 +8,8 @@
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::chi_square_test;

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(RankedBits, KnowsItsMembersAndHowManyAreBeforeEach) {

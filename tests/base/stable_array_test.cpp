@@ -6,6 +6,8 @@
 #include <cstdint>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(StableArray, IsZeroAndKeepsWhatIsWritten) {

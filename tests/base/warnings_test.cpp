@@ -1,4 +1,4 @@
-#include "interflect/warnings.h"
+#include "interflect/core.h"
 
 #include <gtest/gtest.h>
 

@@ -12,12 +12,14 @@
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
 #include "interflect/generators/two_rooms.h"
-#include "interflect/load_scene.h"
-#include "interflect/validate.h"
+#include "interflect/load.h"
+#include "interflect/prepare.h"
 #include "tests/checks/rooms.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -6,6 +6,8 @@
 #include <random>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 bool holds(const Cell& cell, Parameters p, bool triangle) {

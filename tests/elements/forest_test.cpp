@@ -9,10 +9,12 @@
 #include <random>
 #include <thread>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr std::size_t capacity = 1 << 16;

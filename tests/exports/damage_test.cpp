@@ -7,12 +7,16 @@
 #include <iterator>
 #include <random>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/exports/checksums.h"
-#include "interflect/solution_file.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solution.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

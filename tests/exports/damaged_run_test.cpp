@@ -11,12 +11,14 @@
 #include <random>
 #include <string>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/exports/checksums.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -9,6 +9,8 @@
 #include <random>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(JsonText, KeepsNamesOfAnyBytes) {

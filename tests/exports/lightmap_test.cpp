@@ -5,15 +5,17 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/contacts.h"
 #include "interflect/elements/forest.h"
 #include "interflect/generators/two_rooms.h"
+#include "interflect/prepare.h"
 #include "interflect/render/smooth_field.h"
 #include "interflect/solve.h"
 #include "tests/exports/lightmaps.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::add_material;

@@ -15,13 +15,13 @@ namespace interflect::lightmap_testing {
 /// times.
 template <class Field>
 Solution solution_of(const Scene& scene, int levels, const Field& field) {
-    const auto forest = std::make_shared<ElementForest>(scene, scene.patches.size() << (2 * levels + 1));
+    const auto forest = std::make_shared<detail::ElementForest>(scene, scene.patches.size() << (2 * levels + 1));
     for (std::uint32_t e = 0; e < forest->size(); ++e)
         if (forest->level(e) < levels) forest->subdivide(e);
     forest->put_in_order(forest->patch_count());
     Solution solution;
     for (std::uint32_t e = 0; e < forest->size(); ++e) {
-        const PatchGeometry& geometry = forest->geometry(forest->patch(e));
+        const detail::PatchGeometry& geometry = forest->geometry(forest->patch(e));
         solution.irradiance.push_back(field(geometry.point(forest->cell(e).centre(geometry.is_triangle()))));
     }
     solution.forest = forest;
@@ -40,7 +40,7 @@ inline ExportOptions at(float texels_per_metre) {
 }
 
 /// Computes the bilinear interpolation from the centres of the four nearest texels, as on a graphics card.
-inline Rgb sample(const Lightmap& lightmap, std::uint32_t patch, Parameters place) {
+inline Rgb sample(const detail::Lightmap& lightmap, std::uint32_t patch, detail::Parameters place) {
     const Image& image = lightmap.images[static_cast<std::size_t>(lightmap.page(patch))];
     const V2f at = lightmap.coordinate(patch, place);
     const float column = at.x * static_cast<float>(image.width) - 0.5f;
@@ -52,9 +52,9 @@ inline Rgb sample(const Lightmap& lightmap, std::uint32_t patch, Parameters plac
 }
 
 /// Returns parameters of random points of a patch, every other one on its border.
-inline Parameters random_place(const PatchGeometry& geometry, std::uint64_t index) {
-    Parameters p = geometry.uniform_parameters(static_cast<float>(random_double(1, index)),
-                                               static_cast<float>(random_double(2, index)));
+inline detail::Parameters random_place(const detail::PatchGeometry& geometry, std::uint64_t index) {
+    detail::Parameters p = geometry.uniform_parameters(static_cast<float>(detail::random_double(1, index)),
+                                                       static_cast<float>(detail::random_double(2, index)));
     if (index % 4 == 1) p.u = 0;
     if (index % 4 == 3) p.v = 0;
     return p;

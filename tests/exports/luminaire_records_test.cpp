@@ -8,6 +8,8 @@
 #include "interflect/exports/luminaire_records.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 std::shared_ptr<PhotometricWeb> uneven_web() {

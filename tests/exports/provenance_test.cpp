@@ -8,12 +8,14 @@
 #include <fstream>
 #include <iterator>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/exports/solve_report.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

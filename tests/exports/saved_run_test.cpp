@@ -1,5 +1,5 @@
 // A run in many calls, saved and opened between them, or stopped at any point, has the bits of an undisturbed run. Seen
-// to fail when arrivals of an interrupted step stay, and when the file is written after the state has changed.
+// to fail when contributions of an interrupted step stay, and when the file is written after the state has changed.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,14 +16,17 @@
 #include <thread>
 
 #include "interflect/base/random.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/saved_run.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
+#include "interflect/solve.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;
@@ -130,7 +133,7 @@ void expect_same(const Solution& s, const Solution& expected) {
         EXPECT_EQ(s.iterations[i].total_power, expected.iterations[i].total_power);
         EXPECT_EQ(s.iterations[i].escaped_power, expected.iterations[i].escaped_power);
         EXPECT_EQ(s.iterations[i].error_estimate, expected.iterations[i].error_estimate);
-        EXPECT_EQ(s.iterations[i].high_quantum, expected.iterations[i].high_quantum);
+        EXPECT_EQ(s.iterations[i].high_payload, expected.iterations[i].high_payload);
     }
     ASSERT_EQ(s.forest->subdivided(), expected.forest->subdivided());
     EXPECT_EQ(s.irradiance, expected.irradiance);
@@ -347,8 +350,8 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
     options.limits.rays = 60'000;
     Solver solver(open_room_with_lights(), options);
     solver.advance({.rays = 20'000});
-    solver.set_exitance("daylight", 0.25f);
-    solver.set_exitance("other", 0);
+    solver.set_dimming("daylight", 0.25f);
+    solver.set_dimming("other", 0);
     solver.save(run);
     write_solution(result, solver.scene(), solver.solution());
     for (const fs::path& file : {run, result}) {
@@ -361,7 +364,7 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
     }
     Solver opened = Solver::open(run);
     for (Solver* s : {&solver, &opened}) {
-        s->set_exitance("other", 0.5f);
+        s->set_dimming("other", 0.5f);
         s->advance({});
     }
     expect_same(opened.solution(), solver.solution());

@@ -7,6 +7,8 @@
 #include "interflect/geometry/polygon.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 /// A two-sided square and a one-sided one above it; patches 0 and 1 are the sides of the first.

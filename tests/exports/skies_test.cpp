@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "interflect/scene/environment_maps.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
+#include "interflect/solve.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -1,4 +1,4 @@
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +11,16 @@
 #include <limits>
 #include <random>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

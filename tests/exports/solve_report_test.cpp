@@ -5,6 +5,8 @@
 #include <limits>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 /// All options differ from their defaults, so a missing option is noticed.

@@ -8,15 +8,18 @@
 #include <cmath>
 #include <limits>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/opacity.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
+#include "interflect/solve.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 #include "tests/support/textured_scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Imath::V3d;

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "interflect/formats/obj.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/formats/read_faults.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Imath::V3d;

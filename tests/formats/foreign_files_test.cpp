@@ -6,17 +6,18 @@
 #include <functional>
 #include <string>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/foreign_text.h"
 #include "interflect/formats/ies.h"
-#include "interflect/load_luminaire.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/formats/read_faults.h"
 #include "tests/support/photometry_files.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

@@ -9,8 +9,8 @@
 
 #include <functional>
 
-#include "interflect/image_files.h"
-#include "interflect/load_scene.h"
+#include "interflect/image.h"
+#include "interflect/load.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/support/scenes.h"
 
@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using namespace detail;
 using namespace testing_support;
 
 std::string big_endian(std::uint32_t value) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/gltf.h"
 
 namespace interflect::testing_support {
@@ -84,7 +84,7 @@ class GltfBuilder {
         return "glTF" + word(2) + word(12 + 8 + text.size() + 8 + padded.size()) + word(text.size()) + "JSON" + text +
                word(padded.size()) + std::string("BIN\0", 4) + padded;
     }
-    Scene read(const ReadOptions& options = {}) const { return read_gltf_bytes(glb(), "test.glb", options); }
+    Scene read(const ReadOptions& options = {}) const { return detail::read_gltf_bytes(glb(), "test.glb", options); }
     std::string fault(const ReadOptions& options = {}) const {
         try {
             read(options);

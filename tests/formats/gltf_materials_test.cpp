@@ -10,13 +10,15 @@
 #include <iterator>
 #include <numbers>
 
+#include "interflect/image.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
-#include "interflect/image_files.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing::Contains;

@@ -10,11 +10,13 @@
 
 #include <filesystem>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "tests/support/photometry_files.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -5,6 +5,8 @@
 #include <string>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Lines = std::vector<std::pair<std::int64_t, std::vector<std::string>>>;

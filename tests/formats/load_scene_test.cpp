@@ -1,14 +1,16 @@
 // Scenes generated from a name.
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/generators/maze.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 std::string fault_of(const std::string& name, const ReadOptions& options = {}) {

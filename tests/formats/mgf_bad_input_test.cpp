@@ -3,12 +3,14 @@
 
 #include <chrono>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,6 +6,8 @@
 #include <random>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();

@@ -6,16 +6,18 @@
 
 #include <sstream>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/write_ies.h"
 #include "interflect/formats/write_mgf.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "interflect/luminaires/illumination.h"
 #include "tests/support/photometry_files.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -8,18 +8,19 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/daylight.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/formats/write_mgf.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "interflect/luminaires/skies.h"
 #include "interflect/scene/environment_maps.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -7,11 +7,13 @@
 #include <numbers>
 #include <set>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 /// Corners of the unit square, and of a square of half the size inside it.

@@ -3,11 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/model.h"
 #include "interflect/scene/patch_area.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Imath::V3d;

@@ -5,15 +5,17 @@
 #include <cmath>
 #include <sstream>
 
-#include "interflect/contacts.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/obj.h"
 #include "interflect/formats/ply.h"
 #include "interflect/formats/write_mgf.h"
 #include "interflect/geometry/split.h"
+#include "interflect/prepare.h"
 #include "tests/formats/gltf_builder.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -11,11 +11,13 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/formats/read_faults.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

@@ -9,15 +9,17 @@
 #include <numbers>
 #include <random>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/ies.h"
 #include "interflect/formats/ldt.h"
 #include "interflect/formats/write_ies.h"
-#include "interflect/load_luminaire.h"
+#include "interflect/load.h"
 #include "tests/support/photometry_files.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

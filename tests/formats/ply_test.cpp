@@ -10,6 +10,8 @@
 #include "tests/formats/read_faults.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -9,11 +9,13 @@
 #include "interflect/formats/curves.h"
 #include "interflect/formats/rad_materials.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/formats/read_faults.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

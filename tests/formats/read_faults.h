@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect::testing_support {
 

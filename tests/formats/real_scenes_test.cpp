@@ -6,10 +6,12 @@
 #include <numbers>
 
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 Scene load(const std::string& name) {

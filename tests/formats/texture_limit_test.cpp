@@ -8,6 +8,8 @@
 #include "interflect/base/random.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 Texture noise(std::uint32_t width, std::uint32_t height) {

@@ -7,17 +7,19 @@
 
 #include <fstream>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/mgf.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/formats/write_mgf.h"
 #include "interflect/generators/boxes.h"
+#include "interflect/image.h"
 #include "interflect/image/srgb.h"
-#include "interflect/image_files.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

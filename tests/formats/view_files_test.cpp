@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "interflect/error.h"
-#include "interflect/load_scene.h"
+#include "interflect/core.h"
+#include "interflect/load.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::TemporaryFolder;

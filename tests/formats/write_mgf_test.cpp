@@ -15,10 +15,12 @@
 #include "interflect/formats/view_files.h"
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::TemporaryFolder;

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/gltf.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/ies.h"
 
 namespace interflect {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "interflect/error.h"
-#include "interflect/read_options.h"
+#include "interflect/core.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
 namespace interflect::fuzzing {

@@ -20,6 +20,8 @@
 #include "interflect/ray_caster.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Imath::Box3d;

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/generators/building/solids.h"
 #include "interflect/geometry/patch_geometry.h"
@@ -18,6 +18,8 @@
 #include "interflect/scene/view.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr std::uint64_t seeds = 20;

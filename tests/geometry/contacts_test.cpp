@@ -1,4 +1,4 @@
-#include "interflect/contacts.h"
+#include "interflect/prepare.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,6 +15,8 @@
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing::IsEmpty;

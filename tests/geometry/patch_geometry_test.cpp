@@ -8,6 +8,8 @@
 #include <vector>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 struct Single {

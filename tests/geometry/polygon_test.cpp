@@ -9,6 +9,8 @@
 #include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Loop = std::vector<std::uint32_t>;

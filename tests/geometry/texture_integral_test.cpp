@@ -9,6 +9,8 @@
 #include "interflect/base/random.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Corners = std::array<V2f, 3>;

@@ -11,14 +11,16 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/contacts.h"
 #include "interflect/geometry/flat_surfaces.h"
 #include "interflect/geometry/polygon.h"
 #include "interflect/geometry/split.h"
 #include "interflect/geometry/vertex_weld.h"
+#include "interflect/prepare.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -9,6 +9,8 @@
 #include "interflect/base/random.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Faces = std::vector<FaceVertices>;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 TEST(VertexWeld, OneVertexForEachPosition) {

@@ -7,6 +7,8 @@
 #include <limits>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();

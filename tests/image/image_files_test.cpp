@@ -1,4 +1,4 @@
-#include "interflect/image_files.h"
+#include "interflect/image.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -19,7 +19,7 @@
 #include <limits>
 #include <memory>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/srgb.h"
 #include "tests/support/scenes.h"
 
@@ -30,6 +30,8 @@
 #include <stb/stb_image.h>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;

@@ -8,10 +8,12 @@
 #include <limits>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/lettering.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 const Rgb background(0.25f);

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/error.h"
-#include "interflect/image_files.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using Values = std::vector<float>;

@@ -1,14 +1,16 @@
-#include "interflect/tone_map.h"
+#include "interflect/image.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/srgb.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 Rgb grey(float v) { return Rgb(v, v, v); }

@@ -4,9 +4,11 @@
 
 #include <cmath>
 
-#include "interflect/tone_map.h"
+#include "interflect/image.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 /// Returns the display value of a uniform grey of this luminance [cd/m^2], with 1 for white.

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 Rgb grey(float v) { return Rgb(v); }

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 #include "interflect/metrics/flip.h"
 #include "interflect/metrics/perceptual.h"
-#include "interflect/tone_map.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 Rgb grey(float v) { return Rgb(v, v, v); }

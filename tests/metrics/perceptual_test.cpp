@@ -7,9 +7,11 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using std::numbers::pi;

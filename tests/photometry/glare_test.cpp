@@ -1,6 +1,6 @@
 // Unified Glare Rating against published position indices and sources of known luminance and solid angle.
 
-#include "interflect/glare.h"
+#include "interflect/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "interflect/error.h"
-#include "interflect/measure.h"
+#include "interflect/core.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,13 +1,13 @@
 // Positions of measuring points: spacing and number by EN 12464-1, within the faces of an area and off its border.
 
-#include "interflect/measuring_grid.h"
+#include "interflect/measure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,6 +1,6 @@
 // Summaries of measured points, and a point light over a floor in closed form.
 
-#include "interflect/photometry.h"
+#include "interflect/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/measuring_grid.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

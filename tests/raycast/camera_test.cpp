@@ -7,9 +7,11 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 /// From the origin along +y with z up, so that +x is to the right; 90 degrees: the image plane at distance 1 is 2 high.

@@ -9,17 +9,19 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/contacts.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
 #include "interflect/generators/two_rooms.h"
 #include "interflect/geometry/split.h"
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
+#include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

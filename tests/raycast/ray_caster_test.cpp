@@ -3,6 +3,7 @@
 // not start off their surface.
 
 #include "interflect/ray_caster.h"
+#include "interflect/raycast/prepared_rays.h"
 
 #include <ImathMatrix.h>
 #include <gmock/gmock.h>
@@ -12,11 +13,13 @@
 #include <random>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -7,16 +7,15 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/gather.h"
 #include "interflect/measure.h"
-#include "interflect/path_tracer.h"
-#include "interflect/power_balance.h"
-#include "interflect/probes.h"
 #include "interflect/render.h"
+#include "interflect/solution.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

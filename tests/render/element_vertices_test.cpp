@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "interflect/base/random.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/render/smooth_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::add_material;

@@ -1,6 +1,6 @@
 // Final gathering against path tracing, which uses no solution; and the denoising filter.
 
-#include "interflect/gather.h"
+#include "interflect/render.h"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,17 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/denoise.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/ray_caster.h"
 #include "interflect/render/known_light.h"
+#include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

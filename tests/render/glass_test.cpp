@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "interflect/gather.h"
 #include "interflect/measure.h"
-#include "interflect/path_tracer.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"

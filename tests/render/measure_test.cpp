@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/error.h"
-#include "interflect/gather.h"
+#include "interflect/core.h"
+#include "interflect/render.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 

@@ -9,7 +9,7 @@
 // - chance hits with full weight; survivors of roulette not scaled up; at most 30 bounces;
 // - directions uniform over the hemisphere; only points near the middle of a lamp; shadow rays that ignore blockers;
 // - the same random numbers for all batches, or for all vertices; no ray offset; standard errors 15% too large.
-#include "interflect/path_tracer.h"
+#include "interflect/render.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -19,7 +19,7 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -392,7 +392,7 @@ TEST(PathTracer, ErrorIsUnknownUntilEveryPixelHasASpread) {
     add_rectangle(scene, V3f(-9, -9, 0), V3f(18, 0, 0), V3f(0, 18, 0), add_material(scene, Rgb(0, 0, 0), Rgb(1, 1, 1)));
     const View view{"lamp", V3f(0, 0, 1), V3f(0, 0, 0), V3f(0, 1, 0), 60};
     std::vector<double> errors;
-    const PathMonitor monitor{[&](const PathProgress& progress) { errors.push_back(progress.relative_error); }};
+    const Monitor monitor{[&](const Progress& progress) { errors.push_back(progress.relative_error); }};
     // Two batches of one path: 320,000 paths, more than the interval between two reports.
     const PathTracing seen =
         trace_paths(scene, RayCaster(scene), view, {.width = 400, .height = 400, .samples = 2}, monitor);
@@ -406,12 +406,12 @@ TEST(PathTracer, StopsOnRequest) {
     const Room room;
     std::atomic<bool> stop{false};
     int reports = 0;
-    const PathMonitor monitor{[&](const PathProgress& progress) {
-                                  ++reports;
-                                  EXPECT_GT(progress.rays, 0);
-                                  stop = true;
-                              },
-                              &stop};
+    const Monitor monitor{[&](const Progress& progress) {
+                              ++reports;
+                              EXPECT_GT(progress.rays, 0);
+                              stop = true;
+                          },
+                          &stop};
     const PathTracing seen = trace_paths(room.scene, RayCaster(room.scene), room.view,
                                          {.width = 64, .height = 64, .samples = 1 << 20}, monitor);
     EXPECT_EQ(reports, 1);

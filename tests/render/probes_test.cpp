@@ -2,18 +2,20 @@
 //
 // Seen to fail without the factors of the convolution, with unweighted quadrature, with x and y swapped, and when walls
 // do not hide lamps.
-#include "interflect/probes.h"
+#include "interflect/measure.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/render/sphere_quadrature.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

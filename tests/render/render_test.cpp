@@ -1,4 +1,4 @@
-#include "interflect/render.h"
+#include "interflect/render/render_elements.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -9,15 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
-#include "interflect/path_tracer.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/outlines.h"
 #include "interflect/render/quantity_picture.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::add_material;
@@ -251,11 +252,11 @@ TEST(Render, RefusesAForestOrARayCasterOfAnotherScene) {
 /// instead of rays.
 TEST(Render, ReportsItsProgress) {
     const OtherScene made;
-    std::vector<PictureProgress> reports;
+    std::vector<Progress> reports;
     const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
     const Rendering whole =
         render(made.scene, ElementForest(made.scene, 1), RayCaster(made.scene), view_of_plane(),
-               std::vector{irradiance}, options, {[&](const PictureProgress& p) { reports.push_back(p); }});
+               std::vector{irradiance}, options, {[&](const Progress& p) { reports.push_back(p); }});
     ASSERT_GT(reports.size(), 2u);
     for (std::size_t i = 1; i < reports.size(); ++i) EXPECT_GT(reports[i].fraction, reports[i - 1].fraction);
     EXPECT_GT(reports[0].fraction, 0);
@@ -271,7 +272,7 @@ TEST(Render, StopsOnRequest) {
     const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
     const Rendering part = render(made.scene, ElementForest(made.scene, 1), RayCaster(made.scene), view_of_plane(),
                                   std::vector{irradiance}, options,
-                                  {[&](const PictureProgress&) {
+                                  {[&](const Progress&) {
                                        ++reports;
                                        stop = true;
                                    },

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/contacts.h"
 #include "interflect/elements/forest.h"
+#include "interflect/prepare.h"
 #include "interflect/render/smooth_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::add_material;

@@ -15,9 +15,7 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/gather.h"
 #include "interflect/measure.h"
-#include "interflect/path_tracer.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
@@ -25,6 +23,8 @@
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

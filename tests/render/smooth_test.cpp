@@ -3,14 +3,16 @@
 #include <set>
 #include <vector>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/smooth_field.h"
 #include "interflect/render/smooth_surfaces.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing_support::add_material;

@@ -11,14 +11,15 @@
 #include "interflect/elements/forest.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/metrics/metrics.h"
-#include "interflect/path_tracer.h"
-#include "interflect/render.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -1,7 +1,7 @@
 // Photometric webs: intensities between the angles of the table, and the flux, against closed forms.
 //
 // Seen to fail when C0 and C90 are exchanged, when azimuth runs the other way around, when the flux lacks the sine.
-#include "interflect/photometric_web.h"
+#include "interflect/light_sources.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

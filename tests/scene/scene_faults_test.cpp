@@ -5,14 +5,16 @@
 #include <functional>
 #include <limits>
 
-#include "interflect/contacts.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"
+#include "interflect/prepare.h"
 #include "interflect/scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing::HasSubstr;

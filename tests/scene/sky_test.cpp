@@ -2,14 +2,14 @@
 //
 // Seen to fail when the indicatrix lacks exp(d pi / 2), when it is not subtracted from Perez's, and when the integral
 // lacks the cosine.
-#include "interflect/sky.h"
+#include "interflect/light_sources.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect {
 namespace {

@@ -1,7 +1,7 @@
 // Textures: positions of texels, and faults of scenes.
 //
 // Seen to fail when rows are counted from below, and when centres are shifted by half a texel.
-#include "interflect/texture.h"
+#include "interflect/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,6 @@
 #include <functional>
 #include <limits>
 
-#include "interflect/scene.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

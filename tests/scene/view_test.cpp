@@ -6,10 +6,12 @@
 
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using testing::AllOf;

@@ -6,9 +6,11 @@
 #include <numeric>
 #include <random>
 
-#include "interflect/solver/ray_allocation.h"
+#include "interflect/solver/sampling/ray_allocation.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 std::vector<float> some_weights() {

@@ -3,7 +3,7 @@
 // smaller, the first view replaces the nearest, the scene's origin is ignored, the length for unseen elements grows
 // with the world, the pixel's area applies to unseen elements too, or a given area applies only to them.
 
-#include "interflect/solver/element_floor.h"
+#include "interflect/solver/state/element_floor.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,8 @@
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

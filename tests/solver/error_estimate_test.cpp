@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/render.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

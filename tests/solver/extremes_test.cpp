@@ -13,6 +13,8 @@
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;
@@ -29,7 +31,7 @@ SolveOptions options_of(const char* method) {
 Solution solve_until(int last, const Scene& scene, const SolveOptions& options) {
     std::atomic<bool> stop{false};
     return solve(scene, RayCaster(scene), options,
-                 {[&](const IterationReport& report) { stop = report.iteration == last; }, &stop});
+                 {[&](const Progress& progress) { stop = progress.iteration->iteration == last; }, &stop});
 }
 
 Solution solve_all(const Scene& scene, const SolveOptions& options) { return solve(scene, RayCaster(scene), options); }

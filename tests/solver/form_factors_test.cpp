@@ -11,13 +11,15 @@
 #include <cmath>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/transport.h"
+#include "interflect/solver/transport/transport.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

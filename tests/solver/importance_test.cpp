@@ -7,12 +7,14 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -1,25 +1,28 @@
 // Light groups: the light of each, computed with the same rays, and the effect of dimming.
 //
 // Seen to fail if the share of a group lacks reflected light, if a patch emits for every group, if passes omit unshot
-// light of groups, if the differences of siblings of all groups are not scaled by the same factor, or if set_exitance()
+// light of groups, if the differences of siblings of all groups are not scaled by the same factor, or if set_dimming()
 // does not change the emission.
 
-#include "interflect/light_groups.h"
+#include "interflect/scene.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "interflect/dimming.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/ray_caster.h"
+#include "interflect/solution.h"
+#include "interflect/solve.h"
 #include "interflect/solver.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;
@@ -157,12 +160,12 @@ TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {
     SolveOptions options = options_of(GetParam(), 4'000'000);
     Solver solver(lit_room(), options);
     solver.advance({.rays = 500'000});
-    solver.set_exitance("blue", 0);
-    solver.set_exitance("red", 0.5f);
+    solver.set_dimming("blue", 0);
+    solver.set_dimming("red", 0.5f);
     const RgbD dark = integral(*solver.solution().forest, solver.solution().groups[1]);
     EXPECT_EQ(dark, RgbD(0));
     solver.advance({.rays = 800'000});
-    solver.set_exitance("blue", 2);
+    solver.set_dimming("blue", 2);
     solver.advance({});
     const Scene& scene = solver.scene();
     Scene together = scene;
@@ -170,8 +173,8 @@ TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {
     const Solution expected = solve(together, solver.ray_caster(), options_of(GetParam(), 4'000'000));
     EXPECT_LT(difference(*solver.solution().forest, solver.solution().irradiance, expected.irradiance), 0.025);
     EXPECT_NEAR(solver.solution().emitted_power.x / expected.emitted_power.x, 1, 1e-6);
-    EXPECT_THROW(solver.set_exitance("green", 1), InputError);
-    EXPECT_THROW(solver.set_exitance("red", NAN), InputError);
+    EXPECT_THROW(solver.set_dimming("green", 1), InputError);
+    EXPECT_THROW(solver.set_dimming("red", NAN), InputError);
 }
 
 TEST(LightGroups, AreRefusedByMethodsThatKeepLightTogether) {

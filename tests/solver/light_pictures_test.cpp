@@ -7,8 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "interflect/path_tracer.h"
-#include "interflect/render.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/solver/room_with_window.h"
 

@@ -16,7 +16,7 @@
 
 #include "interflect/luminaires/emission.h"
 #include "interflect/solve.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/solver/room_with_window.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
@@ -24,6 +24,8 @@
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

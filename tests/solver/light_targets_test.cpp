@@ -4,7 +4,7 @@
 // Seen to fail if no targets are found (most runs end dark), if rays along lines of a later box are not excluded, or if
 // the power of these rays counts as escaped.
 
-#include "interflect/solver/light_targets.h"
+#include "interflect/solver/iteration/outdoor_targets.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <numbers>
 
 #include "interflect/base/random.h"
-#include "interflect/power_balance.h"
+#include "interflect/solution.h"
 #include "interflect/solve.h"
 #include "interflect/solver.h"
 #include "tests/support/form_factors.h"
@@ -22,6 +22,8 @@
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

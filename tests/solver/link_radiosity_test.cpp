@@ -8,7 +8,7 @@
 // the spread of the form factor; if rays, links or the smallest area are not limited; or if sweeps end before the light
 // has converged.
 
-#include "interflect/solver/methods/link_radiosity.h"
+#include "interflect/solver/methods/baselines/link_radiosity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,16 +21,19 @@
 #include <numbers>
 #include <ostream>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
-#include "interflect/solver/materials.h"
-#include "interflect/solver/methods/exchange.h"
+#include "interflect/solve.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/methods/baselines/exchange.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;
@@ -330,7 +333,7 @@ void solve_with_links(const Scene& scene, const SolveOptions& options, std::size
     LinkedElements elements(state, link_limit);
     elements.prepare(state);
     for (IterationPlan plan = elements.plan(state); plan.rays > 0; plan = elements.plan(state))
-        elements.iterate(state, plan);
+        elements.trace(state, plan);
 }
 
 TEST(LinkRadiosity, NamesARemedyWhereThereAreTooManyLinks) {
@@ -358,7 +361,7 @@ TEST(LinkRadiosity, StopsWhenAskedAndAtItsLimits) {
     EXPECT_EQ(dark.irradiance, std::vector<Rgb>(dark.forest->size(), Rgb(0)));
 
     std::atomic<bool> stop{false};
-    const Monitor monitor{[&](const IterationReport& report) { stop = report.iteration == 2; }, &stop};
+    const Monitor monitor{[&](const Progress& progress) { stop = progress.iteration->iteration == 2; }, &stop};
     const Solution s = solve(scene, RayCaster(scene), refined_to(1e-3), monitor);
     EXPECT_TRUE(s.interrupted);
     EXPECT_EQ(s.iterations.size(), 2u);

@@ -17,16 +17,18 @@
 #include <string>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/solve.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -2,7 +2,7 @@
 // (scripts/mutation-test) if patches are not weighted by area, or if neighbourhoods do not pass on the values of the
 // next larger ones.
 
-#include "interflect/solver/neighbourhoods.h"
+#include "interflect/solver/importance/neighbourhoods.h"
 #include "interflect/elements/forest.h"
 
 #include <gmock/gmock.h>
@@ -13,6 +13,8 @@
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -1,13 +1,15 @@
 // Inputs and result of the oracle for two elements (Eq. 14, 15, Prikryl et al. 2000). Seen to fail if the estimate uses
 // the receiver's area for the shooter's, or if the cosines may become 0.
 
-#include "interflect/solver/oracle.h"
+#include "interflect/solver/deposit/oracle.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/form_factors.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

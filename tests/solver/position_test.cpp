@@ -13,15 +13,17 @@
 #include <ostream>
 #include <random>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/render.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

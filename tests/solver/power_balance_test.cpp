@@ -1,11 +1,12 @@
 // Emitted power is absorbed or escapes, in closed and open scenes, with textures and glass.
 
-#include "interflect/power_balance.h"
+#include "interflect/solution.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "interflect/solve.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -53,7 +54,7 @@ TEST_P(Balance, OfAnOpenRoomCloses) {
         const SolveOptions options{.method = find_method(GetParam()), .limits = {.rays = 60'000}, .seed = seed};
         const Solution solution =
             solve(scene, ray_caster, options,
-                  {.report = [&](const IterationReport& r) { escaped.push_back(r.escaped_power.x); }, .stop = nullptr});
+                  {.on_progress = [&](const Progress& p) { escaped.push_back(p.iteration->escaped_power.x); }});
         const PowerBalance balance = power_balance(scene, solution);
         EXPECT_GT(balance.escaped.x, 0.03 * balance.emitted.x);
         EXPECT_NEAR(balance.relative_difference(), 0, 2e-3);
@@ -70,7 +71,7 @@ TEST_P(Balance, ClosesAfterTheLampIsDimmed) {
     scene.light_groups = {{"lamp", scene.materials.back().name}};
     Solver solver(scene, {.method = find_method(GetParam()), .limits = {.rays = 800'000}});
     solver.advance({.rays = 400'000});
-    solver.set_exitance("lamp", 0.5f);
+    solver.set_dimming("lamp", 0.5f);
     solver.advance({});
     const PowerBalance balance = power_balance(solver.scene(), solver.solution());
     EXPECT_NEAR(balance.emitted.x, 500 * 4 * 3 / 9.0, 1e-2);

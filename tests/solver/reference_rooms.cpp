@@ -7,6 +7,8 @@
 
 namespace interflect::testing_support {
 
+using namespace detail;
+
 namespace {
 
 constexpr int divisions = 3;  // of a wall, in each direction

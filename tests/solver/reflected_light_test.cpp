@@ -11,12 +11,15 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
+#include "interflect/solve.h"
 #include "interflect/solver.h"
-#include "interflect/solver/start_points.h"
+#include "interflect/solver/sampling/start_points.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -2,7 +2,7 @@
 // warm-up or of importance count as averaged, if no short iteration precedes a long one, or if one does although the
 // number of iterations is given.
 
-#include "interflect/solver/schedule.h"
+#include "interflect/solver/state/schedule.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include <limits>
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr std::size_t patches = 100;

@@ -8,13 +8,15 @@
 #include <numbers>
 #include <ostream>
 
-#include "interflect/contacts.h"
 #include "interflect/elements/forest.h"
 #include "interflect/generators/two_rooms.h"
 #include "interflect/geometry/split.h"
+#include "interflect/prepare.h"
 #include "interflect/solve.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 constexpr float depth = 4, height = 3, thickness = 0.01f, length = 8 + thickness;  // two_rooms.cpp [m]

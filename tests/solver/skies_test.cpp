@@ -12,13 +12,15 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/measure.h"
 #include "interflect/solve.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/solver/room_with_window.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -11,14 +11,16 @@
 #include <cmath>
 #include <thread>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;
@@ -156,8 +158,9 @@ TEST(Solve, TracesExactlyAsManyRaysAsItMay) {
 
 TEST(Solve, ReportsEveryIterationInOrder) {
     std::vector<IterationReport> reports;
-    const Solution solution = solve(colourful_box(), with_rays(200'000),
-                                    {[&](const IterationReport& report) { reports.push_back(report); }, nullptr});
+    const Solution solution =
+        solve(colourful_box(), with_rays(200'000),
+              {[&](const Progress& progress) { reports.push_back(*progress.iteration); }, nullptr});
     ASSERT_EQ(reports.size(), solution.iterations.size());
     ASSERT_GE(reports.size(), 3u);
     EXPECT_EQ(reports[0].iteration, 1) << "there was nothing to prepare";
@@ -183,8 +186,8 @@ TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
             options.experimental.rays_per_iteration = 100'000;
             std::atomic<bool> stop{false};
             std::jthread timer;
-            const auto stop_soon = [&](const IterationReport& report) {
-                if (report.iteration == 1)
+            const auto stop_soon = [&](const Progress& progress) {
+                if (progress.iteration->iteration == 1)
                     timer = std::jthread([&] { std::this_thread::sleep_for(30ms), stop = true; });
             };
             const Solution cut_short = solve(scene, options, {stop_soon, &stop});
@@ -204,7 +207,7 @@ TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {
     options.experimental.one_bounce = true;
     options.experimental.rays_per_iteration = 1000;
     std::atomic<bool> late{false};
-    const Monitor monitor{[&](const IterationReport&) { late = true; }, &late};
+    const Monitor monitor{[&](const Progress&) { late = true; }, &late};
     EXPECT_FALSE(solve(colourful_box(), options, monitor).interrupted);
     EXPECT_TRUE(solve(colourful_box(), options, {{}, &stop}).interrupted);
 }

@@ -8,13 +8,15 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
-#include "interflect/solver/materials.h"
-#include "interflect/solver/radiosity.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/light/radiosity.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -3,7 +3,7 @@
 // are allocated uniformly, 0.5% of the power is lost, streams do not advance, or all patches share one sequence of
 // points.
 
-#include "interflect/solver/transport.h"
+#include "interflect/solver/transport/transport.h"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,14 @@
 #include <limits>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/probabilities.h"
+#include "interflect/solver/sampling/probabilities.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -3,15 +3,19 @@
 // Seen to fail if a second set of camera rays replaces the weights of the first, if points stay with the elements in
 // which they were first found, or if the oracle uses unsmoothed importance.
 
-#include "interflect/solver/view_importance.h"
+#include "interflect/solver/importance/view_importance.h"
 
 #include <gtest/gtest.h>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/transport_steps.h"
+#include "interflect/solver/importance/importance_weights.h"
+#include "interflect/solver/refinement/oracle_threshold.h"
+#include "interflect/solver/sampling/ray_plan.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

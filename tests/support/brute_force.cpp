@@ -8,6 +8,8 @@
 
 namespace interflect::testing_support {
 
+using namespace detail;
+
 namespace {
 
 using Random = std::mt19937_64;

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/scene.h"
 
 namespace interflect::testing_support {

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <sstream>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect::testing_support {
 

@@ -5,6 +5,8 @@
 
 namespace interflect::testing_support {
 
+using namespace detail;
+
 namespace {
 
 constexpr float bright_rho = 0.8f, bright_exitance = 100;

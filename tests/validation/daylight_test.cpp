@@ -17,6 +17,8 @@
 #include "tests/validation/placement.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/load_luminaire.h"
+#include "interflect/load.h"
 #include "tests/support/scenes.h"
 #include "tests/validation/closed_forms.h"
 #include "tests/validation/placement.h"

@@ -2,7 +2,7 @@
 //
 // Seen to fail when the position index is not squared and when the background luminance lacks 1/pi.
 
-#include "interflect/glare.h"
+#include "interflect/measure.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,6 +15,8 @@
 #include "tests/validation/placement.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;

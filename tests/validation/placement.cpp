@@ -10,6 +10,8 @@
 
 namespace interflect::testing_support {
 
+using namespace detail;
+
 const std::vector<Placement> placements{{"as it is"},
                                         {"aslant", 50, 1, {0, 0, 0}},
                                         {"1000 km away", 0, 1, {6e5, -8e5, 120}},

@@ -9,10 +9,9 @@
 #include <memory>
 #include <numbers>
 
-#include "interflect/contacts.h"
-#include "interflect/load_luminaire.h"
-#include "interflect/load_scene.h"
-#include "interflect/power_balance.h"
+#include "interflect/load.h"
+#include "interflect/prepare.h"
+#include "interflect/solution.h"
 #include "tests/support/scenes.h"
 #include "tests/validation/placement.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -33,4 +33,4 @@ AddressSpaceError::AddressSpaceError(std::size_t bytes)
     : std::runtime_error("cannot reserve " + mebibytes(bytes) +
                          " of address space: expected a higher limit of it (ulimit -v) or a lower one of elements") {}
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Address space still available to the process [bytes], by RLIMIT_AS (ulimit -v); the largest number without a limit.
 std::size_t free_address_space();
@@ -14,4 +14,4 @@ class AddressSpaceError : public std::runtime_error {
     explicit AddressSpaceError(std::size_t bytes);
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far) {
     return libdeflate_crc32(so_far, bytes.data(), bytes.size());
@@ -27,4 +27,4 @@ std::uint32_t crc32_of_file(const std::filesystem::path& path) {
 
 std::string text_of_crc32(std::uint32_t checksum) { return fmt::format("{:08x}", checksum); }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

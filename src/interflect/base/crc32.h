@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// CRC-32 as in zlib and Python's zlib.crc32(). @param so_far  Checksum of the preceding bytes.
 std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far = 0);
@@ -16,4 +16,4 @@ std::uint32_t crc32_of_file(const std::filesystem::path& path);
 /// Eight lower-case hexadecimal digits.
 std::string text_of_crc32(std::uint32_t checksum);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

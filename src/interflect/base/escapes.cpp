@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -80,4 +80,4 @@ std::string unescaped(std::string_view text) {
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

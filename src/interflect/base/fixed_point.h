@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Non-negative colours as integers in a common unit. Sums are independent of the order of terms and thus of the number
 /// of threads. The unit is total / 2^61, with an upper bound of the sum as total: up to 2^61 terms stay below 2^63,
@@ -39,4 +39,4 @@ inline void add_concurrently(FixedPoint::Value& sum, const FixedPoint::Value& te
     for (std::size_t c = 0; c < 3; ++c) add_concurrently(sum[c], term[c]);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -24,7 +24,7 @@
 #include <thread>
 #endif
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// One T per thread. Uses malloc because ThreadSanitizer cannot follow TBB's allocator between threads.
 template <class T>
@@ -87,4 +87,4 @@ void parallel_invoke(const A& a, const B& b) {
 #endif
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

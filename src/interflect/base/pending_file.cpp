@@ -15,9 +15,9 @@
 #include <string_view>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -187,4 +187,4 @@ void remove_temporary_files() noexcept {
         if (const char* const listed = path.load()) ::unlink(listed);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

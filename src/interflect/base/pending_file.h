@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// An output file that appears under its name only when complete: a temporary file is renamed. Create it before long
 /// work, to report an unwritable path at once. The target of a symbolic link is replaced, not the link. Devices, pipes
@@ -37,4 +37,4 @@ class PendingFile {
 /// Removes the temporary files of up to 16 live PendingFiles. Safe in a signal handler, if the process then ends.
 void remove_temporary_files() noexcept;
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 
 #include "interflect/base/random.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -112,4 +112,4 @@ std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
     return point;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

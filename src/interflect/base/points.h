@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "interflect/point_set.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Coordinates of 4D points in (0, 1), one array per dimension for vectorisation.
 struct PointBlock {
@@ -24,4 +24,4 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
 /// the keys; 2^k <= 2^16 consecutive points from a multiple of 2^k are stratified in 4D.
 std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

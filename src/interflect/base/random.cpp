@@ -2,7 +2,7 @@
 
 #include <Random123/philox.h>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 std::array<std::uint32_t, 4> random_words(std::uint64_t key, std::uint64_t index) {
     const r123::Philox4x32::key_type k = {{static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
@@ -18,4 +18,4 @@ double random_double(std::uint64_t key, std::uint64_t index) {
     return static_cast<double>(bits) * 0x1p-53;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Mixes two 64-bit words into one (the finaliser of SplitMix64, Steele et al. 2014). Not for cryptography.
 constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
@@ -23,4 +23,4 @@ constexpr float unit_float(std::uint32_t word) { return (static_cast<float>(word
 /// A uniform number in [0, 1) with 53 random bits, from (key, index).
 double random_double(std::uint64_t key, std::uint64_t index);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// A set of integers below a bound with constant-time rank, which serves as index into a compact table. 2 bits per
 /// integer below the bound.
@@ -41,4 +41,4 @@ class RankedBits {
     std::vector<Word> words_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -9,7 +9,7 @@
 
 #include "interflect/base/address_space.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// An array of `capacity` zeros that never moves, so threads may use new entries while others read old ones. Address
 /// space is reserved at once; memory is allocated by page on first access.
@@ -55,4 +55,4 @@ class StableArray {
     std::size_t capacity_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

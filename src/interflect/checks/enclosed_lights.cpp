@@ -13,7 +13,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -190,4 +190,4 @@ std::vector<Finding> find_enclosed_lights(const Scene& scene, const RayCaster& r
     return findings;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

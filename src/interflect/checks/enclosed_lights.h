@@ -5,9 +5,9 @@
 
 #include "interflect/checks/local_lights.h"
 #include "interflect/checks/sight_lines.h"
-#include "interflect/validate.h"
+#include "interflect/prepare.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Finds "enclosed-luminaire" among point lights, spots and measured lights: no light of 8 to 64 paths of 16 segments,
 /// reflected independently of reflectance, leaves the scene, and no view lies in the space that the paths reach. That
@@ -22,4 +22,4 @@ namespace interflect::inline detail {
 std::vector<Finding> find_enclosed_lights(const Scene& scene, const RayCaster& ray_caster, const LocalLights& lights,
                                           const SightLines& lines, std::size_t places);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -14,7 +14,7 @@
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -91,4 +91,4 @@ bool FaceSurroundings::is_enclosed(std::uint32_t patch) const {
     });
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 enum class Side { front, back };
 
@@ -37,4 +37,4 @@ class FaceSurroundings {
     float scene_size_;  // [m]
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

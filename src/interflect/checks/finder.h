@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/validate.h"
+#include "interflect/prepare.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Counts findings of one kind and keeps the first places.
 class Finder {
@@ -39,4 +39,4 @@ class Finder {
     Finding finding_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -13,7 +13,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
     return findings;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

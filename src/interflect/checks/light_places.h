@@ -6,9 +6,9 @@
 #include "interflect/checks/local_lights.h"
 #include "interflect/checks/shell.h"
 #include "interflect/checks/sight_lines.h"
-#include "interflect/validate.h"
+#include "interflect/prepare.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Finds "close-luminaire", "outside-luminaire", "wide-opening" and "mixed-photometry" among point lights, spots and
 /// measured lights. Traces 256 rays per luminaire, and at most 64 x 66 for the opening of a luminaire.
@@ -16,4 +16,4 @@ namespace interflect::inline detail {
 std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights& lights, const SightLines& lines,
                                            const Shell& shell, std::size_t places);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

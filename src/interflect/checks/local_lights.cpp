@@ -9,7 +9,7 @@
 
 #include "interflect/luminaires/emission.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -87,4 +87,4 @@ V3f LocalLights::before(std::size_t i) const {
     return pose.position + start_offset * reach_ * pose.direction;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

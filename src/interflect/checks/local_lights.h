@@ -7,7 +7,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Point lights, spots and measured lights of a scene that emit, at most 1024 of them, and 256 rays of each,
 /// distributed by its intensities. The scene must have patches.
@@ -32,4 +32,4 @@ class LocalLights {
     float reach_ = 0;  // largest coordinate [m]
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/checks/one_way.h"
 #include "interflect/checks/shell.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_ca
     return faults;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

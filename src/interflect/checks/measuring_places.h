@@ -8,7 +8,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reasons why a measurement at a point is useless.
 enum class PointFault {
@@ -21,4 +21,4 @@ enum class PointFault {
 std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
                                      std::span<const MeasuringPoint> points);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

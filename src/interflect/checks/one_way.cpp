@@ -2,7 +2,7 @@
 
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray, const Hit& hit) {
     constexpr float rounding = 1e-4f, offsets = 8;
@@ -14,4 +14,4 @@ bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray,
     return back.patch != none && back.distance < hit.distance * (1 - rounding) - offsets * offset;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::vector<OpenEdge> open_edges(const Scene& scene) {
     return open;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// An edge of exactly one face.
 struct OpenEdge {
@@ -16,4 +16,4 @@ struct OpenEdge {
 /// In order of the patches. Merges vertices at one position, regardless of texture coordinates. O(n log n).
 std::vector<OpenEdge> open_edges(const Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

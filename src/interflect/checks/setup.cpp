@@ -16,10 +16,12 @@
 #include "interflect/checks/light_places.h"
 #include "interflect/checks/shell.h"
 #include "interflect/checks/up_axis.h"
+#include "interflect/prepare.h"
 #include "interflect/scene/core.h"
-#include "interflect/validate.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

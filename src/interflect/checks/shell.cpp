@@ -7,7 +7,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -106,4 +106,4 @@ bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightL
     return false;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

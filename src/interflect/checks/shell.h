@@ -2,7 +2,7 @@
 
 #include "interflect/checks/sight_lines.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Enclosed space of a scene, sampled with random lines from outside.
 struct Shell {
@@ -24,4 +24,4 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
 /// 1000 m^2 of walls and roof with a probability above 0.998.
 bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

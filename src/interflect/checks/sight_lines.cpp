@@ -7,7 +7,7 @@
 #include "interflect/base/random.h"
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 SightLines::SightLines(const Scene& scene, const RayCaster& ray_caster)
     : ray_caster_(ray_caster), panes_(scene, ray_caster) {}
@@ -74,4 +74,4 @@ V3f SightLines::cosine_direction(const V3f& normal, std::uint64_t key, std::uint
         .normalized();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/raycast/panes.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Straight lines through a scene that pass through panes. Random directions depend on key and index alone.
 class SightLines {
@@ -36,4 +36,4 @@ class SightLines {
     Panes panes_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

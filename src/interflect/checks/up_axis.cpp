@@ -12,7 +12,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -136,4 +136,4 @@ std::optional<UpAxis> find_up_axis(const Scene& scene) {
     return std::nullopt;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Estimated up axis, which scene files do not specify.
 struct UpAxis {
@@ -21,4 +21,4 @@ std::optional<UpAxis> find_up_axis(const Scene& scene);
 /// Fewer than four objects are divided into connected faces.
 const char* find_other_up_axis(const Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,4 +1,4 @@
-#include "interflect/validate.h"
+#include "interflect/prepare.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +13,8 @@
 #include "interflect/scene/limits.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Part of a patch's parameter domain covered by an element, a square or a triangle. A local point (s, t) maps to (u +
 /// size s, v + size t). `size` is negative for inverted triangles; central children are inverted relative to their
@@ -33,4 +33,4 @@ struct Cell {
     }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -9,10 +9,10 @@
 #include <tuple>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/scene/geometry_fingerprint.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -44,7 +44,7 @@ ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
 }
 
 void ElementForest::require_made_for(const Scene& scene) const {
-    interflect::require_made_for(scene, scene_fingerprint_, "the forest");
+    detail::require_made_for(scene, scene_fingerprint_, "the forest");
 }
 
 int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path(e)) - 1) / 2; }
@@ -165,4 +165,4 @@ std::uint32_t ElementForest::drop_last_siblings() {
     return parent;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Number of elements per task of a parallel sweep (parallel_for_ranges).
 inline constexpr std::size_t elements_at_once = 1 << 13;
@@ -181,4 +181,4 @@ void pull(const ElementForest& forest, std::vector<T>& values) {
     });
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

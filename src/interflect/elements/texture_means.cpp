@@ -4,7 +4,7 @@
 
 #include "interflect/geometry/texture_mapping.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -75,4 +75,4 @@ Rgb TextureMeans::mean(std::uint32_t texture, const Patch& patch, const PatchGeo
     return Rgb(sum / area);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include "interflect/geometry/texture_integral.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Area-weighted means of a scene's textures over cells of its patches. Where texture coordinates are linear
 /// (triangles, undistorted images on quadrilaterals), a cell's mean is that of its children, to rounding. Elsewhere a
@@ -25,4 +25,4 @@ class TextureMeans {
     std::vector<TextureIntegral> integrals_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -14,7 +14,7 @@
 
 #include "interflect/base/crc32.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -173,4 +173,4 @@ void verify_checksums(const fs::path& path) {
             fmt::format("the file is damaged: it has {} bytes, expected {}", fs::file_size(path), end));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Size of the block at the beginning of a file [bytes]: an HDF5 user block, which HDF5 readers skip.
 inline constexpr std::uint64_t checksum_block_size = 4096;
@@ -30,4 +30,4 @@ bool has_checksums(const std::filesystem::path& path);
 /// @throws std::runtime_error naming the first damaged range.
 void verify_checksums(const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

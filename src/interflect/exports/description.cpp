@@ -10,7 +10,7 @@
 #include "interflect/exports/texture_records.h"
 #include "interflect/scene/environment_maps.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -158,4 +158,4 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
     return json.at("has_importance").get<bool>();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns all content of a solution file except long arrays, as JSON (docs/solution-file.md).
 /// @throws std::runtime_error if a number is not finite.
@@ -15,4 +15,4 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
 /// @throws std::exception for missing or unknown values and for other versions.
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version, SolvedScene& solved);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -169,4 +169,4 @@ void ElementMesh::triangulate(std::uint32_t leaf, std::vector<MeshTriangle>& tri
     }
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -10,7 +10,7 @@
 #include "interflect/render/element_vertices.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct MeshCorner {
     std::uint32_t point;      ///< Index into ElementMesh::points().
@@ -51,4 +51,4 @@ class ElementMesh {
     float tolerance_;                                    // merging distance [m]
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

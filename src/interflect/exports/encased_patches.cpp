@@ -6,9 +6,9 @@
 #include "interflect/base/parallel.h"
 #include "interflect/geometry/bounds.h"
 #include "interflect/scene/core.h"
-#include "interflect/solver/ray_source.h"
+#include "interflect/solver/sampling/ray_maker.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -78,4 +78,4 @@ std::vector<bool> encased_patches(const Scene& scene, const RayCaster& ray_caste
     return {encased.begin(), encased.end()};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Finds dark patches inside solids, such as a wall behind a door frame, which cameras in lit places cannot see.
 /// Excludes walls of dark rooms, and patches that are dark only because the solution's rays missed them.
@@ -14,4 +14,4 @@ namespace interflect::inline detail {
 ///                 end within half a metre. Cost: 128 rays per dark patch.
 std::vector<bool> encased_patches(const Scene& scene, const RayCaster& ray_caster, const std::vector<bool>& is_dark);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "interflect/base/pending_file.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/lit_gltf.h"
 #include "interflect/exports/mesh_files.h"
 #include "interflect/exports/probe_files.h"
@@ -16,6 +16,8 @@
 #include "interflect/render/camera_samples.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace fs = std::filesystem;
 

@@ -1,15 +1,17 @@
-#include "interflect/export_scene.h"
+#include "interflect/export.h"
 
 #include <array>
 #include <string_view>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/exports/exported_parts.h"
 #include "interflect/exports/foreign_scene.h"
 #include "interflect/exports/write_files.h"
 #include "interflect/formats/extension.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -6,12 +6,12 @@
 #include <set>
 
 #include "interflect/base/escapes.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/image.h"
 #include "interflect/image/image_codecs.h"
-#include "interflect/image_files.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::string exr_bytes(const Texture& texture) {
     return codecs::encode_exr(image_of(texture), metadata, {});
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

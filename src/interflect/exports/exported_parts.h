@@ -7,7 +7,7 @@
 
 #include "interflect/export.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Helpers of the exporters.
 
@@ -33,4 +33,4 @@ std::string xml_text(std::string_view text);
 
 std::string exr_bytes(const Texture& texture);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

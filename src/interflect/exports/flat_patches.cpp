@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 Imath::V2d FlatPatch::point(Parameters p) const {
     const double u = p.u, v = p.v;
@@ -60,4 +60,4 @@ double separation(const FlatPatch& a, const FlatPatch& b) {
     return largest;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// A patch laid out in a plane.
 struct FlatPatch {
@@ -36,4 +36,4 @@ FlatPatches projected(const Scene& scene, std::span<const std::uint32_t> patches
 /// if they overlap.
 double separation(const FlatPatch& a, const FlatPatch& b);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

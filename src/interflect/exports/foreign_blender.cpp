@@ -6,7 +6,7 @@
 
 #include "interflect/exports/foreign_scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace for_blender {
 namespace {
@@ -267,4 +267,4 @@ std::string blender_description(ForeignScene& scene) {
     return text + epilogue;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

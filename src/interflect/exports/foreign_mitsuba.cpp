@@ -6,7 +6,7 @@
 
 #include "interflect/exports/foreign_scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace for_mitsuba {
 namespace {
@@ -138,4 +138,4 @@ std::string mitsuba_description(ForeignScene& scene) {
     return text + "</scene>\n";
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

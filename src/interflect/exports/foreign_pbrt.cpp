@@ -6,7 +6,7 @@
 
 #include "interflect/exports/foreign_scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace for_pbrt {
 namespace {
@@ -115,4 +115,4 @@ std::string pbrt_description(ForeignScene& scene) {
     return text;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

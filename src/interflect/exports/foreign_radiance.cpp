@@ -7,7 +7,7 @@
 
 #include "interflect/exports/foreign_scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace for_radiance {
 namespace {
@@ -115,4 +115,4 @@ std::string radiance_description(ForeignScene& scene) {
     return text;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/luminaires/skies.h"
 #include "interflect/scene/view.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -201,4 +201,4 @@ std::string triple(const V3f& v, const char* between) {
     return fmt::format("{}{}{}{}{}", v.x, between, v.y, between, v.z);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

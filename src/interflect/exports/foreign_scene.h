@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "interflect/export.h"
-#include "interflect/export_scene.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Behaviour of the backs of faces.
 enum class Backs {
@@ -87,4 +86,4 @@ std::string mitsuba_description(ForeignScene& scene);
 std::string pbrt_description(ForeignScene& scene);
 std::string blender_description(ForeignScene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

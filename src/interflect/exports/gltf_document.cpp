@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "interflect/base/escapes.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::string GltfDocument::glb() const {
     return file + binary;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

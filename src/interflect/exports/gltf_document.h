@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/exports/json_text.h"
 #include "interflect/image.h"
-#include "interflect/texture.h"
+#include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// A glTF 2.0 file under construction, with one binary buffer.
 class GltfDocument {
@@ -47,4 +47,4 @@ class GltfDocument {
     std::string buffer_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

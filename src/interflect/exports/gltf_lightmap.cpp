@@ -16,7 +16,7 @@
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -219,4 +219,4 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesy
     return files;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/export.h"
 #include "interflect/exports/gltf_document.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Adds a solved scene with lightmaps: irradiance as MOZ_lightmap of diffuse materials, at TEXCOORD_1, or radiance as
 /// base colour of unlit materials.
@@ -14,4 +14,4 @@ namespace interflect::inline detail {
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesystem::path& path, const Scene& scene,
                                        const Solution& solution, const ExportOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

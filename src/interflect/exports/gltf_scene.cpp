@@ -11,7 +11,7 @@
 #include "interflect/base/escapes.h"
 #include "interflect/exports/opacity.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -111,4 +111,4 @@ void GltfTextures::cut_out(Json& json, const Material& material, const Rgb& peak
     json["alphaMode"] = is_mask(opacity) ? "MASK" : "BLEND";
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 #include "interflect/exports/gltf_document.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Primitives by object of the scene.
 using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
@@ -39,4 +39,4 @@ class GltfTextures {
 /// Moves the origin to the upper left corner, as in glTF.
 inline V2f gltf_coordinate(const V2f& coordinate) { return {coordinate.x, 1 - coordinate.y}; }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -13,7 +13,7 @@
 #include "interflect/exports/welded_vertices.h"
 #include "interflect/geometry/texture_mapping.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -139,4 +139,4 @@ void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution
     add_nodes(document, scene, written, options.up);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

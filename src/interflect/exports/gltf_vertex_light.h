@@ -3,11 +3,11 @@
 #include "interflect/export.h"
 #include "interflect/exports/gltf_document.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Adds a solved scene with unlit materials, display colours of vertices (ElementMesh) in COLOR_0 and irradiance in
 /// _IRRADIANCE.
 void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
                       const ExportOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -259,4 +259,4 @@ std::string Hdf5Writer::image() {
     return bytes;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -12,7 +12,7 @@
 
 #include "interflect/exports/checksums.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Owner of an HDF5 identifier.
 class Hdf5Handle {
@@ -74,4 +74,4 @@ class Hdf5Writer {
     Hdf5Handle file_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 
 #include "interflect/base/escapes.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -46,4 +46,4 @@ double shortest_number(float value) {
     return number;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

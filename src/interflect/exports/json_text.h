@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 using Json = nlohmann::ordered_json;
 
@@ -29,4 +29,4 @@ Json json_of(const Vector& v) {
         return Json::array({v.x, v.y, v.z});
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -10,20 +10,20 @@
 #include <optional>
 
 #include "interflect/base/parallel.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/lightmap_atlas.h"
 #include "interflect/exports/shown_patches.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/texture_mapping.h"
-#include "interflect/light_groups.h"
 #include "interflect/measure.h"
 #include "interflect/render/element_vertices.h"
 #include "interflect/render/gauge.h"
 #include "interflect/render/path_picture.h"
 #include "interflect/render/smooth_field.h"
+#include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -255,10 +255,10 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
 }
 
 /// Converts the progress of a part to that of `whole`, to which it refers.
-PathMonitor part_of(const PathMonitor& whole, std::size_t part, std::size_t count) {
-    PathMonitor monitor = whole;
+Monitor part_of(const Monitor& whole, std::size_t part, std::size_t count) {
+    Monitor monitor = whole;
     if (whole.on_progress)
-        monitor.on_progress = [&whole, part, count](PathProgress progress) {
+        monitor.on_progress = [&whole, part, count](Progress progress) {
             progress.fraction = (static_cast<double>(part) + progress.fraction) / static_cast<double>(count);
             whole.on_progress(progress);
         };
@@ -351,4 +351,4 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     return lightmap;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

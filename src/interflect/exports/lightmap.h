@@ -6,7 +6,7 @@
 #include "interflect/exports/lightmap_charts.h"
 #include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct Lightmap {
     std::vector<LightmapChart> charts;
@@ -27,4 +27,4 @@ struct Lightmap {
 /// @param options  Must include a lightmap.
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -19,7 +19,7 @@
 #pragma GCC diagnostic pop
 #endif
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutt
     return sizes;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,11 +6,11 @@
 
 #include "interflect/exports/lightmap_charts.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Packs charts with gutters into images; rotates charts where that fits better.
 /// @param max_size  Largest side of an image, a multiple of 4; must hold each chart with gutters.
 /// @return          Sizes of the images, multiples of 4.
 std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutter, int max_size);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -14,7 +14,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/smooth_surfaces.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -292,4 +292,4 @@ std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> sho
     return charts;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include "interflect/exports/flat_patches.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Patches laid out in a plane, and their rectangle in a lightmap. Outermost texel centres lie on the rectangle's
 /// border, so interpolation is exact there.
@@ -29,4 +29,4 @@ struct LightmapChart {
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

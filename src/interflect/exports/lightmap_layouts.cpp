@@ -9,7 +9,7 @@
 
 #include "interflect/geometry/box_tree.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -109,4 +109,4 @@ std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool
     return layouts;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "interflect/core.h"
 #include "interflect/exports/flat_patches.h"
 #include "interflect/scene.h"
-#include "interflect/warnings.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns the objects' own layouts (Scene::lightmap_coordinates) of shown patches, x right and y down [m], with the
 /// patches' total area in space. If both sides of a face are shown, only the first is included. Ignores layouts with
@@ -14,4 +14,4 @@ namespace interflect::inline detail {
 /// @param warnings  Receives the objects with ignored layouts; may be null.
 std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool>& shown, Warnings* warnings);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include "interflect/exports/gltf_lightmap.h"
 #include "interflect/exports/gltf_vertex_light.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::vector<ExportedFile> make_gltf(const std::filesystem::path& path, const Sce
     return make(path, scene, solution, options, &GltfDocument::gltf);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

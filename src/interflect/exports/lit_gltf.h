@@ -5,7 +5,7 @@
 
 #include "interflect/export.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Exports binary glTF 2.0 (docs/export.md): one mesh per object, light at vertices or in lightmaps, views as cameras,
 /// y up.
@@ -15,4 +15,4 @@ std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scen
 std::vector<ExportedFile> make_gltf(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                     const ExportOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

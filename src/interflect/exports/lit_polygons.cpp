@@ -13,7 +13,7 @@
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/image/srgb.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -65,4 +65,4 @@ std::string position_text(const Scene& scene, const V3f& point) {
     return fmt::format("{} {} {}", world.x, world.y, world.z);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -10,7 +10,7 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Leaves as convex polygons without T-junctions (ElementMesh), with their corner light as in shading 'smooth'. Corners
 /// with equal point, irradiance and radiosity share a vertex.
@@ -50,4 +50,4 @@ void append_bytes(std::string& bytes, Number number) {
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/exports/solve_report.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -177,4 +177,4 @@ Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const
     return luminaire;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

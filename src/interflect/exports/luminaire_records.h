@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "interflect/exports/json_text.h"
-#include "interflect/luminaire.h"
+#include "interflect/light_sources.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Webs shared by luminaires, in order of first use.
 class WebTable {
@@ -30,4 +30,4 @@ Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps =
 Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,
                        const MapImages& maps = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/export.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Solved scenes as meshes of leaves in world coordinates (docs/exported-scenes.md).
 
@@ -22,4 +22,4 @@ std::vector<ExportedFile> make_vtkhdf(const std::filesystem::path& path, const S
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

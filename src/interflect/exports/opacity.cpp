@@ -4,7 +4,7 @@
 
 #include "interflect/scene/texel_centre.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 Texture opacity_of(const Scene& scene, const Material& material) {
     Texture opacity = scene.textures[material.transmittance_texture];
@@ -34,4 +34,4 @@ bool is_mask(const Texture& opacity) {
                        [](const Rgb& texel) { return texel.x < step || texel.x > 1 - step; });
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Other renderers expect holes (Material::transmittance_texture) as opacity and reflectance of the opaque part. A Scene
 // stores their product as reflectance.
@@ -17,4 +17,4 @@ Texture opaque_reflectance(const Scene& scene, const Material& material, const T
 /// Returns whether every texel is fully opaque or transparent, to 8 bits.
 bool is_mask(const Texture& opacity);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, con
             {path, codecs::encode_exr(image, metadata, layers)}};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

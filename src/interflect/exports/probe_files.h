@@ -5,7 +5,7 @@
 
 #include "interflect/export.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Exports irradiance probes as JSON (docs/exported-scenes.md).
 std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, const Scene& scene,
@@ -14,4 +14,4 @@ std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, co
 std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, const Scene& scene,
                                           const Solution& solution, const ExportOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

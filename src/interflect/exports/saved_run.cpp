@@ -5,13 +5,16 @@
 #include <stdexcept>
 
 #include "interflect/base/pending_file.h"
-#include "interflect/error.h"
+#include "interflect/base/state_archive.h"
+#include "interflect/core.h"
 #include "interflect/exports/saved_run.h"
-#include "interflect/solution_file.h"
+#include "interflect/solution.h"
 #include "interflect/solver.h"
-#include "interflect/solver/state_archive.h"
+#include "interflect/solver/run.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -23,15 +26,15 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
 
 }  // namespace
 
-void Solver::save(const std::filesystem::path& path) {
+void Solver::save(const std::filesystem::path& path) const {
     PendingFile file(path);
     Solution result = solution();  // before the archive refers to the solver's data
-    result.dimming = dimming();
+    result.dimming = run_->state.solution.dimming;
     StateArchive state;
     SolveOptions saved = options();
     archive_options(state, saved);
-    archive(state);
-    write_solution(file.temporary_path(), *undimmed_scene(), result, &state);
+    run_->archive(state);  // reads the run
+    write_solution(file.temporary_path(), *run_->undimmed_scene, result, &state);
     file.commit();
 }
 
@@ -40,7 +43,7 @@ Solver Solver::open(const std::filesystem::path& path) {
     try {
         archive_options(state, solved.solution.options);
         Solver solver(std::move(solved.scene), solved.solution.options);
-        solver.archive(state);
+        solver.run_->archive(state);
         return solver;
     } catch (const std::bad_alloc&) {
         throw;  // not a fault of the file

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "interflect/solution_file.h"
-#include "interflect/solver/state_archive.h"
+#include "interflect/base/state_archive.h"
+#include "interflect/solution.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct SavedRun {
     SolvedScene solved;  ///< Sources are undimmed; apply Solution::dimming.
@@ -16,4 +16,9 @@ struct SavedRun {
 /// from another version of Interflect.
 SavedRun read_saved_run(const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail
+/// Writes a solution file with the state of its run, for read_saved_run(). @param state  Null: without. @throws as
+/// the public write_solution().
+void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
+                    const StateArchive* state);
+
+}  // namespace interflect::detail

@@ -5,9 +5,9 @@
 #include "interflect/exports/encased_patches.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/ray_caster.h"
-#include "interflect/solver/patch_light.h"
+#include "interflect/solver/light/patch_light.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
     return shown;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

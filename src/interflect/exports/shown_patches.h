@@ -5,7 +5,7 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns which patches a picture of the light needs. Excludes patches fully covered by coincident faces
 /// (RayCaster::uncovered_share) and dark sides of faces; a face dark on both sides keeps its first. Dark sides would
@@ -18,4 +18,4 @@ namespace interflect::inline detail {
 /// patches.
 std::vector<bool> shown_patches(const Scene& scene, const Solution& solution);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,5 +1,5 @@
-#include "interflect/solution_file.h"
 #include "interflect/exports/saved_run.h"
+#include "interflect/solution.h"
 
 #include <fmt/format.h>
 
@@ -13,17 +13,19 @@
 #include <stdexcept>
 #include <utility>
 
+#include "interflect/base/state_archive.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/checksums.h"
 #include "interflect/exports/description.h"
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/exports/texture_records.h"
-#include "interflect/solver/state_archive.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -277,7 +279,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
 /// Increase it whenever an array of the state changes.
-constexpr int state_version = 2;
+constexpr int state_version = 3;
 
 /// Writes a state as one array and an index. @return  Their positions in the file.
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
@@ -346,8 +348,12 @@ constexpr const char* unreadable = "not a solution file that can be read";
 
 }  // namespace
 
-void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
-                    const StateArchive* state) {
+void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution) {
+    detail::write_solution(path, scene, solution, nullptr);
+}
+
+void detail::write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
+                            const StateArchive* state) {
     std::string description;
     try {
         require_valid(scene);

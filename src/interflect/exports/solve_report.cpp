@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -172,8 +172,8 @@ void for_each_number(Report& r, const Access& access) {
     access.field_or_null("error_estimate", r.error_estimate, infinity);
     access.field_or_null("noise_estimate", r.noise_estimate, infinity);
     access.field_or_null("discretisation_estimate", r.discretisation_estimate, infinity);
-    access.field("largest_quantum", r.largest_quantum);
-    access.field("high_quantum", r.high_quantum);
+    access.field("largest_payload", r.largest_payload);
+    access.field("high_payload", r.high_payload);
 }
 
 }  // namespace
@@ -251,4 +251,4 @@ View view_of(const Json& json) {
             json.value("extent", 0.0f)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

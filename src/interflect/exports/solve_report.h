@@ -7,7 +7,7 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/solve.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns the options of a run under the names of the command line, for solution files and `solve --stats`. Limits
 /// that were not set are null. Omits the seed and the method's name, stored beside it, and max_elements, which depends
@@ -41,4 +41,4 @@ Vector vector_of(const Json& json) {
     return {json.at(0).get<Number>(), json.at(1).get<Number>(), json.at(2).get<Number>()};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/scene/environment_maps.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -103,4 +103,4 @@ void read_textures(const Hdf5Reader& file, Scene& scene) {
     if (file.has(normals_dataset)) scene.normals = read_vectors<V3f>(file, normals_dataset);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/exports/json_text.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Textures in a solution file: indices, names and sizes as JSON, texels and coordinates as arrays.
 
@@ -26,4 +26,4 @@ std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
 /// @param scene  Has textures and maps without texels. @throws std::runtime_error
 void read_textures(const Hdf5Reader& file, Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -226,4 +226,4 @@ std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Grou
     return Unfolding(scene, corners, joints, conflicts, std::move(pieces), gap).layouts();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 #include "interflect/render/smooth_surfaces.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// For each patch, the patches that must be in other charts.
 using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
@@ -26,4 +26,4 @@ using Joints = std::vector<SmoothSurfaces::Seam>;
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,
                                   const ChartConflicts& conflicts, std::vector<FlatPatches> pieces, double gap);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/materials.h"
+#include "interflect/solver/light/materials.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -89,4 +89,4 @@ void VtkGrid::visit_cell_data(const Sink& sink) const {
     add("object", [&](std::uint32_t e) { return scene_.patches[forest.patch(e)].object; });
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

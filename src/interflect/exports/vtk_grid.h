@@ -10,7 +10,7 @@
 #include "interflect/scene.h"
 #include "interflect/solve.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Rows of `components` numbers.
 struct VtkArray {
@@ -50,4 +50,4 @@ class VtkGrid {
     LitPolygons polygons_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -9,7 +9,7 @@
 
 #include "interflect/base/random.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Triangle list with unique vertices. @tparam Vertex  32-bit members only.
 template <class Vertex>
@@ -49,4 +49,4 @@ class WeldedVertices {
     std::vector<std::uint32_t> indices_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

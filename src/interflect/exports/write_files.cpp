@@ -9,7 +9,7 @@
 
 #include "interflect/base/pending_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -39,4 +39,4 @@ std::vector<std::filesystem::path> write_files(const std::vector<ExportedFile>& 
     return written;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

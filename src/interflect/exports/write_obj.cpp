@@ -4,8 +4,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/exports/exported_parts.h"
 #include "interflect/exports/lit_polygons.h"
 #include "interflect/exports/mesh_files.h"
@@ -14,7 +14,7 @@
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scen
     return files;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

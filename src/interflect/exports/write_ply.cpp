@@ -3,7 +3,7 @@
 #include "interflect/exports/lit_polygons.h"
 #include "interflect/exports/mesh_files.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scen
     return {{path, std::move(bytes)}};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/exports/mesh_files.h"
 #include "interflect/exports/vtk_grid.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -50,4 +50,4 @@ std::vector<ExportedFile> make_vtkhdf(const std::filesystem::path& path, const S
     return {{path, file.image()}};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/exports/mesh_files.h"
 #include "interflect/exports/vtk_grid.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -80,4 +80,4 @@ std::vector<ExportedFile> make_vtu(const std::filesystem::path& path, const Scen
     return {{path, std::move(file).finish()}};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -41,4 +41,4 @@ std::optional<std::string> decode_base64(std::string_view text) {
     return bytes;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

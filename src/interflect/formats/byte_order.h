@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads a number from the first sizeof(Number) bytes.
 template <class Number>
@@ -17,4 +17,4 @@ Number number_of(std::string_view bytes, std::endian order) {
     return std::bit_cast<Number>(raw);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

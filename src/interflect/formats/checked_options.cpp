@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 const ReadOptions& checked(const ReadOptions& options) {
     if (options.curve_divisions < 1 || options.curve_divisions > 1000)
@@ -16,4 +16,4 @@ const ReadOptions& checked(const ReadOptions& options) {
     return options;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns `options` unchanged. @throws InputError  if an option is out of range.
 const ReadOptions& checked(const ReadOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

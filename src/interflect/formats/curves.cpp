@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -141,4 +141,4 @@ PolygonMesh make_prism(std::span<const V3d> outline, double length) {
     return mesh;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

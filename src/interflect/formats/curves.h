@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Polygon mesh with shared points.
 struct PolygonMesh {
@@ -36,4 +36,4 @@ PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, doubl
 /// faces inwards. @param outline  At least three points that enclose an area.
 PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

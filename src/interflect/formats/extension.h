@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns the extension in lower case, independent of the locale.
 inline std::string lower_case_extension(const std::filesystem::path& path) {
@@ -13,4 +13,4 @@ inline std::string lower_case_extension(const std::filesystem::path& path) {
     return text;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

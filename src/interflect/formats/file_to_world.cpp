@@ -1,6 +1,6 @@
 #include "interflect/formats/file_to_world.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -38,4 +38,4 @@ Imath::M44d file_to_world(const ReadOptions& options) {
     return {s * x.x, s * x.y, s * x.z, 0, s * y.x, s * y.y, s * y.z, 0, s * z.x, s * z.y, s * z.z, 0, 0, 0, 0, 1};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,6 +1,6 @@
 #include "interflect/formats/foreign_text.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -23,4 +23,4 @@ std::string without_quotes(std::string_view message, std::size_t from) {
     return std::string(message.substr(0, first)) + "..." + std::string(message.substr(rest));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,14 +6,14 @@
 #include <map>
 #include <new>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/gltf_lights.h"
 #include "interflect/formats/gltf_meshes.h"
 #include "interflect/formats/gltf_nodes.h"
 #include "interflect/formats/json_text.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -219,4 +219,4 @@ Scene read_gltf(const fs::path& path, const ReadOptions& options) {
     return read_gltf_bytes(read_bytes(path, options.max_model_bytes), path, options);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -171,4 +171,4 @@ GltfElements GltfAccessors::indices(std::uint32_t index, const GltfValue& user) 
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/formats/gltf_buffers.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Bounds-checked elements of an accessor.
 struct GltfElements {
@@ -46,4 +46,4 @@ class GltfAccessors {
     std::map<std::uint32_t, std::string> sparse_;  // packed
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

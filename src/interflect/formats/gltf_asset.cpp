@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "interflect/base/escapes.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/base64.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -139,4 +139,4 @@ std::string GltfAsset::read_file(const std::string& uri, const GltfValue& user) 
     }
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

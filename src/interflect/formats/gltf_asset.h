@@ -7,9 +7,9 @@
 
 #include "interflect/formats/gltf_value.h"
 #include "interflect/formats/model.h"
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Parts of a GLB file. A .gltf file is all JSON.
 struct GltfParts {
@@ -46,4 +46,4 @@ class GltfAsset {
     std::uint64_t taken_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/formats/gltf_meshopt.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -61,4 +61,4 @@ GltfBuffers::View GltfBuffers::view(std::uint32_t index) {
     return {range(owner), stride};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 
 #include "interflect/formats/gltf_asset.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Buffers and buffer views, read and decompressed on first use.
 class GltfBuffers {
@@ -35,4 +35,4 @@ class GltfBuffers {
     std::map<std::uint32_t, std::string> read_, decompressed_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -16,7 +16,7 @@
 #pragma GCC diagnostic pop
 #endif
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -84,4 +84,4 @@ DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>&
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

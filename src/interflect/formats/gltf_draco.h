@@ -6,7 +6,7 @@
 
 #include "interflect/formats/gltf_value.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Attribute values, interleaved by vertex.
 struct DracoAttribute {
@@ -26,4 +26,4 @@ struct DracoMesh {
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/texture_limit.h"
 #include "interflect/image/srgb.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -183,4 +183,4 @@ const GltfImageMeans& GltfImages::means(std::uint32_t image) {
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/formats/gltf_buffers.h"
 #include "interflect/image/stored_image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Covered fraction of a surface at each point; the rest is open.
 struct GltfCoverage {
@@ -77,4 +77,4 @@ class GltfImages {
     std::uint64_t texels_ = 0, decoded_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

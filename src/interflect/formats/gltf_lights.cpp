@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/foreign_text.h"
 #include "interflect/formats/ies.h"
 #include "interflect/scene/view.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -158,4 +158,4 @@ void GltfLights::add_view(const GltfNode& node) {
     asset_.model.views.push_back(std::move(view));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

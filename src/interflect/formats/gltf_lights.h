@@ -10,7 +10,7 @@
 #include "interflect/formats/gltf_buffers.h"
 #include "interflect/formats/gltf_nodes.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Lights and cameras: KHR_lights_punctual, EXT_lights_ies and views.
 class GltfLights {
@@ -35,4 +35,4 @@ class GltfLights {
     std::set<std::string> light_names_, view_names_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -10,7 +10,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -269,4 +269,4 @@ void GltfMaterials::warn_of_lost() {
     for (const std::string& place : losing_) asset_.warn("specular-reflection", message, place);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/formats/gltf_images.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Texture coordinate set and transform.
 struct GltfMapping {
@@ -70,4 +70,4 @@ class GltfMaterials {
     std::vector<std::string> losing_;  // places of materials with omitted reflection
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

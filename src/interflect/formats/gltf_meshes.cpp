@@ -7,9 +7,9 @@
 #include <numeric>
 #include <optional>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -299,4 +299,4 @@ const std::vector<std::uint32_t>& GltfMeshes::meshes(std::uint32_t index, const 
     return entry->second;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

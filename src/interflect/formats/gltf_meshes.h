@@ -11,7 +11,7 @@
 #include "interflect/formats/gltf_draco.h"
 #include "interflect/formats/gltf_materials.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Deformation of a mesh.
 struct GltfPose {
@@ -51,4 +51,4 @@ class GltfMeshes {
     std::uint64_t triangles_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::string decode_meshopt(const GltfValue& extension, std::string_view compress
     return bytes;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

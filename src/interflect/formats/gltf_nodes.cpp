@@ -8,7 +8,7 @@
 
 #include "interflect/formats/file_to_world.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::vector<GltfNode> GltfNodes::in_scene() const {
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 
 #include "interflect/formats/gltf_asset.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct GltfNode {
     const GltfValue* value = nullptr;
@@ -41,4 +41,4 @@ class GltfNodes {
 Imath::M44d gltf_transform(const Imath::V3d& scale, const std::array<double, 4>& rotation,
                            const Imath::V3d& translation, const GltfValue& owner);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/base/escapes.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 using nlohmann::json;
 
@@ -170,4 +170,4 @@ bool GltfValue::flag(const char* key, bool otherwise) const {
     return value->get<bool>();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -10,7 +10,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Message with the place in the file but without the file name.
 struct GltfFault : std::runtime_error {
@@ -81,4 +81,4 @@ class GltfValue {
 /// Returns "nodes[3] 'chair'", with long names truncated.
 std::string gltf_place(const std::string& list, std::size_t index, const std::string& name);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,14 +8,14 @@
 #include <string>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/photometric_planes.h"
 #include "interflect/formats/photometric_text.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -332,4 +332,4 @@ PhotometricWeb read_enclosed_ies(std::string_view text, const fs::path& name, co
     return IesReader(text, name, folder, options, warnings).read();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/photometric_web.h"
-#include "interflect/read_options.h"
-#include "interflect/warnings.h"
+#include "interflect/core.h"
+#include "interflect/light_sources.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads an IES LM-63 file (1986 to 2019) of photometric type A, B or C, with any symmetry, line breaks and separators.
 /// Intensities include the multiplier, the ballast factor and, up to 1995, the ballast-lamp factor. The TILT factor is
@@ -31,4 +31,4 @@ PhotometricWeb read_ies_text(std::string_view text, const std::filesystem::path&
 PhotometricWeb read_enclosed_ies(std::string_view text, const std::filesystem::path& name,
                                  const std::filesystem::path& folder, const ReadOptions& options, Warnings& warnings);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <string>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -60,4 +60,4 @@ json parse_json(std::string_view text, const std::filesystem::path& path) {
     }
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

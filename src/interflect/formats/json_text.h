@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Parses JSON. @param path  Named in errors. @throws InputError  with file and line for invalid JSON and for numbers
 /// beyond double precision.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

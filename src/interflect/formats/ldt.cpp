@@ -11,7 +11,7 @@
 #include "interflect/formats/text_file.h"
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -202,4 +202,4 @@ PhotometricWeb read_ldt_text(std::string_view text, const fs::path& path, const 
     return LdtReader(text, path, options, warnings).read();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

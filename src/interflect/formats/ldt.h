@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/photometric_web.h"
-#include "interflect/read_options.h"
-#include "interflect/warnings.h"
+#include "interflect/core.h"
+#include "interflect/light_sources.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads an EULUMDAT file (Stockmar 1990), with any symmetry. Intensities (per 1000 lm) are multiplied by the
 /// conversion factor and the flux of the first lamp set. The opening has the height of its highest side.
@@ -22,4 +22,4 @@ PhotometricWeb read_ldt(const std::filesystem::path& path, const ReadOptions& op
 PhotometricWeb read_ldt_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,
                              Warnings& warnings);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,6 +1,6 @@
 #include "interflect/formats/line_reader.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -42,4 +42,4 @@ bool LineReader::next() {
     return !words_.empty();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

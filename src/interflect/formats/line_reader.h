@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Splits text into lines of words (views). A backslash before a line end joins the lines and counts as white space.
 class LineReader {
@@ -43,4 +43,4 @@ class LineReader {
     std::vector<std::string_view> words_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

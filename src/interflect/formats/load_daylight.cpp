@@ -4,14 +4,16 @@
 #include <string>
 #include <utility>
 
-#include "interflect/daylight.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/texture_files.h"
+#include "interflect/load.h"
 #include "interflect/scene/environment_maps.h"
 #include "interflect/scene/sky_frame.h"
 #include "interflect/scene/web_angles.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -1,11 +1,11 @@
-#include "interflect/load_luminaire.h"
+#include "interflect/load.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/extension.h"
 #include "interflect/formats/ies.h"
 #include "interflect/formats/ldt.h"
@@ -13,6 +13,8 @@
 #include "interflect/scene/web_angles.h"
 
 namespace interflect {
+
+using namespace detail;
 
 PhotometricWeb load_photometric_web(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings) {
     const std::string extension = lower_case_extension(path);

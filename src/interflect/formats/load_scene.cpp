@@ -1,4 +1,4 @@
-#include "interflect/load_scene.h"
+#include "interflect/load.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "interflect/base/crc32.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/extension.h"
 #include "interflect/formats/gltf.h"
@@ -25,6 +25,8 @@
 #include "interflect/scene/core.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace fs = std::filesystem;
 

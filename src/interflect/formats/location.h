@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/foreign_text.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Place in a file, for messages.
 struct Location {
@@ -32,4 +32,4 @@ struct Location {
     }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

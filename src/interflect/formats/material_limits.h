@@ -5,7 +5,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns whether a surface shows mirror images. @param roughness  Standard deviation of microfacet slopes, as in MGF
 /// and Radiance.
@@ -40,4 +40,4 @@ inline bool limit_sum(Material& material) {
     return true;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

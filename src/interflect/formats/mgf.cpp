@@ -4,7 +4,7 @@
 #include "interflect/formats/mgf_reader.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -36,4 +36,4 @@ Scene read_mgf_text(std::string_view text, const fs::path& path, const ReadOptio
     return read_about_middle(path, checked(options), std::string(text));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

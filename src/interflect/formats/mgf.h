@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads a scene in the Materials and Geometry Format, version 2.0 (Ward 1996, http://radsite.lbl.gov/mgf/).
 ///
@@ -48,4 +48,4 @@ Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {
 /// Reads from memory. @param path  Name for messages; includes are relative to its folder.
 Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

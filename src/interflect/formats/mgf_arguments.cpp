@@ -6,7 +6,7 @@
 
 #include "interflect/formats/number.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 double number_argument(std::string_view word) {
     if (const auto value = parse_number(word)) return *value;
@@ -28,4 +28,4 @@ bool has_three_distinct(MgfWords words) {
     return std::any_of(second, words.end(), [&](auto w) { return w != words.front() && w != *second; });
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

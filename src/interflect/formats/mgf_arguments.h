@@ -6,7 +6,7 @@
 
 #include <ImathVec.h>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Words of a line, or its arguments.
 using MgfWords = std::span<const std::string_view>;
@@ -26,4 +26,4 @@ Imath::V3d vector_argument(MgfWords words);
 /// Returns whether three of the words differ from each other.
 bool has_three_distinct(MgfWords words);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

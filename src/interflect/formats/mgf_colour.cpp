@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -167,4 +167,4 @@ LuminousColour from_rec709(const RgbD& rgb) {
     return {{xyz.x / total, xyz.y / total}, luminance(rgb)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// CIE 1931 chromaticity. Spectra with negative values may leave the triangle x, y >= 0. The default is MGF's neutral
 /// (illuminant E).
@@ -62,4 +62,4 @@ struct LuminousColour {
 /// @param rgb  Linear Rec. 709, finite, >= 0; black becomes neutral.
 LuminousColour from_rec709(const RgbD& rgb);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -14,7 +14,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Named contexts of one kind (colours, materials or vertices) and the current one. Context{} must be MGF's default.
 /// Names are views of the input text, which must outlive the table.
@@ -111,4 +111,4 @@ struct MgfVertex {
     }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

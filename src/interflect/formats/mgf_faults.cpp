@@ -1,6 +1,6 @@
 #include "interflect/formats/mgf_faults.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 std::uint32_t MgfFaults::add(const Location& where, const std::string& message) {
     const auto [entry, is_new] =
@@ -21,4 +21,4 @@ void MgfFaults::refuse_faults_of(const MgfMaterial& material) const {
     if (material.ed > 0) refuse(material.ed_colour.fault);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

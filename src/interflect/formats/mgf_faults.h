@@ -8,7 +8,7 @@
 
 #include "interflect/formats/mgf_contexts.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Errors in colours and materials, reported only if a face uses them, since real files define more than they use.
 class MgfFaults {
@@ -31,4 +31,4 @@ class MgfFaults {
     std::map<std::pair<const std::filesystem::path*, std::int64_t>, std::uint32_t> index_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

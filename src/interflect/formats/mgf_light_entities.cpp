@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/foreign_text.h"
 #include "interflect/formats/mgf_reader.h"
-#include "interflect/load_luminaire.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 using Imath::V3d;
 
@@ -123,4 +123,4 @@ void MgfReader::add_luminaire(MeasuredLight light, const Imath::M44d& transform,
     scene_.add_light({"", objects_.current(), std::move(light)}, name);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

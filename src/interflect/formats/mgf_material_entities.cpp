@@ -7,7 +7,7 @@
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/number.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // ---- Colours
 
@@ -114,4 +114,4 @@ void MgfReader::refraction(MgfWords words) {
     number_argument(words[1]);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

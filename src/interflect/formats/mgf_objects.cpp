@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 void MgfObjects::open(std::string_view name, bool is_copy, const Location& where) {
     if (open_.size() >= static_cast<std::size_t>(options_.max_nesting))
@@ -43,4 +43,4 @@ std::uint32_t MgfObjects::current() {
     return *index;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

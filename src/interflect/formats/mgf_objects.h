@@ -8,9 +8,9 @@
 
 #include "interflect/formats/mgf_contexts.h"
 #include "interflect/formats/mgf_scene_builder.h"
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Open objects: of `o`, and of each array copy.
 class MgfObjects {
@@ -45,4 +45,4 @@ class MgfObjects {
     std::vector<OpenObject> open_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/file_to_world.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 using Imath::V3d;
 
@@ -188,4 +188,4 @@ void MgfReader::object(MgfWords words) {
         scene_.warn("unbalanced-object", "this closes an object (o), but none is open here", here());
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

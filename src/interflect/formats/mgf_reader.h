@@ -21,9 +21,9 @@
 #include "interflect/formats/repeated_work.h"
 #include "interflect/formats/source_files.h"
 #include "interflect/formats/transform_sequence.h"
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// File being read. It cannot close transforms or objects opened outside it.
 struct OpenMgfFile {
@@ -153,4 +153,4 @@ class MgfReader {
     MgfObjects objects_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/mgf_arguments.h"
 #include "interflect/formats/text_file.h"
@@ -12,7 +12,7 @@
 #include "interflect/scene/environment_maps.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -172,4 +172,4 @@ Scene MgfSceneBuilder::finish() {
     return std::move(scene_);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

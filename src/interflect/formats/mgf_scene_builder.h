@@ -11,10 +11,10 @@
 #include "interflect/formats/mgf_contexts.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/geometry/vertex_weld.h"
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Builds a Scene relative to an origin from MGF data in world coordinates: welds vertices, converts materials on first
 /// use, and counts omitted light transport. Throws std::invalid_argument for invalid requests.
@@ -80,4 +80,4 @@ class MgfSceneBuilder {
     std::vector<MgfMaterial> used_materials_;  // per material of the scene
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,12 +7,12 @@
 #include <string>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/mgf_reader.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::shared_ptr<const Texture> MgfReader::environment_image(std::string_view nam
     return image;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

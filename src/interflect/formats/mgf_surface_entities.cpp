@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 using Imath::M44d;
 using Imath::V3d;
@@ -146,4 +146,4 @@ void MgfReader::prism(MgfWords words) {
     add_mesh(make_prism(outline, number_argument(words.back())));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

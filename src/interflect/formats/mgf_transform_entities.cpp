@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 using Imath::M44d;
 
@@ -78,4 +78,4 @@ bool MgfReader::next_copy(OpenMgfTransform& transform) {
     return next_index(transform.copy, transform.sequence.array_sizes());
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Polygons of one material in local coordinates.
 struct Mesh {
@@ -62,4 +62,4 @@ struct Model {
 ///                     faces, too small or too bright, and scene_faults(). @throws TooManyPatches
 Scene scene_of(Model&& model, const ReadOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

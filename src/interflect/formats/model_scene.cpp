@@ -4,14 +4,14 @@
 #include <type_traits>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/model.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/geometry/triangle_pairs.h"
 #include "interflect/geometry/vertex_weld.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -244,4 +244,4 @@ Scene scene_of(Model&& model, const ReadOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

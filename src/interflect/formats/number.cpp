@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -28,4 +28,4 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::optional<int> parse_integer(std::string_view text) { return parse_all<int>(text); }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

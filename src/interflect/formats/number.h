@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Parses a decimal number that fills `text` and is finite in single precision; otherwise nullopt (nan, inf, 1e39,
 /// hexadecimal, trailing characters). Accepts '+'. Independent of the locale.
@@ -12,4 +12,4 @@ std::optional<double> parse_number(std::string_view text);
 /// Parses an int, with the same rules.
 std::optional<int> parse_integer(std::string_view text);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

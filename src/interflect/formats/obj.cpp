@@ -6,7 +6,7 @@
 #include "interflect/formats/obj_reader.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 Scene read_obj(const std::filesystem::path& path, const ReadOptions& options) {
     return read_obj_text(read_text_file(path), path, options);
@@ -19,4 +19,4 @@ Scene read_obj_text(std::string_view text, const std::filesystem::path& path, co
     return scene_of(reader.finish(), options);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

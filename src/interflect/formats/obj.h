@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads a Wavefront OBJ file with its material libraries; see docs/formats.md.
 /// @throws InputError  with file and line for invalid input, limits of `options`, and files outside the scene's folder;
@@ -16,4 +16,4 @@ Scene read_obj(const std::filesystem::path& path, const ReadOptions& options = {
 /// Reads from memory. @param path  Name for messages; other files are relative to its folder.
 Scene read_obj_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/extension.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/material_limits.h"
@@ -18,7 +18,7 @@
 #include "interflect/scene/limits.h"
 #include "interflect/scene/texel_centre.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -259,4 +259,4 @@ void ObjMaterials::cut_out(const Definition& definition, Material& material) {
     if (largest_channel(material.exitance) > 0) material.exitance_texture = add_texture(std::move(coverage));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -12,7 +12,7 @@
 #include "interflect/formats/model.h"
 #include "interflect/image/stored_image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Materials from OBJ libraries (.mtl).
 class ObjMaterials {
@@ -61,4 +61,4 @@ class ObjMaterials {
     std::uint64_t texels_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

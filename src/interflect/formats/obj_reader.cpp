@@ -7,11 +7,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/file_to_world.h"
 #include "interflect/formats/number.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -219,4 +219,4 @@ void ObjReader::libraries(const LineReader& line, Words words, const Location& w
     for (const std::string_view name : words.subspan(1)) materials_.read(folder / name, where);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

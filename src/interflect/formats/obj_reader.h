@@ -13,7 +13,7 @@
 #include "interflect/formats/model.h"
 #include "interflect/formats/obj_materials.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads an OBJ file into one mesh per object and material. tinyobjloader is not used because it accepts invalid
 /// indices and reads invalid numbers as 0 and overflowing ones as infinite.
@@ -53,4 +53,4 @@ class ObjReader {
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

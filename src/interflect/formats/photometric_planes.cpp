@@ -4,7 +4,7 @@
 
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 PhotometricPlanes::PhotometricPlanes(std::vector<float> angles, std::vector<float> intensities)
     : angles_(std::move(angles)), intensities_(std::move(intensities)), height_(intensities_.size() / angles_.size()) {}
@@ -46,4 +46,4 @@ std::vector<float> PhotometricPlanes::transposed() const {
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

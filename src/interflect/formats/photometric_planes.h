@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Half planes of a photometric file, completed by symmetry.
 class PhotometricPlanes {
@@ -34,4 +34,4 @@ class PhotometricPlanes {
     std::size_t height_;  // intensities per plane
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

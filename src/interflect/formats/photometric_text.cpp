@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::string PhotometricText::where() const { return fmt::format("{}:{}", path_.s
 
 void PhotometricText::refuse(const std::string& message) const { throw InputError(path_, line_, message); }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads a file without byte order mark and MS-DOS end mark (0x1a).
 /// @throws InputError  as read_text_file(), and beyond options.max_photometric_bytes.
@@ -52,4 +52,4 @@ class PhotometricText {
     bool had_decimal_comma_ = false;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

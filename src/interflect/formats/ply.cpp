@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/file_to_world.h"
 #include "interflect/formats/material_limits.h"
@@ -18,7 +18,7 @@
 #include "interflect/formats/text_file.h"
 #include "interflect/image/srgb.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -206,4 +206,4 @@ Scene read_ply_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
     return scene_of(std::move(model), options);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 
 #include "interflect/formats/line_reader.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -111,4 +111,4 @@ PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line) {
     throw std::invalid_argument("the header has no end");
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

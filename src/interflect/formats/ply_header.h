@@ -7,7 +7,7 @@
 
 #include "interflect/formats/ply_values.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Single value or list.
 struct PlyProperty {
@@ -37,4 +37,4 @@ struct PlyHeader {
 /// @param line  Set to the line of the error or to the header's last line. @throws std::invalid_argument
 PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 #include "interflect/formats/byte_order.h"
 #include "interflect/formats/number.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -76,4 +76,4 @@ double PlyValues::next_word() {
     return *value;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
@@ -38,4 +38,4 @@ class PlyValues {
     Form form_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads a Radiance scene (.rad, .mat); see docs/radiance.md. Lengths are as in the file. Radiance in W/(m^2 sr)
 /// becomes exitance in lm/m^2 at 179 lm/W. Files must be in the scene's folder; no command is run.
@@ -17,4 +17,4 @@ Scene read_rad(const std::filesystem::path& path, const ReadOptions& options = {
 /// Reads from memory. @param path  Name for messages; other files are relative to its folder.
 Scene read_rad_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -9,7 +9,7 @@
 #include "interflect/formats/material_limits.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -277,4 +277,4 @@ void RadMaterials::warn(const std::string& kind, const std::string& message, con
     model_.warnings.add(kind, modifier.where.shown(message), modifier.where.text());
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/formats/model.h"
 #include "interflect/formats/rad_statements.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Radiance's luminous efficacy of white light [lm/W].
 inline constexpr double rad_efficacy = 179;
@@ -76,4 +76,4 @@ class RadMaterials {
     std::unordered_map<std::string_view, std::uint32_t> index_;  // latest of each name
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,12 +8,12 @@
 #include <system_error>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/file_to_world.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 using Imath::M44d;
@@ -278,4 +278,4 @@ PolygonMesh RadReader::ring(const std::vector<double>& numbers) {
     return make_ring(point(numbers, 0), normal.normalized(), inner, outer, options_.curve_divisions);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

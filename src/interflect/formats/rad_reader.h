@@ -15,7 +15,7 @@
 #include "interflect/formats/repeated_work.h"
 #include "interflect/formats/source_files.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads a Radiance scene and its `!xform` files into a model. A file is read once for all copies of an array, which
 /// become instances.
@@ -79,4 +79,4 @@ class RadReader {
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/formats/number.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -88,4 +88,4 @@ RadPrimitive RadStatements::primitive() {
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

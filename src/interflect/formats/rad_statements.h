@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// `modifier type name` with arguments, or `modifier alias name original`, as views of the text.
 struct RadPrimitive {
@@ -41,4 +41,4 @@ class RadStatements {
     std::int64_t line_ = 1, line_of_offset_ = 1;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

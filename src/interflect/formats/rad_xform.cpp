@@ -5,7 +5,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::optional<RadXform> parse_xform(std::string_view command) {
                     {arguments.begin() + static_cast<std::ptrdiff_t>(end), arguments.end()}};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

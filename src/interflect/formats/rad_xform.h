@@ -7,7 +7,7 @@
 
 #include "interflect/formats/transform_sequence.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Arguments of `xform [-n name] [-m modifier] [-I] [transform] file ...`, which is never run.
 struct RadXform {
@@ -26,4 +26,4 @@ struct RadXform {
 /// @throws std::invalid_argument  if xform would reject it.
 std::optional<RadXform> parse_xform(std::string_view command);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

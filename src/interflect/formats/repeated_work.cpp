@@ -6,7 +6,7 @@
 
 #include "interflect/formats/scene_faces.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -28,4 +28,4 @@ void RepeatedWork::add(std::uint64_t words, std::uint64_t patches) {
                         words_ / 1'000'000, patches));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

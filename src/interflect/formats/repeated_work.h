@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Limits the words that arrays and includes repeat: a short file can request 10^14. A two-sided quadrilateral with its
 /// own vertices takes 33 words.
@@ -20,4 +20,4 @@ class RepeatedWork {
     std::uint64_t max_patches_, words_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

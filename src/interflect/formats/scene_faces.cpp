@@ -5,7 +5,7 @@
 #include "interflect/geometry/polygon.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -107,4 +107,4 @@ void SceneFaces::require_usable() const {
     require_patches();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

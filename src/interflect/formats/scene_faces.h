@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "interflect/formats/location.h"
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// More patches than ReadOptions::max_patches.
 struct PatchLimit : std::invalid_argument {
@@ -66,4 +66,4 @@ class SceneFaces {
     std::uint64_t left_out_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

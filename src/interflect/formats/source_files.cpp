@@ -4,10 +4,10 @@
 #include <system_error>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -30,4 +30,4 @@ std::pair<const SourceFile&, bool> SourceFiles::find(std::string_view name, cons
     }
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct SourceFile {
     std::filesystem::path path;  ///< Path used first.
@@ -27,4 +27,4 @@ class SourceFiles {
     std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by path as written
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

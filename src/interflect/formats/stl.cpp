@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/byte_order.h"
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/file_to_world.h"
@@ -16,7 +16,7 @@
 #include "interflect/formats/scene_faces.h"
 #include "interflect/formats/text_file.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 using Imath::V3d;
@@ -129,4 +129,4 @@ Scene read_stl_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
     return scene_of(std::move(model), options);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string_view>
 
-#include "interflect/read_options.h"
+#include "interflect/load.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads the triangles of an STL file, ASCII or binary, with reflectance 0.5; see docs/formats.md.
 /// @throws InputError  for invalid input and limits of `options`; also as scene_of(). @throws TooManyPatches
@@ -15,4 +15,4 @@ Scene read_stl(const std::filesystem::path& path, const ReadOptions& options = {
 /// Reads from memory. @param path  Name for messages.
 Scene read_stl_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

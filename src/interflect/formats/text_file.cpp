@@ -6,9 +6,9 @@
 #include <fstream>
 #include <system_error>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -76,4 +76,4 @@ std::string read_text_file(const fs::path& path) {
     return text;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

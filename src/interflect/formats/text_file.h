@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// @throws InputError  if the path is not a readable regular file, or with the line of a control character other than
 ///                     white space (binary content).
@@ -25,4 +25,4 @@ bool is_within(const std::filesystem::path& path, const std::filesystem::path& f
 /// Checks only for control characters. @param path  Named in errors.
 void require_text(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

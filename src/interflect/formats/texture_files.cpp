@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/text_file.h"
+#include "interflect/image.h"
 #include "interflect/image/photograph.h"
 #include "interflect/image/srgb.h"
-#include "interflect/image_files.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most) {
     Image image = read_photograph(path, static_cast<std::int64_t>(most));
@@ -43,4 +43,4 @@ void write_texture(const std::filesystem::path& path, const Texture& texture) {
     write_image(path, image);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

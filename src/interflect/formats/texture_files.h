@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "interflect/luminaire.h"
-#include "interflect/texture.h"
+#include "interflect/light_sources.h"
+#include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit.
 /// @throws InputError  as read_image(), and for an invalid texture.
@@ -22,4 +22,4 @@ std::string texture_extension(const Texture& texture);
 /// @throws InputError, std::runtime_error  as write_image().
 void write_texture(const std::filesystem::path& path, const Texture& texture);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -52,4 +52,4 @@ bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most) {
     return is_reduced;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/texture.h"
+#include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Halves the largest textures until all have at most `most` texels in total. Equal sizes stay equal; texels become
 /// area means. @return  Whether any was halved.
@@ -13,4 +13,4 @@ bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most = most_t
 
 std::uint64_t texel_count(const std::vector<Texture>& textures);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

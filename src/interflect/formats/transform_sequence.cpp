@@ -9,7 +9,7 @@
 
 #include "interflect/formats/number.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -151,4 +151,4 @@ bool next_index(std::vector<int>& copy, std::span<const int> sizes) {
     return false;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Arguments of MGF's `xf`: -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N, applied from left to
 /// right. -i repeats the following transforms, up to the next -i or -a, N times. -a makes N copies; copy k, from 0,
@@ -36,4 +36,4 @@ class TransformSequence {
 /// Advances to the next copy, the last array fastest. @return  false after the last copy, with all indices 0.
 bool next_index(std::vector<int>& copy, std::span<const int> sizes);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/formats/json_text.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/number.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/scene/view.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
@@ -189,4 +189,4 @@ View read_radiance_view(const fs::path& path) {
     return view;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

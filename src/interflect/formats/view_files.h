@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns /a/office.views.json for /a/office.mgf.
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
@@ -28,4 +28,4 @@ void write_view_list(std::span<const View> views, const std::filesystem::path& p
 ///                     unknown options, and invalid values.
 View read_radiance_view(const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -12,7 +12,7 @@
 #include "interflect/formats/photometric_planes.h"
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -100,4 +100,4 @@ void write_ies(const PhotometricWeb& web, const std::filesystem::path& path) {
     if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -19,7 +19,7 @@
 #include "interflect/scene/sky_frame.h"
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -344,4 +344,4 @@ std::vector<std::string> texture_files(const Scene& scene, const std::filesystem
     return files;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -9,7 +9,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Writes a scene for read_mgf(), which restores the order of patches, the names of materials and objects, and exact
 /// world positions. Colours become a chromaticity (`cxy`) and a luminous quantity (`rd`, `rs`, `ts`, `ed`), exact to
@@ -42,4 +42,4 @@ std::vector<std::string> web_files(const Scene& scene, const std::filesystem::pa
 /// Returns "room.map-0.exr" for "room.mgf". Use write_texture().
 std::vector<std::string> map_files(const Scene& scene, const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

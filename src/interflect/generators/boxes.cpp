@@ -6,13 +6,13 @@
 #include <numbers>
 #include <span>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/generators/building/furnish.h"
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"
 #include "interflect/generators/patterns.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -78,4 +78,4 @@ Scene make_boxes(const BoxesOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct BoxesOptions {
     static constexpr std::uint32_t most_boxes = 100'000;
@@ -21,4 +21,4 @@ struct BoxesOptions {
 /// @throws InputError if the number of boxes is out of range.
 Scene make_boxes(const BoxesOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

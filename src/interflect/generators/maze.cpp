@@ -7,14 +7,14 @@
 #include <cmath>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/generators/building/floor_space.h"
 #include "interflect/generators/building/furnish.h"
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options) 
     return static_cast<std::uint32_t>(rooms);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct MazeOptions {
     static constexpr std::uint32_t most_rooms = 10'000;
@@ -32,4 +32,4 @@ Scene make_maze(const MazeOptions& options);
 /// @throws InputError if that exceeds most_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,13 +4,13 @@
 
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/generators/building/floor_space.h"
 #include "interflect/generators/building/furnish.h"
 #include "interflect/generators/building/room_views.h"
 #include "interflect/generators/building/shell.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -92,4 +92,4 @@ Scene make_office(const OfficeOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct OfficeOptions {
     static constexpr std::uint32_t most_rooms = 256, most_rows = 20, most_desks_per_row = 20;
@@ -22,4 +22,4 @@ struct OfficeOptions {
 /// Time and memory are linear in the desks. @throws InputError if an option is out of its range.
 Scene make_office(const OfficeOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

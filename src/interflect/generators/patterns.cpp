@@ -9,7 +9,7 @@
 
 #include "interflect/image/srgb.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -90,4 +90,4 @@ void lay_image(Scene& scene, std::uint32_t patch, float repeat) {
     }
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Generated images of 8-bit sRGB values, which a .png preserves.
 
@@ -20,4 +20,4 @@ std::uint32_t add_texture(Scene& scene, Texture texture);
 /// `repeat` [m] if that is above 0. Its bottom is at the lowest edge.
 void lay_image(Scene& scene, std::uint32_t patch, float repeat = 0);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/generators/building/solids.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -80,4 +80,4 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

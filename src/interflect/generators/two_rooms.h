@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct TwoRoomsOptions {
     float turn = 0;          ///< Rotation of the partition wall about the vertical [degrees], -40 to 40.
@@ -15,4 +15,4 @@ struct TwoRoomsOptions {
 /// @throws InputError if the turn is out of range.
 Scene make_two_rooms(const TwoRoomsOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Material of the back of a face; may differ from the front's. none: one-sided.
 inline std::uint32_t back_material(const Scene& scene, const Patch& patch) {
@@ -24,4 +24,4 @@ inline void add_face(Scene& scene, Patch patch, std::uint32_t back_material) {
     scene.patches.push_back(patch);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Enlarges the box in all directions.
 inline Imath::Box3f widened(Imath::Box3f box, float margin) {
@@ -32,4 +32,4 @@ bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height
     return std::abs(height(centre)) <= reach + distance;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

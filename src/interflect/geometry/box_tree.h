@@ -9,7 +9,7 @@
 
 #include "interflect/base/parallel.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct Boxed {
     Imath::Box3f box;  ///< In an arranged tree: bounds of the whole subtree.
@@ -55,4 +55,4 @@ void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const V
     visit_box_tree(tree.subspan(middle + 1), reaches, visit);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -10,7 +10,7 @@
 #include "interflect/geometry/disjoint_sets.h"
 #include "interflect/geometry/face_cutter.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -154,4 +154,4 @@ void ContactFinder::add_section(const Facet& other, const std::array<double, 4>&
     if (longest > 0) add(points[ends.first], points[ends.second], 0);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -12,7 +12,7 @@
 #include "interflect/geometry/planar_polygon.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// A segment on a facet. If it belongs to the outline of a coplanar face, `outline` is the side of that face.
 struct FoundSegment {
@@ -67,4 +67,4 @@ class ContactFinder {
     std::vector<FoundSegment> found_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,4 +1,4 @@
-#include "interflect/contacts.h"
+#include "interflect/prepare.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +20,8 @@
 #include "interflect/geometry/vertex_weld.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

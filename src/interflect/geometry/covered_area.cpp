@@ -9,7 +9,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/planar_polygon.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -130,4 +130,4 @@ float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<co
     return static_cast<float>(outside / area);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Fraction of a patch's area, in [0, 1], outside the (nearly) coplanar faces `others`, which may overlap.
 /// @param tolerance  Width of slivers along the patch's edges [m]. They count as covered, or as uncovered if nothing
@@ -14,4 +14,4 @@ namespace interflect::inline detail {
 float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<const std::uint32_t> others,
                            float tolerance);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Disjoint sets of the numbers 0 ... size - 1 (union-find with path halving). The lowest member represents its set.
 class DisjointSets {
@@ -27,4 +27,4 @@ class DisjointSets {
     std::vector<std::uint32_t> parent_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

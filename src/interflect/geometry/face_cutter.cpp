@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -299,4 +299,4 @@ void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, 
     for (const PlanarPolygon& part : best) divide_into_patches(part, shape, patches);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

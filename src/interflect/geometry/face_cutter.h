@@ -6,7 +6,7 @@
 
 #include "interflect/geometry/planar_polygon.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Clips `segment` to the polygon's interior.
 /// @return  Whether a part at least `tolerance` long and not entirely within `tolerance` of one edge remains; if so, it
@@ -38,4 +38,4 @@ struct PieceShape {
 /// into at most 16 parts, and slivers into at most 64, because quadtree elements inherit the shape of their patch.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

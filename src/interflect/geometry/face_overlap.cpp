@@ -9,7 +9,7 @@
 #include "interflect/geometry/box_tree.h"
 #include "interflect/scene/patch_area.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -155,4 +155,4 @@ std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bo
     return pairs;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

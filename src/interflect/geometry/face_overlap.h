@@ -7,7 +7,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Two overlapping faces, each identified by its (first) patch.
 struct FacePair {
@@ -29,4 +29,4 @@ inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pa
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

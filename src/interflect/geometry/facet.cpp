@@ -7,7 +7,7 @@
 #include "interflect/scene/patch_area.h"
 #include "interflect/scene/planarity.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -72,4 +72,4 @@ PlaneFrame::PlaneFrame(const Facet& facet) : origin_(facet.corners[0]), normal_(
     y_ = normal_.cross(x_).normalized();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

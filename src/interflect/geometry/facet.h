@@ -10,7 +10,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// A planar convex polygon of three or four corners: a face, or half of a warped quadrilateral.
 struct Facet {
@@ -53,4 +53,4 @@ class PlaneFrame {
     Imath::V3d origin_, normal_, x_, y_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -12,7 +12,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/vertex_weld.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     return rank;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

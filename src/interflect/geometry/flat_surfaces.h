@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Flat surface of each patch, identified by the surface's lowest patch, whose side is the front. Patches belong
 /// together if they share material, object and whole edges in (nearly) one plane, or have the same Patch::surface. This
@@ -18,4 +18,4 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene);
 ///          first; its area counts once. O(n log n).
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -95,4 +95,4 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
     return p;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/scene.h"
 #include "interflect/scene/patch_area.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Parameters of a point of a patch. Triangle v0 v1 v2: x = v0 + u (v1 - v0) + v (v2 - v0), u, v >= 0, u + v <= 1.
 /// Quadrilateral v0 v1 v2 v3: bilinear; (0,0) (1,0) (1,1) (0,1) are its vertices in order.
@@ -55,4 +55,4 @@ class PatchGeometry {
     bool triangle_ = false, parallelogram_ = false;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

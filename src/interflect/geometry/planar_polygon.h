@@ -8,7 +8,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct PlanarCorner {
     Imath::V2d position;          ///< In the frame of the plane [m].
@@ -38,4 +38,4 @@ inline double perimeter(const PlanarPolygon& polygon) {
     return sum;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -14,7 +14,7 @@
 #include "interflect/scene/limits.h"
 #include "interflect/scene/planarity.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -225,4 +225,4 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
     return patches.result();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 enum class PolygonResult {
     added,
@@ -30,4 +30,4 @@ enum class PolygonResult {
 PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                           std::uint32_t object, bool two_sided);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/add_face.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/geometry/vertex_weld.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -128,4 +128,4 @@ float default_mesh_size(const Scene& scene) {
     return std::max(box.size().length() / pieces_of_diagonal, static_cast<float>(std::sqrt(area / moderate_patches)));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

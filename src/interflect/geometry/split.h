@@ -2,7 +2,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Divides every patch into a grid with edges of at most `largest_edge`: the fixed mesh of methods without refinement.
 /// Triangles become n^2 triangles. Patches that share an edge divide it equally. The two sides of a face stay
@@ -19,4 +19,4 @@ float default_mesh_size(const Scene& scene);
 /// scene's area is in patches smaller than the typical one. Independent of the scene's extent.
 double default_element_size(const Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Two unit vectors that form a right-handed frame s, t, n with the unit vector n (Duff et al. 2017).
 struct TangentFrame {
@@ -16,4 +16,4 @@ struct TangentFrame {
     }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

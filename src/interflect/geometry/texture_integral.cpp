@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -163,4 +163,4 @@ Rgb TextureIntegral::mean(const std::array<V2f, 3>& corners) const {
     return clamped;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/texture.h"
+#include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Exact means of a texture over triangles, with filtering and repetition as in texel_at(). By Green's theorem the
 /// integral of f over a triangle is that of F dy along its border, with dF/dx = f. Between lines of texel centres F is
@@ -40,4 +40,4 @@ class TextureIntegral {
     RgbD mean_{0, 0, 0};
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

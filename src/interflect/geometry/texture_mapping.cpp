@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -44,4 +44,4 @@ Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p) {
     return times_texel(scene, patch, p, material.transmittance, material.transmittance_texture);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Interpolated texture coordinates at a point of a patch. @param scene  With texture coordinates.
 V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p);
@@ -18,4 +18,4 @@ Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

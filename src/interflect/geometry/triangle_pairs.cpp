@@ -9,7 +9,7 @@
 #include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene/planarity.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::vector<FaceVertices> merge_triangle_pairs(const Scene& scene, std::span<con
     return PairFinder(scene, triangles).find();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Vertices of a face, counter-clockwise; the fourth is none for a triangle.
 using FaceVertices = std::array<std::uint32_t, 4>;
@@ -20,4 +20,4 @@ using FaceVertices = std::array<std::uint32_t, 4>;
 /// @return           Every triangle once, alone or merged, in the order of the first of each pair. O(n log n).
 std::vector<FaceVertices> merge_triangle_pairs(const Scene& scene, std::span<const std::uint32_t> triangles);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::uint32_t add_vertex(Scene& scene, const V3f& position, const VertexCoordina
     return static_cast<std::uint32_t>(scene.vertices.size() - 1);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Attributes of a vertex beside its position.
 struct VertexCoordinates {
@@ -35,4 +35,4 @@ V3f welded_normal(const Imath::V3d& normal);
 /// Adds a vertex and returns its index. The scene has each kind of coordinates from the first vertex on that has some.
 std::uint32_t add_vertex(Scene& scene, const V3f& position, const VertexCoordinates& coordinates);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

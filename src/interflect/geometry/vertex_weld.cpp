@@ -4,7 +4,7 @@
 
 #include "interflect/base/random.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::uint32_t VertexWeld::vertex(const V3f& position, const VertexCoordinates& c
     return slot;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

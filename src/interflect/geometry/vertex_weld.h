@@ -6,7 +6,7 @@
 #include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Merges vertices with equal position and attributes in single precision (-0 equals 0). A hash table of vertex indices
 /// with linear probing; at most 16 bytes a vertex.
@@ -27,4 +27,4 @@ class VertexWeld {
     std::size_t used_ = 0;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -17,10 +17,10 @@
 #include <utility>
 
 #include "interflect/base/escapes.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::inline detail::codecs {
+namespace interflect::detail::codecs {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::optional<float> read_exr_field_of_view(const std::filesystem::path& path) {
     return fov->value();
 }
 
-}  // namespace interflect::inline detail::codecs
+}  // namespace interflect::detail::codecs

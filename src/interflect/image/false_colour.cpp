@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -70,4 +70,4 @@ Image false_colours(const Image& values, const ColourScale& scale) {
     return image;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Maps a number, clamped to [0, 1], to a colour: violet, teal, yellow. Lightness increases evenly and equal
 /// steps look about equal, also in grey and to colour-blind viewers.
@@ -38,4 +38,4 @@ ColourScale fit_round_scale(std::vector<float> values);
 /// unchanged.
 Image false_colours(const Image& values, const ColourScale& scale);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

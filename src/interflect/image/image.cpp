@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect {
 

@@ -8,11 +8,10 @@
 #include <string_view>
 
 #include "interflect/image.h"
-#include "interflect/image_files.h"
 
 /// Encoder and decoder per file format, for image_files.cpp. Decoders throw std::runtime_error with the reason; the
 /// caller adds the file name.
-namespace interflect::inline detail::codecs {
+namespace interflect::detail::codecs {
 
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
@@ -37,4 +36,4 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::s
 Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);
 
-}  // namespace interflect::inline detail::codecs
+}  // namespace interflect::detail::codecs

@@ -1,4 +1,4 @@
-#include "interflect/image_files.h"
+#include "interflect/image.h"
 
 #include <fmt/format.h>
 
@@ -11,12 +11,14 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/pending_image.h"
 #include "interflect/image/photograph.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace fs = std::filesystem;
 

@@ -13,7 +13,7 @@
 #include "interflect/geometry/disjoint_sets.h"
 #include "interflect/image/lettering.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -221,4 +221,4 @@ Image with_isolines(const Image& picture, const Image& values, std::span<const f
     return image;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

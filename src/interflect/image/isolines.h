@@ -5,7 +5,7 @@
 #include "interflect/image.h"
 #include "interflect/image/false_colour.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Draws anti-aliased lines of constant values and labels the longer ones. Lines follow the quantity smoothed over
 /// about a pixel and end where it jumps, at edges of objects and sharp shadows. Lines shorter than a few letters are
@@ -16,4 +16,4 @@ namespace interflect::inline detail {
 /// @throws InputError if the sizes differ.
 Image with_isolines(const Image& picture, const Image& values, std::span<const float> levels, const ColourScale& scale);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

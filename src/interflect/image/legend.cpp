@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 #include "interflect/image/lettering.h"
-#include "interflect/image_files.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -132,4 +132,4 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
     return image;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/image.h"
 #include "interflect/image/false_colour.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Adds a legend below a picture: the title and a strip of the colours with round values.
 /// @param picture  Tone-mapped, linear Rec. 709 in [0, 1].
@@ -27,4 +27,4 @@ bool legend_fits(int width, int height, const std::string& title);
 /// @throws InputError if `most` < 3 or the scale is invalid.
 std::vector<float> round_values(const ColourScale& scale, int most);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 int dot_size(int picture_width) {
     constexpr int dots = 512;  // approximate width of a picture
@@ -38,4 +38,4 @@ void write_text(Image& image, int left, int top, std::string text, int dot) {
         fill(image, left + pixels(r[0].x), top + pixels(r[0].y), left + pixels(r[2].x), top + pixels(r[2].y), ink);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Text and rectangles in pictures. Dots of text are a whole number of pixels wide.
 
@@ -24,4 +24,4 @@ int text_width(std::string text, int dot);
 /// Writes printable ASCII from its top left corner.
 void write_text(Image& image, int left, int top, std::string text, int dot);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "interflect/base/pending_file.h"
-#include "interflect/image_files.h"
+#include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Writes an image like write_image() and commits the file. Errors contain its final name.
 void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
                  std::span<const ImageLayer> layers = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "interflect/image_files.h"
+#include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Like read_image(), but also reads JPEG: textures may have lost detail, measurements may not.
 Image read_photograph(const std::filesystem::path& path, std::int64_t most_pixels);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::inline detail::codecs {
+namespace interflect::detail::codecs {
 
 namespace {
 
@@ -213,4 +213,4 @@ Image decode_radiance(std::string_view bytes, std::int64_t most_pixels) {
     return image;
 }
 
-}  // namespace interflect::inline detail::codecs
+}  // namespace interflect::detail::codecs

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Transfer function of sRGB (IEC 61966-2-1), from a linear value in [0, 1].
 inline float srgb_encode(float linear) {
@@ -20,4 +20,4 @@ inline std::uint8_t srgb_byte(float linear) {
     return static_cast<std::uint8_t>(std::lround(255 * srgb_encode(std::clamp(linear, 0.0f, 1.0f))));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

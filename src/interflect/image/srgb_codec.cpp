@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
 #include "interflect/image/stored_image.h"
@@ -17,7 +17,7 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 
-namespace interflect::inline detail::codecs {
+namespace interflect::detail::codecs {
 
 namespace {
 
@@ -80,4 +80,4 @@ Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
     return linear_image(decode_stored_image(bytes, most_pixels));
 }
 
-}  // namespace interflect::inline detail::codecs
+}  // namespace interflect::detail::codecs

@@ -12,7 +12,7 @@
 
 #include "interflect/image/image_codecs.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -82,4 +82,4 @@ StoredImage decode_stored_image(std::string_view bytes, std::int64_t most_pixels
     throw std::runtime_error("it begins neither as a PNG nor as a JPEG does");
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Pixels of a PNG or JPEG as stored, sRGB-encoded.
 struct StoredImage {
@@ -28,4 +28,4 @@ StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels);
 /// Decodes a PNG or JPEG by its first bytes. @throws std::runtime_error as decode_stored_png() does.
 StoredImage decode_stored_image(std::string_view bytes, std::int64_t most_pixels);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -66,4 +66,4 @@ Rgb agx_curve(const Rgb& v) {
     return Rgb(decoded(shown.x), decoded(shown.y), decoded(shown.z));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Curves of tone_map.h for exposed values >= 0, before clipping to [0, 1].
 
@@ -19,4 +19,4 @@ Rgb filmic_curve(const Rgb& v);
 /// of 2.2.
 Rgb agx_curve(const Rgb& v);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

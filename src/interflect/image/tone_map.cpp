@@ -1,4 +1,4 @@
-#include "interflect/tone_map.h"
+#include "interflect/image.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,13 @@
 #include <functional>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/tone_curves.h"
 #include "interflect/image/visual_adaptation.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

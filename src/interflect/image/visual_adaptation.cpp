@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -61,4 +61,4 @@ float rod_threshold(float adapted) {
     return std::pow(10.0f, y);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Operators that match the perception of an observer at the display to one in the scene. Luminances are in cd/m^2.
 // `adapted` is the adaptation luminance in the scene, L_wa > 0; `white` is the display's white, L_dmax > 0.
@@ -49,4 +49,4 @@ float rod_threshold(float adapted);
 /// - 1.68) of Larson, Rushmeier and Piatko 1997 at the three primaries. The weights also hold for white.
 constexpr float scotopic_luminance(const Rgb& c) { return 0.085f * c.x + 1.969f * c.y + 0.519f * c.z; }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -76,4 +76,4 @@ float DirectionTable::density(const SkyPlace& place) const {
                               grid_.solid_angle(row));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

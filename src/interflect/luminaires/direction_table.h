@@ -6,7 +6,7 @@
 
 #include "interflect/scene/sky_frame.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Grid of equal azimuths and equal angles from the zenith, row by row from the zenith.
 struct SkyGrid {
@@ -41,4 +41,4 @@ class DirectionTable {
     std::vector<float> columns_;  // cumulative share of each cell in its row
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

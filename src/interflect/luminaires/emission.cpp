@@ -11,7 +11,7 @@
 #include "interflect/base/points.h"
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -362,4 +362,4 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

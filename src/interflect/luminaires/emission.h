@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "interflect/base/points.h"
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/luminaires/opening.h"
 #include "interflect/luminaires/sky_radiance.h"
 #include "interflect/luminaires/web_sampler.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Part of a sky's radiance with a single colour: all rays of a part carry the same power.
 struct SkyComponent {
@@ -150,4 +150,4 @@ class Emission {
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

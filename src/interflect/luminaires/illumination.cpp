@@ -7,7 +7,7 @@
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/luminaires/opening.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -77,4 +77,4 @@ Illumination illumination(const Luminaire& luminaire, const V3f& x, float u, flo
     return std::visit([&](const auto& light) { return light_at(light, x, u, v); }, luminaire.kind);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Unoccluded light of a luminaire at a point.
 struct Illumination {
@@ -16,4 +16,4 @@ struct Illumination {
 /// @param u, v  Uniform in (0, 1); choose the point of an opening or disc.
 Illumination illumination(const Luminaire& luminaire, const V3f& x, float u = 0.5f, float v = 0.5f);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

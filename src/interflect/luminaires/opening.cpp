@@ -6,7 +6,7 @@
 
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -116,4 +116,4 @@ LuminaireFrame::LuminaireFrame(const MeasuredLight& light) : z(-light.direction.
     y = z.cross(x) * (light.mirrored ? -1.0f : 1.0f);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "interflect/luminaire.h"
+#include "interflect/light_sources.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Point of a luminous opening in the luminaire's frame.
 struct OpeningPoint {
@@ -26,4 +26,4 @@ struct LuminaireFrame {
     V3f to_luminaire(const V3f& v) const { return {x.dot(v), y.dot(v), z.dot(v)}; }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

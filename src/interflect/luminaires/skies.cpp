@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -68,4 +68,4 @@ float Skies::density(const V3f& direction) const {
     return static_cast<float>(sum);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include "interflect/luminaires/sky_radiance.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Unoccluded radiance of skies and suns, and sampling of bright directions. Immutable, shared by all threads.
 class Skies {
@@ -46,4 +46,4 @@ class Skies {
     std::vector<Disc> discs_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace interflect::inline detail {
+#include "interflect/scene.h"
+
+namespace interflect::detail {
 
 namespace {
 
@@ -95,4 +97,4 @@ std::vector<Rgb> SkyRadiance::texel_integrals(const SkyGrid& grid) const {
     return integrals;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "interflect/luminaire.h"
+#include "interflect/light_sources.h"
 #include "interflect/luminaires/direction_table.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Radiance of a sky dome or an environment map in every direction. Immutable, shared by all threads.
 class SkyRadiance {
@@ -37,4 +37,4 @@ class SkyRadiance {
     std::shared_ptr<const Texture> image_;  // null: a dome
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

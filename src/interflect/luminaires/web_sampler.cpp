@@ -5,7 +5,7 @@
 
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -106,4 +106,4 @@ V3f WebSampler::direction(float u, float v) const {
     return axes.pole * along + axes.zero * a + axes.quarter * b;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

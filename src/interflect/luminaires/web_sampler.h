@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "interflect/photometric_web.h"
+#include "interflect/light_sources.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Samples directions by the intensity of a photometric web, exactly as interpolated. Immutable, shared by all threads.
 class WebSampler {
@@ -33,4 +33,4 @@ class WebSampler {
     std::vector<double> azimuth_flux_;  // cumulative, up to each azimuth
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "interflect/base/parallel.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -278,4 +278,4 @@ Image show_flip_map(const Image& map) {
     return with_legend(picture, scale, "FLIP: 0 looks the same, 1 as different as can be");
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct FlipOptions {
     /// Display pixels per degree of the field of view, in (0, 1000]. Default of the paper: 3840 pixels on 0.7 m, seen
@@ -26,4 +26,4 @@ Image flip_map(const Image& image, const Image& reference, const FlipOptions& op
 /// Converts a flip_map() to false colours and adds a legend.
 Image show_flip_map(const Image& map);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

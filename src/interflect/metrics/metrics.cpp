@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 #include "interflect/metrics/flip.h"
 #include "interflect/metrics/perceptual.h"
-#include "interflect/tone_map.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -136,4 +136,4 @@ ImageDifference compare(const Image& full_size_image, const Image& reference, co
     return difference;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

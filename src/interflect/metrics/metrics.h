@@ -5,7 +5,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Difference of luminances averaged over square blocks, which reduces noise.
 struct BlockDifference {
@@ -46,4 +46,4 @@ struct CompareOptions {
 /// @throws InputError for other sizes or an option out of range.
 ImageDifference compare(const Image& image, const Image& reference, const CompareOptions& options = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

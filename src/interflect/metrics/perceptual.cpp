@@ -9,9 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -89,4 +89,4 @@ double perceptual_distance(const Image& image, const Image& reference, double fi
     return std::sqrt(weighted_power(values, width, image.height / field_of_view));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

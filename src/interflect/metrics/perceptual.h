@@ -2,7 +2,7 @@
 
 #include "interflect/image.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Contrast sensitivity of the eye, A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
 /// Maximum 0.98 at 8 cycles per degree; A(0) = 0.05, A(50) = 0.02.
@@ -27,4 +27,4 @@ double contrast_sensitivity(double cycles_per_degree);
 /// Cost: O(N log N) for sides with small prime factors, at worst O(N (width + height)); 16 bytes per pixel.
 double perceptual_distance(const Image& image, const Image& reference, double field_of_view);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

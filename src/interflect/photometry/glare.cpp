@@ -1,4 +1,4 @@
-#include "interflect/glare.h"
+#include "interflect/measure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,15 @@
 #include <numbers>
 
 #include "interflect/base/parallel.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 #include "interflect/luminaires/opening.h"
-#include "interflect/measure.h"
 #include "interflect/raycast/panes.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -198,7 +199,7 @@ std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_
 
 std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                     std::span<const Observer> observers, const PathOptions& options,
-                                    const PathMonitor& monitor) {
+                                    const Monitor& monitor) {
     std::vector<MeasuringPoint> eyes;
     for (const Observer& observer : observers) {
         require_direction(observer);

@@ -1,14 +1,16 @@
-#include "interflect/measuring_grid.h"
+#include "interflect/measure.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/photometry/planar_outline.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

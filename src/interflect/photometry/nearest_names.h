@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Returns the number of letters to add, remove or replace between two names (Levenshtein 1965).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -51,4 +51,4 @@ inline std::string text_of_nearest(const std::string& name, std::span<const std:
     return candidates.size() > most_told ? text + ", ..." : text;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,4 +1,4 @@
-#include "interflect/photometry.h"
+#include "interflect/measure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,21 @@
 #include <fmt/format.h>
 
+#include <ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <string_view>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/measuring_grid.h"
+#include "interflect/measure.h"
 #include "interflect/photometry/nearest_names.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -142,4 +142,4 @@ double distance(const V2d& p, const PlanarSegment& s) {
     return (p - (s.a + side * t)).length();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "interflect/geometry/planar_polygon.h"
-#include "interflect/measuring_grid.h"
+#include "interflect/measure.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Faces of a planar area in a two-dimensional frame in world coordinates [m].
 struct PlanarOutline {
@@ -29,4 +29,4 @@ PlanarOutline outline_of(const Scene& scene, const PlanarArea& area);
 
 double distance(const Imath::V2d& p, const PlanarSegment& s);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

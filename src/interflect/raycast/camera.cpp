@@ -7,11 +7,11 @@
 #include <numbers>
 #include <string>
 
-#include "interflect/error.h"
-#include "interflect/image_files.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
 #include "interflect/scene/view.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -52,4 +52,4 @@ Camera::Camera(const View& view, int width, int height, const V3d& origin)
     pixel_down_ = V3f(up * -pixel);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,7 +3,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Rays through the square pixels of an image: from the eye, where `fov` spans the image's height, or, for views with
 /// an `extent`, parallel rays from the plane through the eye.
@@ -31,4 +31,4 @@ class Camera {
     V3f pixel_right_, pixel_down_;  // steps of one pixel on that plane
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -12,7 +12,7 @@
 #include "interflect/geometry/flat_surfaces.h"
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -238,4 +238,4 @@ std::size_t CoincidentFaces::memory() const {
            uncovered_share_.capacity() * sizeof(float) + reaches_.capacity() * sizeof(Reach);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/geometry/box_tree.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Faces in the same place, such as paper on a desk, and their priority. A ray tracer returns the face that it tests
 /// first, so light and camera rays could hit different faces. Here the same face always answers: the smaller surface
@@ -97,4 +97,4 @@ class CoincidentFaces {
     std::vector<Reach> reaches_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -19,7 +19,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/coincident.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Converts a ray to an Embree query from its origin to infinity.
 inline RTCRayHit embree_query(const Ray& ray) {
@@ -81,21 +81,21 @@ struct Faces {
     bool triangles = false, two_sided = false;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail
 
 struct interflect::RayCaster::Embree {
     std::atomic<std::int64_t> bytes{0};
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<Faces> geometries;
-    CoincidentFaces coincident;
+    std::vector<detail::Faces> geometries;
+    detail::CoincidentFaces coincident;
 
-    explicit Embree(CoincidentFaces coincident_faces);
+    explicit Embree(detail::CoincidentFaces coincident_faces);
     ~Embree();
     Embree(const Embree&) = delete;
     Embree& operator=(const Embree&) = delete;
 
-    void add_faces(const Scene& source, Faces faces);
+    void add_faces(const Scene& source, detail::Faces faces);
     void commit();
     Hit hit_of(const Ray& ray, const RTCRayHit& query) const;
 };

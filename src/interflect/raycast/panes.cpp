@@ -5,7 +5,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/texture_mapping.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 Panes::Panes(const Scene& scene, const RayCaster& ray_caster)
     : scene_(scene),
@@ -57,4 +57,4 @@ void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vec
     std::stable_sort(behind.begin(), behind.end(), [](const auto& a, const auto& b) { return a.ray < b.ray; });
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Continues rays straight through panes: thin glass and faces with holes (Material::transmittance). Refers to its
 /// arguments. Immutable, shared by all threads.
@@ -41,4 +41,4 @@ class Panes {
     bool any_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

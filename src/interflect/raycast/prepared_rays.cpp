@@ -1,11 +1,12 @@
+#include "interflect/raycast/prepared_rays.h"
+
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "interflect/ray_caster.h"
 #include "interflect/raycast/embree.h"
 
-namespace interflect {
+namespace interflect::detail {
 
 namespace {
 
@@ -102,4 +103,4 @@ std::size_t PreparedRays::hit_count() const {
                                         : count_hits(layout_->packets16, layout_->rays, 16);
 }
 
-}  // namespace interflect
+}  // namespace interflect::detail

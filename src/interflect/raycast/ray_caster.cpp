@@ -12,12 +12,14 @@
 #include <fmt/format.h>
 
 #include "interflect/base/parallel.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/raycast/embree.h"
 #include "interflect/scene/geometry_fingerprint.h"
 #include "interflect/scene/planarity.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -47,7 +47,7 @@ void append_pixel_rays(const Camera& camera, std::size_t pixel, const CameraSamp
 }  // namespace
 
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
-                  std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
+                  std::span<const PixelOffset> offsets, const Monitor& monitor,
                   const std::function<void(const PixelSamples&)>& visit) {
     require_valid(sampling);
     const std::size_t pixel_count =
@@ -87,4 +87,4 @@ void require_values_of_elements(const ElementForest& forest, std::size_t value_c
                                      value_count, forest.size()));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -11,7 +11,7 @@
 #include "interflect/render.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct CameraSampling {
     int width = 1, height = 1;  ///< [pixels], equal to the camera's.
@@ -35,11 +35,11 @@ struct PixelSamples {
 /// The rays depend on the seed, not on the number of threads.
 /// @throws InputError for less than one sample or pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
-                  std::span<const PixelOffset> offsets, const PictureMonitor& monitor,
+                  std::span<const PixelOffset> offsets, const Monitor& monitor,
                   const std::function<void(const PixelSamples&)>& visit);
 
 inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
-                         const PictureMonitor& monitor, const std::function<void(const PixelSamples&)>& visit) {
+                         const Monitor& monitor, const std::function<void(const PixelSamples&)>& visit) {
     constexpr PixelOffset none_at_all;
     trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, monitor, visit);
 }
@@ -58,4 +58,4 @@ inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, co
 /// @throws InputError unless each element has one value. @param what  Name of the values in the message.
 void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,4 +1,4 @@
-#include "interflect/denoise.h"
+#include "interflect/render.h"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,8 @@
 #include "interflect/base/parallel.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -312,4 +312,4 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
     return means;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/smooth_normals.h"
 #include "interflect/render/smooth_surfaces.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Vertices of a forest's elements. Elements that meet at a point of one smooth surface share a vertex, regardless of
 /// patch and level. Creases, material borders and the two sides of a face have separate vertices. The midpoint of an
@@ -63,4 +63,4 @@ class ElementVertices {
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> irradiance);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Receiver of irradiance: a small plane, or a surface with normals spread evenly over an arc, such as a cylinder. The
 /// irradiance is the mean over the normals.
@@ -22,4 +22,4 @@ struct Gauge {
     }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/geometry/texture_mapping.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -74,4 +74,4 @@ float KnownLight::density(const Place& place, const V3f& x, const V3f& n) const 
     return tree_.probability(place.patch, x, n) * (received_[place.leaf] / all) / forest_.area(place.leaf);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

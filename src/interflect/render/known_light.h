@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Light of a solution for final gathering, sampled like emitters: LightTree chooses a patch by reflected power, then
 /// an element below it is chosen by received power. Immutable, shared by all threads. Memory: 4 bytes per element, 132
@@ -53,4 +53,4 @@ class KnownLight {
     LightTree tree_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

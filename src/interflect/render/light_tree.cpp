@@ -10,7 +10,7 @@
 #include "interflect/elements/texture_means.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -281,4 +281,4 @@ float LightTree::probability(std::uint32_t index, const V3f& x, const V3f& n) co
     return probability;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

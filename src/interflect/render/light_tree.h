@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Samples lights by their estimated irradiance at a point (Conty and Kulla 2018). Each node of the binary tree stores
 /// power, bounding box and normal cone of its lights. The probability of a child is proportional to power x cosines /
@@ -81,4 +81,4 @@ std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const P
 /// largest texel, which keeps the power of every emitter positive.
 std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

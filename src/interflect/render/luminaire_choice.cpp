@@ -8,7 +8,7 @@
 
 #include "interflect/scene/web_angles.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -108,4 +108,4 @@ Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const LightSamp
     return chosen;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 #include "interflect/render/path_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Samples a luminaire by its unoccluded irradiance at a point. A LightTree proposes candidates; their exact irradiance
 /// decides (resampled importance sampling, Talbot et al. 2005). Parallel light is always a candidate. The cost is
@@ -28,4 +28,4 @@ class LuminaireChoice {
     LightTree tree_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,12 +8,14 @@
 #include <numbers>
 #include <optional>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/render/gauge.h"
 #include "interflect/render/path_picture.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -57,7 +59,7 @@ Gauge gauge_of(const MeasuringPoint& point, std::size_t index, const Imath::V3d&
 
 std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Solution* solution,
                                                    const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
-                                                   PathOptions options, const PathMonitor& monitor) {
+                                                   PathOptions options, const Monitor& monitor) {
     if (points.empty()) return {};
     if (points.size() > std::numeric_limits<int>::max())
         throw InputError(

@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/render/camera_samples.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -36,7 +36,7 @@ void require_valid(const OutlineOptions& options) {
 
 Image draw_outlines(const Image& picture, const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                     const View& view, int samples, std::uint64_t seed, const OutlineOptions& options,
-                    const PictureMonitor& monitor) {
+                    const Monitor& monitor) {
     ray_caster.require_made_for(scene);
     forest.require_made_for(scene);
     require_valid(options);
@@ -54,4 +54,4 @@ Image draw_outlines(const Image& picture, const Scene& scene, const ElementFores
     return outlined;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,7 +6,7 @@
 #include "interflect/render/camera_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct OutlineOptions {
     float width = 1;             ///< [pixels], > 0; slanted lines are up to 1.4 times as wide.
@@ -22,6 +22,6 @@ struct OutlineOptions {
 /// @throws InputError as render() does, and for options out of range.
 Image draw_outlines(const Image& picture, const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                     const View& view, int samples, std::uint64_t seed, const OutlineOptions& options = {},
-                    const PictureMonitor& monitor = {});
+                    const Monitor& monitor = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

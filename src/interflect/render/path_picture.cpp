@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "interflect/base/parallel.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/luminaire_choice.h"
 #include "interflect/render/pixel_statistics.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -42,7 +42,7 @@ std::vector<PatchGeometry> geometry_of(const Scene& scene) {
 /// Picture in progress: statistics and missing batches of its pixels.
 class PathPicture {
   public:
-    PathPicture(const PathScene& scene, const PathOptions& options, const PathMonitor& monitor)
+    PathPicture(const PathScene& scene, const PathOptions& options, const Monitor& monitor)
         : s_(scene),
           options_(options),
           monitor_(monitor),
@@ -191,7 +191,7 @@ class PathPicture {
 
     const PathScene& s_;
     const PathOptions& options_;
-    const PathMonitor& monitor_;
+    const Monitor& monitor_;
     std::vector<PixelStatistics> pixels_;
     double foreseen_ = 0;  // expected total of batches
     std::int64_t batches_done_ = 0;
@@ -218,7 +218,7 @@ std::size_t batch_size_for(int samples) {
 }  // namespace
 
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                          const PathOptions& options, const PathMonitor& monitor, const KnownIrradiance* known) {
+                          const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
     const std::vector<PatchGeometry> geometry = geometry_of(scene);
@@ -259,4 +259,4 @@ PathStart start_at_camera(const View& view, const PathOptions& options, const Im
     return {camera, 2 * std::tan(view.fov / 2 * degree) / static_cast<float>(options.height)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,10 +4,10 @@
 #include <span>
 
 #include "interflect/elements/forest.h"
-#include "interflect/path_tracer.h"
+#include "interflect/render.h"
 #include "interflect/render/path_wavefront.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Irradiance of every element, with which final gathering ends its paths.
 struct KnownIrradiance {
@@ -25,9 +25,9 @@ inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 
 /// @param start  Starts of options.width x options.height pixels.
 /// @param known  Null: paths end by Russian roulette.
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                          const PathOptions& options, const PathMonitor& monitor, const KnownIrradiance* known);
+                          const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known);
 
 /// Starts paths through the pixels of a view. @throws InputError as Camera() does.
 PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include "interflect/base/random.h"
 #include "interflect/geometry/tangent_frame.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -62,4 +62,4 @@ float light_density(const PatchGeometry& lamp, float probability, const V3f& dir
     return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

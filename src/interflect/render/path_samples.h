@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Samples a direction with density cosine / pi around n by Malley's method; a, b uniform in (0, 1).
 V3f cosine_direction(const V3f& n, float a, float b);
@@ -51,4 +51,4 @@ float light_density(const PatchGeometry& lamp, float probability, const V3f& dir
 /// Balance heuristic: the weight of a sample of density p if another technique has density q.
 inline float balance(float p, float q) { return p / (p + q); }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,11 +1,13 @@
-#include "interflect/path_tracer.h"
+#include "interflect/render.h"
 
 #include "interflect/render/path_picture.h"
 
 namespace interflect {
 
+using namespace detail;
+
 PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const View& view, const PathOptions& options,
-                        const PathMonitor& monitor) {
+                        const Monitor& monitor) {
     return trace_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor, nullptr);
 }
 

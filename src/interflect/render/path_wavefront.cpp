@@ -10,7 +10,7 @@
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -361,4 +361,4 @@ void PathWavefront::trace_shadow_rays() {
     }
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/skies.h"
-#include "interflect/path_tracer.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/raycast/panes.h"
+#include "interflect/render.h"
 #include "interflect/render/gauge.h"
 #include "interflect/render/known_light.h"
 #include "interflect/render/light_tree.h"
@@ -20,7 +20,7 @@
 #include "interflect/render/path_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Starts of paths, one per pixel: in the squares of a picture, or at gauges.
 struct PathStart {
@@ -159,4 +159,4 @@ class PathWavefront {
     RayCounts counts_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, c
     return variance;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

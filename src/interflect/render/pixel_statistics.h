@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/colour.h"
-#include "interflect/path_tracer.h"
+#include "interflect/core.h"
+#include "interflect/render.h"
 #include "interflect/render/path_wavefront.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 
@@ -67,4 +67,4 @@ double relative_error(const std::vector<PixelStatistics>& pixels);
 /// Returns the total batches that each pixel needs for options.until, from the variance around it.
 std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

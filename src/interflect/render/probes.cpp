@@ -1,4 +1,4 @@
-#include "interflect/probes.h"
+#include "interflect/measure.h"
 
 #include <ImathBox.h>
 #include <ImathMatrix.h>
@@ -12,8 +12,8 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 #include "interflect/luminaires/skies.h"
@@ -23,6 +23,8 @@
 #include "interflect/render/sphere_quadrature.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -212,7 +214,7 @@ Rgb IrradianceProbe::irradiance(const V3f& normal) const {
 }
 
 ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                            const ProbeOptions& options, const PathMonitor& monitor) {
+                            const ProbeOptions& options, const Monitor& monitor) {
     solution.forest->require_made_for(scene);
     ray_caster.require_made_for(scene);
     ProbeGrid grid = empty_grid(scene, options);

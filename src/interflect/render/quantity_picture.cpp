@@ -7,7 +7,7 @@
 #include "interflect/raycast/camera.h"
 #include "interflect/render/camera_samples.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -41,7 +41,7 @@ ColourScale scale_of(const std::vector<Seen>& pixels, Spacing spacing) {
 
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                                 const View& view, const Quantity& quantity, const CameraSampling& sampling,
-                                const PictureMonitor& monitor) {
+                                const Monitor& monitor) {
     ray_caster.require_made_for(scene);
     forest.require_made_for(scene);
     require_values_of_elements(forest, quantity.values.size(), quantity.name.c_str());
@@ -65,4 +65,4 @@ QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest,
     return result;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

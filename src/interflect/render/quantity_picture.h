@@ -10,7 +10,7 @@
 #include "interflect/render/camera_samples.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Number per element, and how to display it.
 struct Quantity {
@@ -37,6 +37,6 @@ struct QuantityPicture {
 /// @throws InputError as render() does.
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                                 const View& view, const Quantity& quantity, const CameraSampling& sampling,
-                                const PictureMonitor& monitor = {});
+                                const Monitor& monitor = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,4 +1,4 @@
-#include "interflect/render.h"
+#include "interflect/render/render_elements.h"
 
 #include <atomic>
 #include <numbers>
@@ -14,6 +14,8 @@
 #include "interflect/render/smooth_field.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -61,8 +63,8 @@ class Shader {
 
 }  // namespace
 
-Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
-                 std::span<const Rgb> irradiance, const RenderOptions& options, const PictureMonitor& monitor) {
+Rendering detail::render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                         std::span<const Rgb> irradiance, const RenderOptions& options, const Monitor& monitor) {
     ray_caster.require_made_for(scene);
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
@@ -100,8 +102,8 @@ Rendering render(const Scene& scene, const ElementForest& forest, const RayCaste
 }
 
 Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                 const RenderOptions& options, const PictureMonitor& monitor) {
-    return render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
+                 const RenderOptions& options, const Monitor& monitor) {
+    return detail::render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
 }
 
 }  // namespace interflect

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/error.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 SmoothField::SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values)
     : forest_(forest), vertices_(vertices) {
@@ -25,4 +25,4 @@ Rgb SmoothField::at(std::uint32_t patch, Parameters p) const {
     return (corner(0) * (1 - s) + corner(1) * s) * (1 - t) + (corner(3) * (1 - s) + corner(2) * s) * t;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/element_vertices.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Quantity of elements, such as irradiance, as a continuous function on each smooth surface: linear on triangles,
 /// bilinear on quadrilaterals, without cracks between levels. An undivided patch without smooth neighbours is constant.
@@ -28,4 +28,4 @@ class SmoothField {
     std::vector<Rgb> value_;  // per vertex
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -152,4 +152,4 @@ V3f SmoothNormals::at(const ElementForest& forest, std::uint32_t patch, Paramete
     return curved->normal_at(forest.geometry(patch).is_triangle(), p).normalized();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/smooth_surfaces.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Shading of the curved surfaces that flat patches approximate, by the normals of the scene's file (Scene::normals).
 /// The solver finds irradiance for the normal of each patch; on the curved surface it varies within the patch with the
@@ -62,4 +62,4 @@ class SmoothNormals {
     std::vector<Neighbour> neighbours_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -20,7 +20,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -407,4 +407,4 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     return {number_groups(scene, joined_corners), number_groups(scene, joined_edges), std::move(seams)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include "interflect/render.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Corners and edges that patches share on smooth surfaces.
 struct SmoothSurfaces {
@@ -41,4 +41,4 @@ std::vector<V3f> patch_normals(const Scene& scene);
 /// inside another patch's edge. Time O(n log n) for n patches.
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options = {});
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

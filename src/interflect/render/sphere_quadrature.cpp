@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -43,4 +43,4 @@ std::vector<SphereNode> sphere_quadrature(int rows) {
     return nodes;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 struct SphereNode {
     V3f direction;
@@ -15,4 +15,4 @@ struct SphereNode {
 /// azimuths. Exact for spherical harmonics below degree 2 rows.
 std::vector<SphereNode> sphere_quadrature(int rows);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -86,4 +86,4 @@ Imath::Box3f core_bounds(const Scene& scene) {
     return bounds;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -8,7 +8,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Bounding box of a face.
 struct FaceExtent {
@@ -49,4 +49,4 @@ Imath::V3d origin_for(const Core& core);
 /// the middle than 64 times the reach. O(patches).
 Imath::Box3f core_bounds(const Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 std::vector<std::shared_ptr<const Texture>> environment_maps(const Scene& scene) {
     std::vector<std::shared_ptr<const Texture>> images;
@@ -28,4 +28,4 @@ std::string sky_count_fault(const Scene& scene) {
     return {};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,9 +5,9 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -49,4 +49,4 @@ void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char*
                          "', or the scene has changed since");
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

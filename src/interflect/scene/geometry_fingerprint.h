@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// 64-bit hash of a scene's origin, the corners of its patches, and which patches are sides of one face. Two scenes
 /// collide with probability 2^-64. Independent of materials, names, views and the number of threads. Cost: one pass
@@ -16,4 +16,4 @@ std::uint64_t geometry_fingerprint(const Scene& scene);
 /// @throws InputError if `scene` has another fingerprint.
 void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char* what);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

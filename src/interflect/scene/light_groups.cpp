@@ -1,4 +1,4 @@
-#include "interflect/light_groups.h"
+#include "interflect/scene.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "interflect/error.h"
-#include "interflect/scene.h"
+#include "interflect/core.h"
 
 namespace interflect {
 

@@ -9,7 +9,7 @@
 
 #include "interflect/scene/patch_area.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -93,4 +93,4 @@ float brightest_source(const Scene& scene) {
     return strongest;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

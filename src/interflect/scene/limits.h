@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 // Single precision ends at 3 * 10^38 and loses digits below 10^-38. Variances scale with the square of an element's
 // irradiance and the inverse square of its area. Real scenes are far from these limits.
@@ -59,4 +59,4 @@ Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, 
 /// @param scene  With valid texture indices.
 float brightest_source(const Scene& scene);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

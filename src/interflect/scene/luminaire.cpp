@@ -1,4 +1,4 @@
-#include "interflect/luminaire.h"
+#include "interflect/light_sources.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,8 @@
 #include "interflect/scene/limits.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

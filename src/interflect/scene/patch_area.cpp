@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 float patch_area(const Scene& scene, const Patch& patch) {
     std::array<V3f, 4> corners;
@@ -11,4 +11,4 @@ float patch_area(const Scene& scene, const Patch& patch) {
     return (0.5f * doubled_area_vector<float>({corners.data(), count})).length();
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Twice the area [m^2] times the unit normal of a triangle or a convex, (nearly) planar quadrilateral.
 /// @param corners  3 or 4, counter-clockwise seen against the normal.
@@ -19,4 +19,4 @@ Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {
 /// [m^2]
 float patch_area(const Scene& scene, const Patch& patch);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

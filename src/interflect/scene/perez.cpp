@@ -9,11 +9,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
+#include "interflect/light_sources.h"
 #include "interflect/scene/web_angles.h"
-#include "interflect/sky.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

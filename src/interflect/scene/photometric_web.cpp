@@ -1,4 +1,4 @@
-#include "interflect/photometric_web.h"
+#include "interflect/light_sources.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,8 @@
 #include "interflect/scene/web_angles.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 double warp(const Scene& scene, const std::array<std::uint32_t, 4>& vertices) {
     using Imath::V3d;
@@ -19,4 +19,4 @@ bool is_planar(const Scene& scene, const std::array<std::uint32_t, 4>& vertices)
     return warp(scene, vertices) <= relative_planarity * static_cast<double>(largest);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

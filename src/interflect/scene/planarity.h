@@ -5,7 +5,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Largest warp of a planar quadrilateral, relative to its largest coordinate: 16 steps of a float. Exceeds the
 /// rounding of a transform; a quarter of the ray offset (RayCaster::ray_offset).
@@ -19,4 +19,4 @@ double warp(const Scene& scene, const std::array<std::uint32_t, 4>& vertices);
 /// triangles.
 bool is_planar(const Scene& scene, const std::array<std::uint32_t, 4>& vertices);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/scene/environment_maps.h"
 #include "interflect/scene/limits.h"
 #include "interflect/scene/view.h"
 
 namespace interflect {
+
+using namespace detail;
 
 namespace {
 

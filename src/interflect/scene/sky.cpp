@@ -1,4 +1,4 @@
-#include "interflect/sky.h"
+#include "interflect/light_sources.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
 namespace interflect {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -37,4 +37,4 @@ SkyPlace SkyFrame::place(const V3f& direction) const {
     return {0.5f + azimuth / radians_of_turn, direction.dot(zenith)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

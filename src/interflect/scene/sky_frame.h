@@ -1,8 +1,8 @@
 #pragma once
 
-#include "interflect/colour.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// A direction as a position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of
 /// the angle from the zenith.
@@ -20,4 +20,4 @@ struct SkyFrame {
     SkyPlace place(const V3f& direction) const;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

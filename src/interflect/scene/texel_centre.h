@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-#include "interflect/texture.h"
+#include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Texture coordinates of the centre of a texel. @param i  Index into Texture::texels.
 inline V2f texel_centre(const Texture& texture, std::size_t i) {
@@ -13,4 +13,4 @@ inline V2f texel_centre(const Texture& texture, std::size_t i) {
             1 - (static_cast<float>(row) + 0.5f) / static_cast<float>(texture.height)};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

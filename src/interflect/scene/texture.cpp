@@ -1,4 +1,4 @@
-#include "interflect/texture.h"
+#include "interflect/scene.h"
 
 #include <fmt/format.h>
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 #include "interflect/scene/core.h"
 #include "interflect/scene/limits.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -95,4 +95,4 @@ View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& dir
     return view;
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Fault of a view, in words without its name; empty if valid. Eye, look-at and up must be finite. Eye and look-at must
 /// be within farthest_coordinate (limits.h) and far enough apart to define a direction. `up` must be non-zero and not
@@ -24,4 +24,4 @@ View overview(const Scene& scene);
 /// @param aspect     Width over height of the picture.
 View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

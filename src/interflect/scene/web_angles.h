@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/photometric_web.h"
+#include "interflect/light_sources.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 inline constexpr double full_turn = 360, half_turn = 180;  // [degrees]
 inline constexpr float right_angle = 90;                   // [degrees]
@@ -33,4 +33,4 @@ struct BandWeights {
     }
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

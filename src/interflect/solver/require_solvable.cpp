@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "interflect/error.h"
+#include "interflect/core.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 void require_solvable(const Scene& scene, const SolveOptions& o) {
     std::vector<std::string> faults = scene_faults(scene);
@@ -54,4 +54,4 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require_sources_of_groups(scene);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,9 +2,9 @@
 
 #include "interflect/solve.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// @throws InputError listing all options out of range and all faults of the scene.
 void require_solvable(const Scene& scene, const SolveOptions& options);
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

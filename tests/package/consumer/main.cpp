@@ -35,7 +35,7 @@ void dim_a_lamp() {
     scene.light_groups = {{"walls", "glow"}, {"lamps", "lamp*"}};
     interflect::Solver solver(scene, {.limits = {.rays = 200'000}});
     solver.advance({.rays = 100'000});
-    solver.set_exitance("lamps", 0);
+    solver.set_dimming("lamps", 0);
     solver.save("dimmed.h5");
     solver = interflect::Solver::open("dimmed.h5");
     solver.advance({});

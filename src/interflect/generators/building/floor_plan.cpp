@@ -6,7 +6,7 @@
 
 #include "interflect/generators/building/random_sequence.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -108,4 +108,4 @@ FloorPlan make_floor_plan(const PlanOptions& options) {
     return plan;
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -6,7 +6,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 struct Interval {
     float low = 0, high = 0;  ///< [m]
@@ -60,4 +60,4 @@ struct PlanOptions {
 /// rooms.
 FloorPlan make_floor_plan(const PlanOptions& options);
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

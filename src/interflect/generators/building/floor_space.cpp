@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -93,4 +93,4 @@ std::optional<Placement> FloorSpace::in_the_open(const Furniture& piece, RandomS
     return std::nullopt;
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -10,7 +10,7 @@
 #include "interflect/generators/building/random_sequence.h"
 #include "interflect/generators/building/solids.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// Free floor area of a room, for placing furniture.
 class FloorSpace {
@@ -32,4 +32,4 @@ class FloorSpace {
     std::vector<Imath::Box2f> taken_;
 };
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 std::uint32_t Furnisher::add_object(std::string_view name) {
     scene_.objects.push_back(fmt::format("room-{}.{}-{}", room_, name, count_++));
@@ -26,4 +26,4 @@ void Furnisher::add_luminaires(const Room& room, float ceiling_height, float pit
         }
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -8,7 +8,7 @@
 #include "interflect/generators/building/palette.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// Adds furniture to one room as separate objects, "room-0.desk-1" and so on.
 class Furnisher {
@@ -30,4 +30,4 @@ class Furnisher {
     std::uint32_t count_ = 0;
 };
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -251,4 +251,4 @@ void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence&
                random.pick(std::span(palette.lamps)));
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

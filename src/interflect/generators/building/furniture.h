@@ -6,7 +6,7 @@
 #include "interflect/generators/building/random_sequence.h"
 #include "interflect/generators/building/solids.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// A kind of furniture with its accessories. In local coordinates x points right, y to the front and z up; (0, 0, 0) is
 /// the middle of its back, on the floor. All parts are at least `gap` inside |x| < width / 2, 0 < y < depth, and `gap`
@@ -32,4 +32,4 @@ extern const Furniture waste_bin;
 /// the middle of its place on the ceiling.
 void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random);
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -84,4 +84,4 @@ Finish draw_finish(const Palette& palette, RandomSequence& random) {
     return finish;
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

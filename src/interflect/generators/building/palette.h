@@ -7,7 +7,7 @@
 #include "interflect/generators/building/shell.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// Materials of rooms and furniture, as indices into Scene::materials. Lists offer a choice.
 struct Palette {
@@ -23,4 +23,4 @@ Palette add_palette(Scene& scene);
 /// Draws the finish of one room from the palette.
 Finish draw_finish(const Palette& palette, RandomSequence& random);
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -6,7 +6,7 @@
 
 #include "interflect/base/random.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// A sequence of random choices that depends on the key alone.
 class RandomSequence {
@@ -36,4 +36,4 @@ class RandomSequence {
     std::size_t used_ = 4;
 };
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

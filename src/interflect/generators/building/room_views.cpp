@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -84,4 +84,4 @@ View bird_view(const FloorPlan& plan) {
     return {"overview", to_micrometres(look_at + from), to_micrometres(look_at), V3f(0, 0, 1), bird_fov};
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -5,7 +5,7 @@
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// A view from a corner of a room, and the floor to keep free around the camera.
 struct LookOut {
@@ -23,4 +23,4 @@ View bird_view(const FloorPlan& plan);
 /// Maximum number of rooms with a view, "room-0" and so on.
 inline constexpr std::uint32_t most_room_views = 64;
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

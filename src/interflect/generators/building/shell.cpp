@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -139,4 +139,4 @@ void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> fini
     }
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

@@ -5,7 +5,7 @@
 #include "interflect/generators/building/floor_plan.h"
 #include "interflect/scene.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 struct Finish {
     std::uint32_t wall = 0, floor = 0, ceiling = 0;
@@ -18,4 +18,4 @@ struct Finish {
 /// @param finishes  One for each room.
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

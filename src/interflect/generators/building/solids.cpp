@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 namespace {
 
@@ -61,4 +61,4 @@ void Solids::tapered_box(const V3f& low, const V3f& high, float top_scale, std::
                                    .object = object_});
 }
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

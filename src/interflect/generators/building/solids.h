@@ -4,7 +4,7 @@
 
 #include "interflect/scene.h"
 
-namespace interflect::inline detail::building {
+namespace interflect::detail::building {
 
 /// Distance between solids, and between solids and walls [m]; prevents coincident faces. Exceeds
 /// RayCaster::ray_offset() in the largest generated scenes (2.5 mm at 330 m from the origin), so rays from an underside
@@ -54,4 +54,4 @@ class Solids {
     std::uint32_t object_;
 };
 
-}  // namespace interflect::inline detail::building
+}  // namespace interflect::detail::building

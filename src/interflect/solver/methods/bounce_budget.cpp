@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 namespace {
 
@@ -47,4 +47,4 @@ BounceRays BounceBudget::next(double unshot) {
     return {started, expected};
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Rays of one bounce of a pass.
 struct BounceRays {
@@ -33,4 +33,4 @@ class BounceBudget {
     bool is_last_ = false;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

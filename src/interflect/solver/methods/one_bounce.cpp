@@ -4,50 +4,71 @@
 #include <utility>
 
 #include "interflect/elements/forest.h"
-#include "interflect/solver/detail.h"
-#include "interflect/solver/merge.h"
-#include "interflect/solver/radiosity.h"
-#include "interflect/solver/transport_steps.h"
+#include "interflect/solver/error/noise_update.h"
+#include "interflect/solver/iteration/merge.h"
+#include "interflect/solver/iteration/run_step.h"
+#include "interflect/solver/refinement/oracle_threshold.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
-RgbD OneBounce::iterate(SolverState& state, IterationPlan& plan) {
-    Solution& solution = state.solution;
-    const bool with_importance = importance_use(solution) == ImportanceUse::full;
-    const bool combined = with_importance && !state.options.experimental.separate_iterations;
-    const std::int64_t for_importance =
-        with_importance ? std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays)) : 0;
-    const std::uint32_t elements_before = state.forest->size();
-    if (with_importance && !combined && for_importance > 0) {
-        const Received received =
-            run_step(state, importance_step(state.materials, solution, importance_of(solution), for_importance));
-        merge(state, solution.indirect_importance, received.importance, plan);
-    }
-    const std::int64_t rays = combined ? plan.rays : plan.rays - for_importance;
-    if (rays > 0) {
-        const Radiosity light(state.materials, solution.irradiance);
-        const ImportanceWeights weights =
-            importance_weights(solution, state.neighbourhoods, state.emission, state.part_importance);
-        auto [step, power, weighted_power, lost_leaves] =
-            power_step(state.materials, state.emission, solution, light, weights, combined, rays);
-        step.groups = group_radiosity(state, solution.groups);
-        const bool deferred = state.options.experimental.defer_refinement && plan.warms_up;
-        if (state.options.method.refines && !deferred)
-            step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
-        Received received = run_step(state, std::move(step));
-        solution.non_finite += lost_leaves;
-        const FreshEstimate fresh{std::move(received.irradiance), std::move(received.variance),
-                                  std::move(received.groups)};
-        if (!plan.warms_up) estimate_noise(state, fresh, rays);
-        merge(state, solution.irradiance, fresh.irradiance, plan);
-        merge(state, solution.groups, fresh.groups, plan);
-        if (combined) merge(state, solution.indirect_importance, received.importance, plan);
-        merge_escaped_power(state, received.escaped_power, plan);
-    }
-    state.importance_rays += for_importance;
-    state.power_rays += plan.rays - for_importance;
-    update_history(state, plan, elements_before);
-    return state.escaped_power;
+namespace {
+
+/// Returns the number of rays that carry importance, or that part of combined rays.
+std::int64_t share_of_importance(const SolverState& state, std::int64_t rays) {
+    if (importance_use(state.solution) != ImportanceUse::full) return 0;
+    return std::llround(state.options.experimental.alpha * static_cast<double>(rays));
 }
 
-}  // namespace interflect::inline detail
+}  // namespace
+
+void OneBounce::update_importance(SolverState& state, IterationPlan& plan) {
+    if (!state.options.experimental.separate_iterations) return;
+    Solution& solution = state.solution;
+    plan.importance_rays = share_of_importance(state, plan.rays);
+    if (plan.importance_rays == 0) return;
+    const Received received = run_step(
+        state,
+        TransportStep(plan_importance(state.materials, solution, importance_of(solution), plan.importance_rays)));
+    detail::merge(state, solution.indirect_importance, received.importance, plan);
+}
+
+Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
+    const std::int64_t rays = plan.rays - plan.importance_rays;
+    if (rays == 0) return {};
+    const Solution& solution = state.solution;
+    const bool combined =
+        importance_use(solution) == ImportanceUse::full && !state.options.experimental.separate_iterations;
+    const Radiosity light(state.materials, solution.irradiance);
+    const ImportanceWeights weights =
+        importance_weights(solution, state.neighbourhoods, state.emission, state.part_importance);
+    PowerPlan power = plan_power(state.materials, state.emission, solution, light, weights, combined, rays);
+    TransportStep step(std::move(power.rays));
+    step.groups = group_radiosity(state, solution.groups);
+    const bool is_deferred = state.options.experimental.defer_refinement && plan.warms_up;
+    if (state.options.method.refines && !is_deferred)
+        step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
+    Received received = run_step(state, std::move(step));
+    state.solution.non_finite += power.lost_leaves;
+    return {.irradiance = std::move(received.irradiance),
+            .variance = std::move(received.variance),
+            .groups = std::move(received.groups),
+            .importance = std::move(received.importance),
+            .escaped_power = received.escaped_power};
+}
+
+void OneBounce::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+    Solution& solution = state.solution;
+    if (!estimate.irradiance.empty()) {
+        if (!plan.warms_up) estimate_noise(state, estimate, plan.rays - plan.importance_rays);
+        detail::merge(state, solution.irradiance, estimate.irradiance, plan);
+        detail::merge(state, solution.groups, estimate.groups, plan);
+        if (!estimate.importance.empty()) detail::merge(state, solution.indirect_importance, estimate.importance, plan);
+        merge_escaped_power(state, estimate.escaped_power, plan);
+    }
+    const std::int64_t for_importance = share_of_importance(state, plan.rays);
+    state.importance_rays += for_importance;
+    state.power_rays += plan.rays - for_importance;
+    update_history(state, plan);
+}
+
+}  // namespace interflect::detail

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
-#include <vector>
 
-#include "interflect/solver/iteration_method.h"
-#include "interflect/solver/state_archive.h"
-#include "interflect/solver/transport_steps.h"
+#include "interflect/solver/iteration/iteration_method.h"
+#include "interflect/solver/iteration/run_step.h"
+#include "interflect/solver/methods/view_change.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Iterations that are passes. A pass shoots the emitted power, then the received power, bounce by bounce, until little
 /// is left ('incremental shooting', Neumann et al. 1995). Rays are distributed over the bounces in proportion to unshot
@@ -18,10 +18,15 @@ class Passes : public IterationMethod {
     /// Estimates importance and, in methods that refine, makes an initial mesh by Eq. 14 and 15 in two small passes.
     /// The light of the second is the estimate until the first pass is merged; the mean does not include it.
     void prepare(SolverState& state) override;
-    /// Traces a pass, merges it with the mean of earlier passes (Eq. 6), and refines the mesh.
-    RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    void update_importance(SolverState& state, IterationPlan& plan) override;
+    /// Traces a pass.
+    Estimate trace(SolverState& state, IterationPlan& plan) override;
+    /// Merges a pass with the mean of earlier ones (Eq. 6).
+    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    /// Refines the mesh by variance.
+    void refine(SolverState& state) override;
     /// Keeps the averaged light. The next iteration adapts its history to the new views.
-    void retarget(SolverState& state) override;
+    void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
@@ -30,18 +35,17 @@ class Passes : public IterationMethod {
 
   protected:
     /// Traces the rays of one bounce. @throws Interrupted
-    virtual Received trace(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
+    virtual Received trace_step(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
 
   private:
     struct Pass;
+    Estimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
     bool trace_bounce(SolverState& state, Pass& pass);
-    Pass trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
-    std::vector<float> adapt_to_views(SolverState& state) const;
 
     /// Unshot power, summed over the bounces of the last pass, relative to its first bounce; 0: unknown.
     double bounces_ = 0;
-    bool finds_importance_ = false;              // before the next iteration, after a change of views
-    std::vector<float> old_q_, old_importance_;  // sampling and patch importance before that change
+    bool finds_importance_ = false;  // before the next iteration, after a change of views
+    ViewChange view_change_;
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,16 +1,30 @@
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 
-#include "interflect/solve.h"
-
-namespace interflect::inline detail {
-
-// Each is defined in the file of its method.
-MakeIterationMethod make_ray_radiosity, make_well_distributed_rays, make_random_walks, make_linked_elements,
-    make_global_lines, make_progressive_refinement;
-
-}  // namespace interflect::inline detail
+#include "interflect/core.h"
+#include "interflect/solve_options.h"
+#include "interflect/solver/iteration/iteration_method.h"
 
 namespace interflect {
+
+namespace detail {
+
+// Each is defined in the file of its method.
+std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state);
+std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state);
+std::unique_ptr<IterationMethod> make_random_walks(SolverState& state);
+std::unique_ptr<IterationMethod> make_linked_elements(SolverState& state);
+std::unique_ptr<IterationMethod> make_global_lines(SolverState& state);
+std::unique_ptr<IterationMethod> make_progressive_refinement(SolverState& state);
+
+}  // namespace detail
 
 namespace {
 
@@ -18,63 +32,104 @@ constexpr const char* equal_power = "it keeps every ray, which needs rays of equ
 constexpr const char* uniform_lines = "its lines are spread evenly, whatever they meet";
 
 constexpr std::array method_table = {
-    Method{.name = "srr",
-           .source = "Neumann et al. 1995",
-           .make = make_ray_radiosity,
-           .separates_groups = true,
-           .follows_dimming = true},
+    Method{.name = "srr", .source = "Neumann et al. 1995", .separates_groups = true, .follows_dimming = true},
     Method{.name = "isrr",
            .source = "Neumann et al. 1996",
-           .make = make_ray_radiosity,
            .importance = ImportanceUse::full,
            .separates_groups = true,
            .follows_dimming = true},
     Method{.name = "wdrs",
            .source = "Neumann, Neumann and Bekaert 1997",
-           .make = make_well_distributed_rays,
            .no_importance = equal_power,
            .separates_groups = true},
     Method{.name = "hwdrs",
            .source = "Bekaert et al. 1998",
-           .make = make_well_distributed_rays,
            .refines = true,
            .no_importance = equal_power,
            .separates_groups = true},
     Method{.name = "hsrr",
            .source = "srr on the hierarchy of Bekaert et al. 1998",
-           .make = make_ray_radiosity,
            .refines = true,
            .follows_variance = true,
            .separates_groups = true,
            .follows_dimming = true},
     Method{.name = "ihsrr",
            .source = "Prikryl et al. 2000",
-           .make = make_ray_radiosity,
            .refines = true,
            .follows_variance = true,
            .importance = ImportanceUse::full,
            .separates_groups = true,
            .follows_dimming = true},
-    Method{.name = "random-walk", .source = "Pattanaik and Mudur 1992, 1995", .make = make_random_walks},
+    Method{.name = "random-walk", .source = "Pattanaik and Mudur 1992, 1995"},
     Method{.name = "hr",
            .source = "Hanrahan et al. 1991, Smits et al. 1992",
-           .make = make_linked_elements,
            .refines = true,
            .is_stochastic = false,
            .takes_luminaires = false},
     Method{.name = "global-lines",
            .source = "Sbert 1993, 1997",
-           .make = make_global_lines,
            .no_importance = uniform_lines,
            .takes_luminaires = false},
-    Method{.name = "pr",
-           .source = "Cohen et al. 1988, Bekaert and Willems 1994, 1995",
-           .make = make_progressive_refinement,
-           .importance = ImportanceUse::full},
+    Method{
+        .name = "pr", .source = "Cohen et al. 1988, Bekaert and Willems 1994, 1995", .importance = ImportanceUse::full},
 };
 
 }  // namespace
 
 constinit const std::span<const Method> methods = method_table;
+
+const Method& find_method(const std::string& name) {
+    std::string known;
+    for (const Method& method : methods) {
+        if (name == method.name) return method;
+        known += (known.empty() ? "" : ", ") + std::string(method.name);
+    }
+    throw InputError("there is no method '" + name + "'; there are: " + known);
+}
+
+const Method& default_method(bool has_views) { return find_method(has_views ? "ihsrr" : "hsrr"); }
+
+void use_published_algorithm(SolveOptions& options) {
+    options.refinement.criterion = RefinementCriterion::power;
+    options.importance.smoothing = 0;
+    options.importance.exponent = 1;
+    ExperimentalOptions& o = options.experimental;
+    o.one_bounce = true;
+    o.warm_up = 10;
+    o.iterations = 100;
+    const bool is_finite = options.limits.rays < std::numeric_limits<std::int64_t>::max();
+    o.rays_per_iteration = is_finite ? std::max<std::int64_t>(1, options.limits.rays / (o.warm_up + o.iterations)) : 0;
+    o.shrinkage = false;
+    o.epsilon_decay = 0;
+    o.inherited_weight = 1;
+}
+
+namespace detail {
+
+namespace {
+
+using Make = std::unique_ptr<IterationMethod>(SolverState& state);
+constexpr std::array<std::pair<std::string_view, Make*>, method_table.size()> makers = {{
+    {"srr", make_ray_radiosity},
+    {"isrr", make_ray_radiosity},
+    {"wdrs", make_well_distributed_rays},
+    {"hwdrs", make_well_distributed_rays},
+    {"hsrr", make_ray_radiosity},
+    {"ihsrr", make_ray_radiosity},
+    {"random-walk", make_random_walks},
+    {"hr", make_linked_elements},
+    {"global-lines", make_global_lines},
+    {"pr", make_progressive_refinement},
+}};
+
+}  // namespace
+
+std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state) {
+    const std::string_view name = find_method(state.options.method.name).name;
+    const auto found = std::find_if(makers.begin(), makers.end(), [&](const auto& m) { return m.first == name; });
+    return found->second(state);
+}
+
+}  // namespace detail
 
 }  // namespace interflect

@@ -4,44 +4,46 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/base/state_archive.h"
 #include "interflect/elements/forest.h"
-#include "interflect/solver/detail.h"
-#include "interflect/solver/state_archive.h"
-#include "interflect/solver/transport_steps.h"
+#include "interflect/solver/error/noise_update.h"
+#include "interflect/solver/iteration/run_step.h"
+#include "interflect/solver/refinement/oracle_threshold.h"
+#include "interflect/solver/sampling/ray_plan.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 WellDistributedRays::WellDistributedRays(const SolverState& state)
-    : shot_(state.forest->size(), 0.0), arrived_(state.forest->size(), Rgb(0)) {}
+    : shot_(state.forest->size(), 0.0), received_(state.forest->size(), Rgb(0)) {}
 
 void WellDistributedRays::prepare(SolverState& state) {
     if (!state.options.experimental.one_bounce) passes_.make_first_estimate(state);
     shot_.assign(state.forest->size(), 0.0);
     shot_by_parts_.assign(state.emission.part_count(), 0.0);
-    arrived_.assign(state.forest->size(), Rgb(0));
-    arrived_groups_.assign(state.groups.size(), arrived_);
+    received_.assign(state.forest->size(), Rgb(0));
+    received_groups_.assign(state.groups.size(), received_);
 }
 
 void WellDistributedRays::archive(StateArchive& archive) {
     passes_.archive(archive);
     archive("well_distributed/shot", shot_);
     archive("well_distributed/shot_by_parts", shot_by_parts_);
-    archive("well_distributed/arrived", arrived_);
-    archive_groups(archive, "well_distributed/groups", arrived_groups_);
+    archive("well_distributed/received", received_);
+    archive_groups(archive, "well_distributed/groups", received_groups_);
     archive("well_distributed/escaped", escaped_);
     archive("well_distributed/total", total_);
 }
 
-/// Sets the weights of the step to the rays that each source lacks of its share of `all` rays. A leaf may have shot
+/// Sets the weights of the plan to the rays that each source lacks of its share of `all` rays. A leaf may have shot
 /// more than its share, by chance or because of a poor early estimate. Other leaves of its patch then shoot less, so
 /// the patch keeps its share.
-/// @param step Its weights are the shares on entry.
-void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const {
+/// @param plan  Its weights are the shares on entry.
+void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
         double lacks = 0, lacking = 0;  // missing rays, with and without the surplus of other leaves
     };
     std::vector<Balance> patches(forest.patch_count());
-    const auto lacks = [&](std::uint32_t e) { return static_cast<double>(all) * step.q[e] - shot_[e]; };
+    const auto lacks = [&](std::uint32_t e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
         patches[forest.patch(e)].lacks += lacks(e);
@@ -51,71 +53,76 @@ void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::in
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         const Balance& patch = patches[forest.patch(e)];
         const bool shoots = forest.is_leaf(e) && patch.lacks > 0;
-        step.q[e] = shoots ? static_cast<float>(std::max(0.0, lacks(e)) * (patch.lacks / patch.lacking)) : 0.0f;
-        lacking += step.q[e];
+        plan.q[e] = shoots ? static_cast<float>(std::max(0.0, lacks(e)) * (patch.lacks / patch.lacking)) : 0.0f;
+        lacking += plan.q[e];
     }
-    for (std::size_t i = 0; i < step.part_count(); ++i) {
-        float& q = step.q[forest.size() + i];
+    for (std::size_t i = 0; i < plan.part_count(); ++i) {
+        float& q = plan.q[forest.size() + i];
         q = static_cast<float>(std::max(0.0, static_cast<double>(all) * q - shot_by_parts_[i]));
         lacking += q;
     }
-    step.rays = std::max<std::int64_t>(1, std::llround(lacking));
+    plan.rays = std::max<std::int64_t>(1, std::llround(lacking));
 }
 
-RgbD WellDistributedRays::iterate(SolverState& state, IterationPlan& plan) {
+Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
-    auto [step, power, weighted_power, lost_leaves] =
-        power_step(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
-    step.equal_quanta = true;
+    PowerPlan power = plan_power(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
+    TransportStep step(std::move(power.rays));
+    step.equal_payloads = true;
     step.groups = group_radiosity(state, state.solution.groups);
     // These methods have no importance: the weights are the leaves' shares of all power.
     const double all_power = channel_sum(radiated_power(state));
     keep_lacking_rays(forest, total_ + plan.rays, step);
-    const std::int64_t rays = step.rays;
+    const std::int64_t rays = plan.rays = plan.traced = step.rays;
     if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_ + rays, state.floor.unseen());
 
     std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
-    const std::uint32_t elements_before = forest.size();
-    used_before.resize(elements_before, 0);
+    used_before.resize(plan.old_elements, 0);
     const Received received = run_step(state, std::move(step));
     total_ += rays;
-    state.solution.non_finite += lost_leaves;
-    for (std::uint32_t e = 0; e < elements_before; ++e)
+    state.solution.non_finite += power.lost_leaves;
+    for (std::uint32_t e = 0; e < plan.old_elements; ++e)
         shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
     for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)
         shot_by_parts_[i] += static_cast<double>(state.streams.used_by_parts[i] - used_by_parts_before[i]);
-    shot_.resize(state.forest->size());
-    for (std::uint32_t e = elements_before; e < state.forest->size(); ++e)
-        shot_[e] = shot_[state.forest->parent(e)] * state.forest->area(e) / state.forest->area(state.forest->parent(e));
-    inherit(*state.forest, elements_before, arrived_);
-    inherit(*state.forest, elements_before, arrived_groups_);
-
-    const auto power_per_ray = static_cast<float>(all_power / static_cast<double>(total_));
-    const auto quantum = static_cast<float>(all_power / static_cast<double>(rays));
-    FreshEstimate fresh{std::vector<Rgb>(arrived_.size()), std::vector<float>(arrived_.size()), {}};
-    for (std::size_t e = 0; e < arrived_.size(); ++e) {
-        fresh.irradiance[e] = quantum * received.irradiance[e];
-        fresh.variance[e] = quantum * (quantum * received.variance[e]);  // the square may be out of range
-        arrived_[e] += received.irradiance[e];
+    shot_.resize(forest.size());
+    for (std::uint32_t e = plan.old_elements; e < forest.size(); ++e)
+        shot_[e] = shot_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e));
+    inherit(forest, plan.old_elements, received_);
+    inherit(forest, plan.old_elements, received_groups_);
+    const auto payload = static_cast<float>(all_power / static_cast<double>(rays));
+    Estimate estimate;
+    estimate.irradiance.resize(forest.size());
+    estimate.variance.resize(forest.size());
+    for (std::size_t e = 0; e < forest.size(); ++e) {
+        estimate.irradiance[e] = payload * received.irradiance[e];
+        estimate.variance[e] = payload * (payload * received.variance[e]);  // the square may be out of range
+        received_[e] += received.irradiance[e];
     }
-    pull(*state.forest, arrived_);
-    accumulate(arrived_groups_, received.groups);
-    pull(*state.forest, arrived_groups_);
-    estimate_noise(state, fresh, rays);
-    for (std::size_t e = 0; e < arrived_.size(); ++e) state.solution.irradiance[e] = power_per_ray * arrived_[e];
-    state.solution.groups = arrived_groups_;
-    scale(state.solution.groups, power_per_ray);
-    state.history.assign(state.forest->size(), static_cast<float>(total_));
-    state.power_rays += rays;
-    plan.rays = rays;
+    pull(forest, received_);
+    accumulate(received_groups_, received.groups);
+    pull(forest, received_groups_);
     escaped_ += received.escaped_power;
-    return escaped_ * (all_power / static_cast<double>(total_));
+    estimate.shot_power = all_power;
+    return estimate;
+}
+
+void WellDistributedRays::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+    const double power_per_ray = estimate.shot_power / static_cast<double>(total_);
+    estimate_noise(state, estimate, plan.rays);
+    for (std::size_t e = 0; e < received_.size(); ++e)
+        state.solution.irradiance[e] = static_cast<float>(power_per_ray) * received_[e];
+    state.solution.groups = received_groups_;
+    scale(state.solution.groups, static_cast<float>(power_per_ray));
+    state.history.assign(state.forest->size(), static_cast<float>(total_));
+    state.power_rays += plan.rays;
+    state.escaped_power = escaped_ * power_per_ray;
 }
 
 std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state) {
     return std::make_unique<WellDistributedRays>(state);
 }
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "interflect/base/state_archive.h"
 #include "interflect/elements/forest.h"
-#include "interflect/solver/iteration_method.h"
+#include "interflect/solver/iteration/iteration_method.h"
 #include "interflect/solver/methods/passes.h"
-#include "interflect/solver/state_archive.h"
 
-namespace interflect::inline detail {
+namespace interflect::detail {
 
 /// Iterations that keep every ray: all rays so far represent the current estimate as a well-distributed ray set
 /// (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot n_i = N P_i / sum P rays
@@ -22,28 +22,31 @@ class WellDistributedRays : public IterationMethod {
 
     /// Makes a first estimate by a complete pass, unless iterations are single bounces.
     void prepare(SolverState& state) override;
-    /// Increases N by plan.rays and computes the irradiance from all rays so far.
-    RgbD iterate(SolverState& state, IterationPlan& plan) override;
+    /// Increases N by plan.rays.
+    Estimate trace(SolverState& state, IterationPlan& plan) override;
+    /// Computes the irradiance from all rays so far.
+    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override {
         const std::size_t elements = state.forest->size(), parts = state.emission.part_count();
-        const bool is_whole = shot_.size() == elements && arrived_.size() == elements && shot_by_parts_.size() == parts;
+        const bool is_whole =
+            shot_.size() == elements && received_.size() == elements && shot_by_parts_.size() == parts;
         const auto has_elements = [&](const auto& numbers) { return numbers.size() == elements; };
-        const bool has_groups = arrived_groups_.size() == state.groups.size() &&
-                                std::all_of(arrived_groups_.begin(), arrived_groups_.end(), has_elements);
+        const bool has_groups = received_groups_.size() == state.groups.size() &&
+                                std::all_of(received_groups_.begin(), received_groups_.end(), has_elements);
         return passes_.fits(state) && (has_groups || total_ == 0) && (is_whole || total_ == 0);
     }
 
   private:
-    void keep_lacking_rays(const ElementForest& forest, std::int64_t all, TransportStep& step) const;
+    void keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
 
     Passes passes_;                      // used before the first iteration
     std::vector<double> shot_;           // rays shot by each leaf
     std::vector<double> shot_by_parts_;  // rays shot by each part of the luminaires
-    std::vector<Rgb> arrived_;           // received quanta per area of each element, per channel [1/m^2]
-    GroupLight arrived_groups_;          // shares of the light groups in arrived_
-    RgbD escaped_{0, 0, 0};              // quanta that escaped
+    std::vector<Rgb> received_;          // received payloads per area of each element, per channel [1/m^2]
+    GroupLight received_groups_;         // shares of the light groups in received_
+    RgbD escaped_{0, 0, 0};              // payloads that escaped
     std::int64_t total_ = 0;             // N: rays of all leaves
 };
 
-}  // namespace interflect::inline detail
+}  // namespace interflect::detail

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+
+namespace interflect {
+
+struct ContactOptions {
+    /// Distance of touching faces as a fraction of the smaller face's diameter; at least the rounding of vertices.
+    float touch_distance = 1e-4f;
+    /// Minimum extent of connected segments [m], >= 0; smaller ones are ignored. Faces smaller than its square stay
+    /// whole. Twice default_element_size(), the resolution of elements, is suitable.
+    float least_extent = 0;
+    /// Maximum ratio of length to width of quadrilateral pieces, >= 1. Longer pieces are divided across, unless
+    /// narrower than twice `least_extent` or 0.002 of the face's diameter.
+    float largest_aspect = 4;
+    /// Maximum number of pieces of one face, in (0, 2^31). A face that needs more is cut into fewer.
+    std::uint32_t most_pieces_per_face = 1u << 16;
+    /// Maximum number of patches of the resulting scene. Further faces stay whole.
+    std::uint64_t max_patches = 50'000'000;
+};
+
+/// Cuts faces along the segments in which other faces meet them. No element then extends to both sides of a wall or is
+/// partly covered. Segments are: an edge on the face (a wall or a leg on a floor); the intersection with a face that
+/// passes through it; and the outline of a coplanar face that hides a part of it (paper on a desk; of two, the face of
+/// the larger flat surface is cut, see flat_surfaces.h). Contacts behind a one-sided face, segments on the face's own
+/// border and faces within one degree of its plane are ignored.
+///
+/// Each face is cut by a binary space partition in its plane: the line of a segment cuts the whole convex piece that
+/// contains it. Pieces are triangles and convex quadrilaterals with the face's material, object, texture and lightmap
+/// coordinates; they cover the face exactly (to the rounding of vertices). Patch::surface identifies the original
+/// surface. T-vertices may result. Scene::contacts receives the parts of the cuts where other faces meet the face. A
+/// warped quadrilateral is cut as the two triangles of the ray caster.
+///
+/// Lengths below 4e-6 of the face's diameter, or below four roundings of its coordinates, are ignored. The result does
+/// not depend on the order of faces or the number of threads.
+///
+/// @throws InputError for a scene with faults (scene_faults).
+/// @return       The scene, with a warning for each limit of `options` reached. Patches keep their order, with pieces
+///               in place of their face. O(n log n + k) time for n faces and k pairs of touching faces.
+Scene cut_at_contacts(const Scene& scene, const ContactOptions& options = {});
+
+/// A problem of a scene that affects its light, or a note to consider before solving.
+struct Finding {
+    /// One occurrence; fields that do not apply are empty.
+    struct Place {
+        std::string object{}, material{};
+        std::string where{};           ///< "file:line".
+        Imath::V3d position{0, 0, 0};  ///< In world coordinates [m].
+        bool has_position = false;
+    };
+    std::string kind;           ///< Stable identifier, such as "duplicate-face".
+    bool is_problem = false;    ///< Whether it changes the light or is nearly certainly a mistake; otherwise a note.
+    std::string message;        ///< Description in one sentence.
+    std::string advice;         ///< Recommended action.
+    std::int64_t count = 0;     ///< Number of occurrences.
+    std::vector<Place> places;  ///< The first occurrences.
+};
+
+struct ValidateOptions {
+    std::size_t places = 3;         ///< Maximum number of places listed per kind.
+    float high_reflectance = 0.9f;  ///< Above paints, paper and snow; in (0, 1).
+};
+
+/// Finds problems that would spoil a solution. Call it with the scene as read, before cut_at_contacts(). Problems:
+/// "degenerate-face" (without area, omitted by the reader), "duplicate-face" (same corners as another), "inverted-face"
+/// (one-sided, with the scene and its light behind it), "inverted-lamp" (its front is against a surface, its back is
+/// not), "hidden-lamp" (covered, or enclosed by close surfaces), "zero-power-lamp", "high-reflectance", "no-light",
+/// "implausible-size", "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane),
+/// "open-edge" (belongs to one face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces
+/// and lamps are sampled with 64 rays a face, for at most 4096 faces of a kind.
+/// @param ray_caster  Of this scene.
+/// @return            In the order above. O(n log n) for n patches.
+/// @throws InputError for a ray caster of another scene.
+std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, const ValidateOptions& options = {});
+
+/// Fast part of validate(), in milliseconds: probable mistakes in placement, units or axes. Problems: "close-luminaire"
+/// (more than half of its light falls on a surface within 2 cm, or within a hundredth of a scene smaller than 2 m),
+/// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or a quarter of all
+/// directions are free), "wide-opening" (larger than the scene, or through its walls), "enclosed-luminaire" (in a
+/// closed space without a view that is too narrow for a room, or that keeps all light from the views) and
+/// "shut-out-sky" (a sky or a sun, and a closed scene seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT
+/// in one scene), "probable-unit" and "probable-up-axis" (for formats without either). Traces 384 to 1280 rays for each
+/// point light, spot and measured light, and at most 64 x 66 for its opening, for at most 1024 of them; 2^17 rays from
+/// views or points if a space is closed; and 2^14 lines to find openings to the sky.
+/// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
+std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
+                                    const ValidateOptions& options = {});
+
+}  // namespace interflect

@@ -1,0 +1,41 @@
+#include "interflect/solver/deposit/contributions.h"
+
+#include <bit>
+
+namespace interflect::detail {
+
+void ContributionSums::begin(std::size_t elements) {
+    elements_ = elements;
+    region_shift_ = static_cast<int>(std::bit_width(elements / regions));
+}
+
+void ContributionSums::ScatterBuffer::flush(std::size_t region) {
+    Bin& bin = bins_[region];
+    const std::scoped_lock lock(sums_->region_locks_[region]);
+    for (std::size_t i = 0; i < bin.count; ++i) __builtin_prefetch(&sums_->sums_[bin.deposits[i].element], 1);
+    for (std::size_t i = 0; i < bin.count; ++i) {
+        const Deposit& a = bin.deposits[i];
+        const Contribution& contribution = contributions_[a.source];
+        Contribution& sum = sums_->sums_[a.element];
+        const std::int64_t power = -static_cast<std::int64_t>(a.power);  // all ones or all zeros
+        for (std::size_t c = 0; c < power_terms; ++c) sum[c] += contribution[c] & power;
+        sum[importance_term] += contribution[importance_term] & -static_cast<std::int64_t>(a.importance);
+    }
+    if (sums_->group_terms_ > 0) add_groups(bin);
+    bin.count = 0;
+}
+
+void ContributionSums::ScatterBuffer::add_groups(const Bin& bin) {
+    const std::size_t terms = sums_->group_terms_;
+    for (std::size_t i = 0; i < bin.count; ++i)
+        __builtin_prefetch(&sums_->group_sums_[bin.deposits[i].element * terms], 1);
+    for (std::size_t i = 0; i < bin.count; ++i) {
+        const Deposit& a = bin.deposits[i];
+        if (!a.power) continue;
+        const std::int64_t* power = &group_contributions_[a.source * terms];
+        std::int64_t* sum = &sums_->group_sums_[a.element * terms];
+        for (std::size_t c = 0; c < terms; ++c) sum[c] += power[c];
+    }
+}
+
+}  // namespace interflect::detail

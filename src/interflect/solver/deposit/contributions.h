@@ -1,0 +1,130 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/stable_array.h"
+
+namespace interflect::detail {
+
+/// Contribution of a ray to an element, as integers: three channels of power, squared luminance, importance.
+using Contribution = std::array<std::int64_t, 5>;
+inline constexpr std::size_t power_terms = 4, importance_term = 4;
+
+/// Sums of the contributions to each element in a step: three channels of power, squared luminance of each ray's power,
+/// and importance. Fixed-point integers make the order of additions irrelevant. Each thread bins contributions by
+/// region of the forest in its own ScatterBuffer. Full bins are flushed under the lock of their region.
+class ContributionSums {
+  public:
+    /// Address space per element [bytes].
+    static constexpr std::size_t reserved_per_element(std::size_t groups) {
+        return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
+    }
+
+    /// @param capacity  Maximum number of elements.
+    explicit ContributionSums(std::size_t capacity, std::size_t groups = 0)
+        : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
+
+    /// Starts a step. @param elements  Current size of the forest.
+    void begin(std::size_t elements);
+    void clear(std::size_t elements) {
+        for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
+        for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;
+    }
+    Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
+    std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
+        std::array<std::int64_t, 3> power{};
+        for (std::size_t c = 0; c < 3; ++c) power[c] = std::exchange(group_sum(element, group)[c], 0);
+        return power;
+    }
+    std::size_t groups() const { return group_terms_ / 3; }
+    void add(std::size_t element, const Contribution& contribution) {
+        for (std::size_t c = 0; c < contribution.size(); ++c) sums_[element][c] += contribution[c];
+    }
+    void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
+        for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
+    }
+    /// Frees the memory of collected elements. Small forests keep it: clearing new pages takes longer than the
+    /// additions.
+    void release(std::size_t begin, std::size_t end) {
+        if (elements_ <= most_kept) return;
+        sums_.release(begin, end);
+        if (group_terms_ > 0) group_sums_.release(begin * group_terms_, end * group_terms_);
+    }
+
+    class ScatterBuffer {
+      public:
+        explicit ScatterBuffer(ContributionSums& sums) : sums_(&sums) {}
+
+        /// @param contribution  Payload of one ray of the source.
+        /// @param of_groups     Its power by light group; empty: 0.
+        /// @return Index of the source.
+        std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
+            contributions_.push_back(contribution);
+            group_contributions_.insert(group_contributions_.end(), of_groups.begin(), of_groups.end());
+            group_contributions_.resize(contributions_.size() * sums_->group_terms_);
+            return static_cast<std::uint32_t>(contributions_.size() - 1);
+        }
+        const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }
+
+        void add(std::uint32_t element, std::uint32_t source, bool power, bool importance) {
+            const std::size_t region = element >> sums_->region_shift_ & (regions - 1);
+            Bin& bin = bins_[region];
+            bin.deposits[bin.count++] = {element, source & (most_sources - 1), power, importance};
+            if (bin.count == bin.deposits.size()) flush(region);
+        }
+        /// Limits the size of the table of sources. Call while no source index is in use.
+        void release_sources() {
+            if (contributions_.size() >= enough_sources) flush_all();
+        }
+        /// Adds all collected contributions to the sums. Source indices start at 0 again.
+        void flush_all() {
+            for (std::size_t region = 0; region < regions; ++region) flush(region);
+            contributions_.clear();
+            group_contributions_.clear();
+        }
+
+      private:
+        struct Deposit {
+            std::uint32_t element;
+            std::uint32_t source : 30;
+            std::uint32_t power : 1, importance : 1;
+        };
+        struct Bin {
+            std::size_t count = 0;
+            std::array<Deposit, 127> deposits;
+        };
+        void flush(std::size_t region);
+        void add_groups(const Bin& bin);
+
+        ContributionSums* sums_;
+        std::vector<Contribution> contributions_;
+        std::vector<std::int64_t> group_contributions_;
+        std::vector<Bin> bins_ = std::vector<Bin>(regions);
+    };
+
+  private:
+    static constexpr std::size_t regions = 64;
+    static constexpr std::uint32_t most_sources = 1u << 30;  // width of Deposit::source
+    static constexpr std::size_t enough_sources = 8192;  // their contributions fill a quarter of a second-level cache
+
+    static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
+
+    std::int64_t* group_sum(std::size_t element, std::size_t group) {
+        return &group_sums_[element * group_terms_ + 3 * group];
+    }
+
+    StableArray<Contribution> sums_;
+    std::size_t group_terms_;
+    StableArray<std::int64_t> group_sums_;  // [element][group][channel]
+    std::size_t elements_ = 0;
+    int region_shift_ = 0;
+    std::array<std::mutex, regions> region_locks_;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,167 @@
+#include "interflect/solver/deposit/descent.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace interflect::detail {
+
+void Descent::deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
+                      std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
+                      float transmitted) {
+    const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
+    left_.push_back({source, 0, transmitted});
+    const auto left = static_cast<std::uint32_t>(left_.size() - 1);
+    bool path_is_known = !refines_;
+    for (std::size_t r = 0; r < rays.size(); ++r) {
+        if (hits[r].patch == none) {
+            count_escaped(contribution);
+        } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
+            buffer_.add(hits[r].patch, payload, true, true);
+            if (step_.reflects_where_received(hits[r].patch)) {
+                const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
+                note_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
+            }
+            if (found_importance_) find_importance(left, hits[r].patch, hits[r].patch);
+        } else {
+            while (open_count_ == lanes) advance();
+            if (refines_ && source >= old_size_)
+                path_ = sources_.append_part(source - old_size_, rays[r], hits[r]);
+            else if (!std::exchange(path_is_known, true))
+                path_ = sources_.append_leaf(source);
+            begin(payload, left, rays[r], origins[r], hits[r]);
+        }
+    }
+}
+
+void Descent::prefetch(const Hit& hit) const {
+    if (hit.patch == none) return;
+    forest_.prefetch(hit.patch);
+    if (!refines_) return;
+    forest_.prefetch_geometry(hit.patch);
+    materials_.prefetch(hit.patch);
+    if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[hit.patch]);
+}
+
+void Descent::finish_batch() {
+    while (open_count_ > 0) advance();
+    sources_.clear();
+    buffer_.release_sources();
+    if (found_importance_)
+        for (const auto& [source, found, transmitted] : left_)
+            found_importance_->add(source, found * double{transmitted});
+    left_.clear();
+}
+
+Escaped Descent::finish() {
+    buffer_.flush_all();
+    return std::exchange(escaped_, {});
+}
+
+void Descent::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start, const Hit& hit) {
+    const std::size_t i = open_[open_count_++];
+    const PatchGeometry& geometry = forest_.geometry(hit.patch);
+    const PatchGeometry::Shape& shape = geometry.shape();
+    const Parameters p = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
+    rays_[i] = {source, hit.patch, left, start};
+    pairs_.origin.set(i, shape.origin);
+    pairs_.edge_u.set(i, shape.edge_u);
+    pairs_.edge_v.set(i, shape.edge_v);
+    pairs_.twist.set(i, shape.twist);
+    pairs_.is_triangle[i] = geometry.is_triangle();
+    pairs_.hit_u[i] = p.u;
+    pairs_.hit_v[i] = p.v;
+    pairs_.receiver[i] = pairs_.of_power[i] = hit.patch;
+    pairs_.u[i] = pairs_.v[i] = 0;
+    pairs_.size[i] = 1;
+    pairs_.settled[i] = !refines_;
+    if (!refines_) return;
+    rays_[i].reflectance = materials_.reflectance(hit.patch);
+    pairs_.normal.set(i, geometry.normal());
+    pairs_.importance[i] = 1;
+    sources_.begin(pairs_, i, path_, rays_[i].reflectance);
+}
+
+/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). A rejected pair is divided at its larger end. For
+/// an accepted pair, the receiver of power is final, and importance descends to the leaf. No branch depends on the
+/// oracle.
+void Descent::advance() {
+    Lanes some;
+    for (const std::uint32_t i : open()) look_up_receiver(i);
+    if (refines_) {
+        for (const std::uint32_t i : open_lanes_if(some, [&](auto i) { return SourcePaths::is_too_large(pairs_, i); }))
+            sources_.choose(pairs_, i, rays_[i].reflectance);
+        pairs_.evaluate_oracle(step_.oracle);
+    }
+    pairs_.choose_next(needs_leaf_, old_size_);
+    for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return pairs_.on_demand[i] != 0; }))
+        subdivide_on_demand(i);
+    const auto arrived = open_lanes_if(some, [&](std::size_t i) { return pairs_.goes_on[i] == 0; });
+    Lanes on_their_way;
+    const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
+    for (const std::uint32_t i : arrived) send(i);
+    std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
+    open_count_ = others.size();
+    pairs_.go_down();
+    for (const std::uint32_t i : open()) {
+        const std::uint32_t element = pairs_.receiver[i];
+        forest_.prefetch(element);
+        if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[element]);
+    }
+}
+
+template <class Condition>
+inline std::span<const std::uint32_t> Descent::open_lanes_if(Lanes& found, const Condition& condition) const {
+    std::size_t count = 0;
+    for (const std::uint32_t i : open()) {
+        found[count] = i;
+        count += condition(i);
+    }
+    return std::span(found).first(count);
+}
+
+inline void Descent::look_up_receiver(std::size_t i) {
+    const std::uint32_t element = pairs_.receiver[i];
+    pairs_.area[i] = forest_.area(element);
+    pairs_.children[i] = forest_.first_child(element);
+    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit it
+        pairs_.importance[i] = step_.oracle.importance[element];
+}
+
+/// Divides the lowest shooter of a path, or a receiver without children. Settles a pair that cannot be divided.
+void Descent::subdivide_on_demand(std::size_t i) {
+    const std::uint32_t receiver = pairs_.receiver[i];
+    if (pairs_.shooter_area[i] > pairs_.area[i]) {
+        if (sources_.subdivide(pairs_, i, rays_[i].start, rays_[i].reflectance, may_grow_)) return;
+    } else {
+        pairs_.next[i] = children_on_demand(forest_, receiver, may_grow_);
+        if (pairs_.next[i] != none) return;
+    }
+    pairs_.settled[i] = true;
+    pairs_.goes_on[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
+    if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
+}
+
+void Descent::send(std::size_t i) {
+    const auto& [source, patch, left, start, reflectance] = rays_[i];
+    std::uint32_t leaf = pairs_.receiver[i];
+    while (leaf >= old_size_) leaf = forest_.parent(leaf);
+    const std::uint32_t of_power = refines_ ? pairs_.of_power[i] : leaf;
+    const std::uint32_t of_importance = step_.importance_at_patches ? patch : leaf;
+    const bool together = of_power == of_importance || !step_.carries_importance();
+    if (step_.carries_power()) buffer_.add(of_power, source, true, together);
+    if (!step_.carries_power() || !together) buffer_.add(of_importance, source, false, true);
+    if (found_importance_) find_importance(left, patch, leaf);
+    if (step_.reflects_where_received(leaf))
+        note_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(source));
+}
+
+void Descent::note_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
+    const auto power = static_cast<float>(contribution[0] + contribution[1] + contribution[2]);
+    if (power > 0) start_points_.push_back({leaf, power, at});
+}
+
+inline void Descent::find_importance(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {
+    left_[left].found += static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solver/deposit/contributions.h"
+#include "interflect/solver/deposit/found_importance.h"
+#include "interflect/solver/deposit/ray_pairs.h"
+#include "interflect/solver/deposit/source_paths.h"
+#include "interflect/solver/deposit/transport_step.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/sampling/start_points.h"
+
+namespace interflect::detail {
+
+/// Power and rays that left the scene.
+struct Escaped {
+    FixedPoint::Value power{};
+    std::int64_t rays = 0;
+
+    Escaped& operator+=(const Escaped& other) {
+        for (std::size_t c = 0; c < 3; ++c) power[c] += other.power[c];
+        rays += other.rays;
+        return *this;
+    }
+};
+
+/// Finds the elements that receive the payload of each ray, for one thread. Structure-of-arrays traversal with lane
+/// refill: many rays descend the quadtrees level by level, and a new ray replaces a finished one in its lane. This
+/// hides memory latency and vectorises.
+class Descent {
+  public:
+    /// @param old_size  Size of the forest before the step. All other arguments must outlive this.
+    /// @param importance Collects importance found by rays; may be null.
+    Descent(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
+            ContributionSums& sums, FoundImportance* importance)
+        : materials_(materials),
+          forest_(forest),
+          step_(step),
+          old_size_(old_size),
+          refines_(step.oracle.refines && step.carries_power()),
+          needs_leaf_(!refines_ || (step.carries_importance() && !step.importance_at_patches)),
+          may_grow_(old_size + std::size_t{4} <= step.oracle.max_elements),
+          buffer_(sums),
+          found_importance_(importance),
+          sources_(forest, step) {
+        std::iota(open_.begin(), open_.end(), 0u);
+        pairs_.next.fill(none);
+    }
+
+    /// @param source        Leaf, or old_size + luminaire part. Each of its rays carries `contribution`.
+    /// @param of_groups     Power of each light group in `contribution`.
+    /// @param origins       Parameters on the leaf's patch; unused for luminaire parts.
+    /// @param transmitted   Share of found importance that returns to the source.
+    void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
+                 std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
+                 float transmitted = 1);
+    void prefetch(const Hit& hit) const;
+    /// Finishes all rays in flight. Call at the end of each task.
+    void finish_batch();
+    void deposit_at(std::uint32_t leaf, const Contribution& contribution, std::span<const std::int64_t> of_groups) {
+        buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
+    }
+    void count_escaped(const Contribution& contribution) {
+        for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
+        ++escaped_.rays;
+    }
+    /// Points of the leaves that reflect where they receive, in any order.
+    const std::vector<StartPoint>& start_points() const { return start_points_; }
+    /// Flushes all contributions. @return Escaped power and rays of this thread.
+    Escaped finish();
+
+  private:
+    static constexpr std::size_t lanes = RayPairs::lanes;
+    struct RayState {
+        std::uint32_t source, patch;  // patch: hit by the ray
+        std::uint32_t left;           // index in left_
+        Parameters start;             // on the source's patch
+        Rgb reflectance{0, 0, 0};     // rho_i
+    };
+
+    using Lanes = std::array<std::uint32_t, lanes>;
+    std::span<const std::uint32_t> open() const { return std::span(open_).first(open_count_); }
+    template <class Condition>
+    std::span<const std::uint32_t> open_lanes_if(Lanes& found, const Condition& condition) const;
+    void begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start, const Hit& hit);
+    void advance();
+    void look_up_receiver(std::size_t i);
+    void subdivide_on_demand(std::size_t i);
+    void send(std::size_t i);
+    void note_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
+    void find_importance(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf);
+
+    const Materials& materials_;
+    ElementForest& forest_;
+    const TransportStep& step_;
+    std::uint32_t old_size_;
+    bool refines_, needs_leaf_, may_grow_;
+    ContributionSums::ScatterBuffer buffer_;
+    Escaped escaped_;
+    std::vector<StartPoint> start_points_;
+    FoundImportance* found_importance_;
+    struct Left {
+        std::uint32_t source;
+        double found;  // importance found so far
+        float transmitted;
+    };
+    std::vector<Left> left_;  // sources of the current task
+    RayPairs pairs_{};
+    std::array<RayState, lanes> rays_;
+    Lanes open_;  // lanes in use, then free lanes
+    std::size_t open_count_ = 0;
+    SourcePaths sources_;
+    SourcePaths::Path path_;
+};
+
+}  // namespace interflect::detail

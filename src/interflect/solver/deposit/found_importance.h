@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/stable_array.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/light/radiosity.h"
+
+namespace interflect::detail {
+
+/// Importance that rays find at their hit points, summed for each source. The mean over a leaf's rays estimates its
+/// transported importance (Eq. 7, Prikryl et al. 2000), even for small lamps that few rays from the view hit.
+class FoundImportance {
+  public:
+    /// @param most_per_ray  Maximum importance found by one ray. @param sources  Their number.
+    FoundImportance(double most_per_ray, std::int64_t rays, std::size_t sources)
+        : unit_(most_per_ray * static_cast<double>(rays)), sums_(sources) {}
+
+    /// Adds importance found by rays of a source. Thread-safe.
+    void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }
+    double sum(std::size_t source) const { return unit_.to_number(sums_[source]); }
+
+  private:
+    FixedPoint unit_;
+    StableArray<std::int64_t> sums_;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solver/deposit/ray_pairs.h"
+#include "interflect/solver/deposit/transport_step.h"
+
+namespace interflect::detail {
+
+/// Ancestor paths of the leaves that shot the rays in flight. Each pair uses the element that suits its receiver.
+class SourcePaths {
+  public:
+    /// Range of shooters, from the largest to the smallest.
+    struct Path {
+        std::uint32_t first = 0, last = 0;
+    };
+
+    /// Both arguments must outlive this.
+    SourcePaths(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
+
+    Path append_leaf(std::uint32_t leaf);
+    /// Appends a proxy of a luminaire part for one of its rays.
+    Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
+    void clear() { sources_.clear(); }
+
+    /// Starts with the largest shooter. @param reflectance  rho_i of the patch that was hit.
+    void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
+        pairs.lowest_shooter[i] = path.last;
+        pairs.shooter_normal.set(i, sources_[path.first].normal);
+        pairs.shooter_least_cosine[i] = sources_[path.first].least_cosine;
+        take(pairs, i, path.first, reflectance);
+    }
+
+    static bool is_too_large(const RayPairs& pairs, std::size_t i) {
+        const float shooter = pairs.shooter_area[i], receiver = pairs.area[i];
+        const std::uint32_t number = pairs.shooter[i], lowest = pairs.lowest_shooter[i];
+        return (shooter > receiver) & (number < lowest);
+    }
+
+    /// Selects the largest shooter of the path that is not larger than the receiver, or the lowest. Larger ones give
+    /// the same received power, so the oracle skips them.
+    void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
+        std::uint32_t number = pairs.shooter[i] + 1;
+        while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
+        take(pairs, i, number, reflectance);
+    }
+
+    /// Replaces the lowest shooter of a path by its child at the start of the ray. @return Whether this was possible.
+    bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
+
+  private:
+    struct Shooter {
+        std::uint32_t element;  // none: luminaire part
+        Cell cell;
+        V3f centre, normal;
+        float area;  // [m^2]
+        float least_cosine;
+        Rgb radiosity{0, 0, 0};  // new elements inherit it
+    };
+
+    void take(RayPairs& pairs, std::size_t i, std::uint32_t number, const Rgb& reflectance) const {
+        const Shooter& shooter = sources_[number];
+        pairs.shooter[i] = number;
+        pairs.shooter_centre.set(i, shooter.centre);
+        pairs.shooter_area[i] = shooter.area;
+        pairs.reflected[i] = largest_channel(Rgb(reflectance * shooter.radiosity));
+    }
+
+    ElementForest& forest_;
+    const TransportStep& step_;
+    std::vector<Shooter> sources_;
+};
+
+/// Returns the first child, or none. Creates children of a leaf if the forest may grow.
+inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
+    const std::uint32_t child = forest.first_child(element);
+    return child == none && may_grow ? forest.subdivide(element) : child;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,48 @@
+#include "interflect/solver/error/error_weight.h"
+
+#include <algorithm>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+ErrorMeasure default_measure(const SolverState& state) {
+    return state.view.empty() ? ErrorMeasure::surfaces : ErrorMeasure::pictures;
+}
+
+double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element) {
+    if (measure == ErrorMeasure::surfaces) return 1;
+    const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
+    Rgb h = state.solution.irradiance[element];
+    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // may be negative as a sum of noisy differences
+    const float all = luminance(h), reflected = luminance(Rgb(rho * h));
+    const float factor = all > 0 ? reflected / all : luminance(rho);
+    return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
+}
+
+double error_reference(const SolverState& state, ErrorMeasure measure) {
+    const ElementForest& forest = *state.forest;
+    const bool of_pictures = measure == ErrorMeasure::pictures;
+    struct Sums {
+        double light = 0, weight = 0;
+        Sums& operator+=(const Sums& o) { return light += o.light, weight += o.weight, *this; }
+    };
+    const Sums sums = parallel_sum(forest.size(), elements_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
+        Sums sum;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const double w =
+                forest.area(e) * (of_pictures ? static_cast<double>(state.solution.view_importance[e]) : 1.0);
+            const Rgb& h = state.solution.irradiance[e];
+            const Rgb& rho = state.materials.surface(forest.patch(e), e).reflectance;
+            sum.light += w * luminance(of_pictures ? Rgb(rho * h) : h);
+            sum.weight += w;
+        }
+        return sum;
+    });
+    // The view importance of the surfaces that pixels show first sums to 1; those behind panes only add light.
+    return of_pictures ? sums.light : sums.light / sums.weight;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,85 @@
+#include "interflect/solver/error/noise_update.h"
+
+#include <algorithm>
+#include <array>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/error/error_weight.h"
+#include "interflect/solver/error/pixel_filter.h"
+#include "interflect/solver/error/sibling_variation.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Averaged differences y of siblings from their parent times new ones, z: the area-weighted mean of the four.
+/// E y z = |d|^2 for true differences d.
+double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
+    const ElementForest& forest = *state.forest;
+    const std::uint32_t parent = forest.parent(first);
+    const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
+        return luminance(irradiance[e]) - luminance(irradiance[parent]);
+    };
+    double product = 0, area = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) {
+        product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
+                                       difference(fresh.irradiance, e));
+        area += forest.area(e);
+    }
+    return product / area;
+}
+
+/// Measures squared errors with the next iteration. After shrinkage k, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z).
+/// Unlike Stein's estimate, this needs no noise model. It measures earlier iterations only.
+RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
+    const ElementForest& forest = *state.forest;
+    const std::uint32_t roots = forest.patch_count();
+    const ErrorMeasure measure = default_measure(state);
+    const auto check_siblings = [&](std::uint32_t first, RiskCheck& sum) {
+        const SiblingVariation variation = sibling_variation(state, first);
+        const std::uint32_t parent = forest.parent(first);
+        const double w = error_weight(state, measure, parent) * forest.area(parent);
+        if (!variation.is_known() || !(w > 0)) return;
+        const double signal = measured_signal(state, fresh, first), k = variation.shrinkage();
+        const double shown = shown_of_siblings(state, measure, first);
+        const AddedError expected = added_error(state, first);
+        sum.measured += w * shown * (k * k * variation.spread + (1 - 2 * k) * signal);
+        sum.expected += w * shown * static_cast<double>(expected.noise + expected.bias);
+        const double of_parent = parent < roots ? 0 : measured_signal(state, fresh, first_sibling(forest, parent));
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const double of_leaf = error_weight(state, measure, e) * forest.area(e);
+            const std::array<float, finer_levels> shown_of_level = shown_within(state, measure, e);
+            sum.signal += of_leaf * signal;
+            sum.signal_of_parents += of_leaf * of_parent;
+            for (std::size_t level = 0; level < finer_levels; ++level)
+                sum.within[level] += of_leaf * shown_of_level[level] * signal;
+        }
+    };
+    RiskCheck sum = parallel_sum((forest.size() - roots) / 4, elements_at_once, RiskCheck(),
+                                 [&](std::size_t begin, std::size_t end) {
+                                     RiskCheck part;
+                                     for (std::size_t i = begin; i < end; ++i)
+                                         check_siblings(roots + 4 * static_cast<std::uint32_t>(i), part);
+                                     return part;
+                                 });
+    sum.weight = 1;
+    return sum;
+}
+
+}  // namespace
+
+void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays) {
+    const ErrorMeasure measure = default_measure(state);
+    const auto weight = [&](std::uint32_t e) { return error_weight(state, measure, e) * state.forest->area(e); };
+    if (uses_shrinkage(state) && state.noise.is_known()) {
+        constexpr double long_enough = 0.25;  // share of the rays averaged before
+        const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
+        state.risk_check.add(check_risk(state, fresh),
+                             std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
+    }
+    state.noise.add(*state.forest, fresh, state.solution.irradiance, state.history, static_cast<float>(rays), weight);
+}
+
+}  // namespace interflect::detail

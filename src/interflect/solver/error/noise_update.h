@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interflect/solver/noise/noise_model.h"
+#include "interflect/solver/state/solver_state.h"
+
+namespace interflect::detail {
+
+/// Updates the noise model with an iteration that has not been merged yet.
+void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays);
+
+}  // namespace interflect::detail

@@ -1,0 +1,64 @@
+#include "interflect/solver/error/pixel_filter.h"
+
+#include <cmath>
+
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Fraction of the variance of a signal that remains after a box filter of width 1 (a pixel). Steps: independent
+/// constant pieces of length `a`. Pairs: adjacent pieces of length `a` with opposite values.
+float shown_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
+float shown_of_pairs(float a) {
+    if (a > 1) return 1 - 1 / (2 * a);
+    if (a < 0.5f) return 2 * a * a / 3;
+    const float beyond = 2 * a * (1 - a) - (1 + 2 * a) * (1 - a * a) / 2 + (1 - a * a * a) / 3;
+    return a / 2 - beyond / a;
+}
+
+/// Extents of an element along the edges of its patch [pixel widths].
+struct Extents {
+    float u, v;
+};
+Extents extents_in_pixels(const SolverState& state, std::uint32_t element) {
+    const ElementForest& forest = *state.forest;
+    const PatchGeometry::Shape& shape = forest.geometry(forest.patch(element)).shape();
+    const float u2 = shape.edge_u.length2(), v2 = shape.edge_v.length2();
+    const float across = shape.edge_u.cross(shape.edge_v).length();  // the shorter extent times the longer edge
+    const float aspect = !(across > 0) ? 1 : u2 > v2 ? u2 / across : across / v2;
+    const float pixels = forest.area(element) / pixel_area(state, element);
+    return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
+}
+
+/// The fractions in two dimensions. Differences of four siblings change sign along one side, the other, or both.
+float shown_of_patch(const Extents& patch) { return shown_of_steps(patch.u) * shown_of_steps(patch.v); }
+float shown_of_siblings(const Extents& sibling) {
+    const float u = shown_of_pairs(sibling.u), v = shown_of_pairs(sibling.v);
+    return (u * shown_of_steps(2 * sibling.v) + shown_of_steps(2 * sibling.u) * v + u * v) / 3;
+}
+
+}  // namespace
+
+float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch) {
+    return measure == ErrorMeasure::surfaces ? 1 : shown_of_patch(extents_in_pixels(state, patch));
+}
+
+float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
+    return measure == ErrorMeasure::surfaces ? 1 : shown_of_siblings(extents_in_pixels(state, first));
+}
+
+std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf) {
+    std::array<float, finer_levels> shares;
+    shares.fill(1);
+    if (measure == ErrorMeasure::surfaces) return shares;
+    Extents extents = extents_in_pixels(state, leaf);
+    for (float& of_level : shares) {
+        extents.u /= 2, extents.v /= 2;
+        of_level = (shown_of_pairs(extents.u) + shown_of_pairs(extents.v)) / 2;
+    }
+    return shares;
+}
+
+}  // namespace interflect::detail

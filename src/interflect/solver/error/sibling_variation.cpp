@@ -1,0 +1,93 @@
+#include "interflect/solver/error/sibling_variation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace interflect::detail {
+
+namespace {
+
+/// Siblings are under-sampled below this fraction of their parent's rays.
+constexpr float under_sampled = 0.125f;
+/// Largest expected squared difference of siblings relative to that of their parent's: at an edge.
+constexpr float highest_expected_decay = 0.5f;
+
+}  // namespace
+
+float SiblingVariation::shrinkage() const {
+    const float kept = spread > noise ? 1 - noise / spread : 0.0f;
+    return is_under_sampled() && kept > 0 ? std::min(kept, assumed / (assumed + noise)) : kept;
+}
+
+float SiblingVariation::risk() const {
+    if (is_under_sampled()) {
+        const float kept = shrinkage();
+        return kept * kept * noise + (1 - kept) * (1 - kept) * assumed;
+    }
+    // James-Stein: y = signal + noise in d = 3 dimensions, multiplied by max(0, 1 - d sigma^2 / |y|^2).
+    return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
+}
+
+bool uses_shrinkage(const SolverState& state) {
+    return state.options.experimental.shrinkage && refines_by_variance(state.options);
+}
+
+SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first) {
+    const ElementForest& forest = *state.forest;
+    const std::vector<Rgb>& irradiance = state.solution.irradiance;
+    if (state.history[first] == 0) return {0, std::numeric_limits<float>::infinity()};
+    const float mean = luminance(irradiance[forest.parent(first)]);
+    float area = 0, spread = 0, variance = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) {
+        const float difference = luminance(irradiance[e]) - mean, a = forest.area(e);
+        area += a;
+        spread += a * difference * difference;
+        variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
+    }
+    SiblingVariation variation{spread / area, variance / area};
+    // With few rays, shrinkage would leave more noise than any plausible signal. The parent's siblings bound it.
+    const std::uint32_t parent = forest.parent(first);
+    if (uses_shrinkage(state) && state.history[first] < under_sampled * state.history[parent])
+        variation.assumed = parent < forest.patch_count()
+                                ? std::pow(assumed_variation * mean, 2.0f)
+                                : highest_expected_decay *
+                                      std::max(0.0f, sibling_variation(state, first_sibling(forest, parent)).signal());
+    return variation;
+}
+
+AddedError added_error(const SolverState& state, std::uint32_t first) {
+    const SiblingVariation variation = sibling_variation(state, first);
+    if (!variation.is_known()) return {};  // the siblings equal their parent
+    if (!uses_shrinkage(state)) return {variation.noise, 0};
+    const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
+    // Largest variance of four non-negative numbers. Without this limit, rays with a large weight would dominate the
+    // sum.
+    const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
+    return {noise, std::clamp(variation.risk() - noise, -most, most)};
+}
+
+/// The Wiener filter of each sibling has its own noise. The mean of the siblings does not change: their common loss is
+/// divided in proportion to the remaining variance, as if the parent's mean were another measurement.
+Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
+    const ElementForest& forest = *state.forest;
+    const SiblingVariation variation = sibling_variation(state, first);
+    Shrinkage s{{1, 1, 1, 1}, state.noise.shares(forest, state.solution.irradiance, first, state.history[first])};
+    if (!uses_shrinkage(state) || !variation.is_known()) return s;
+    const float kept = variation.shrinkage();
+    float sum = 0, area = 0;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        s.kept[k] = kept > 0 ? kept / (kept + (1 - kept) * s.noise[k]) : 0;
+        s.noise[k] = kept > 0 ? s.noise[k] * s.kept[k] : 1;
+        sum += forest.area(first + k) * s.noise[k], area += forest.area(first + k);
+    }
+    for (float& noise : s.noise) noise = sum > 0 ? noise * area / sum : 1;
+    return s;
+}
+
+float signal_beside(const SolverState& state, std::uint32_t e) {
+    if (e < state.forest->patch_count()) return 0;
+    const SiblingVariation variation = sibling_variation(state, first_sibling(*state.forest, e));
+    return variation.is_known() ? variation.signal() : 0;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,130 @@
+#include "interflect/solver/importance/importance_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "interflect/base/parallel.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Share of the next larger neighbourhood in Neighbourhoods::smooth().
+constexpr float taken_over = 0.3f;
+
+/// Mean importance in a box of light from outside, and the factor for its parts.
+struct BoxImportance {
+    PartImportance all;
+    float factor = 1;
+    double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
+};
+
+/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores the
+/// exponent 1 between boxes. It is 1 for a box of typical importance.
+std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
+                                               float exponent) {
+    std::vector<BoxImportance> boxes(emission.box_count());
+    std::vector<double> power(boxes.size(), 0.0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        PartImportance& all = boxes[emission.box(i)].all;
+        all.found += found[i].found, all.rays += found[i].rays;
+        power[emission.box(i)] += channel_sum(emission.power(i));
+    }
+    if (boxes.size() == 1) return boxes;
+    double first = 0, second = 0;  // moments of importance
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+        first += power[b] * boxes[b].mean();
+        second += power[b] * boxes[b].mean() * boxes[b].mean();
+    }
+    if (!(second > 0)) return boxes;
+    for (BoxImportance& box : boxes)
+        box.factor = std::pow(static_cast<float>(box.mean() * first / second), 1 - exponent);
+    return boxes;
+}
+
+/// Computes the importance of parts, and its mean over the parts of an emitter. The mean serves as a prior with the
+/// weight of `rays_of_mean` rays.
+void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
+                 ImportanceWeights& weights) {
+    constexpr std::size_t alike = Emission::parts_per_emitter;
+    constexpr double rays_of_mean = 8;
+    const std::vector<BoxImportance> boxes = importance_of_boxes(emission, found, exponent);
+    if (std::none_of(boxes.begin(), boxes.end(), [](const BoxImportance& box) { return box.all.rays > 0; })) return;
+    weights.parts.resize(found.size());
+    weights.parts_nearby.resize(found.size());
+    for (std::size_t begin = 0; begin < found.size(); begin += alike) {
+        const BoxImportance& box = boxes[emission.box(begin)];
+        PartImportance group{rays_of_mean * box.mean(), rays_of_mean};
+        for (std::size_t i = begin; i < begin + alike; ++i) group.found += found[i].found, group.rays += found[i].rays;
+        const double mean = group.found / group.rays;
+        for (std::size_t i = begin; i < begin + alike; ++i) {
+            const double own = (found[i].found + rays_of_mean * mean) / (found[i].rays + rays_of_mean);
+            weights.parts[i] = box.factor * std::pow(static_cast<float>(own), exponent);
+            weights.parts_nearby[i] = box.factor * std::pow(static_cast<float>(mean), exponent);
+        }
+    }
+}
+
+/// @param numbers  >= 0.
+void raise(std::span<float> numbers, float exponent) {
+    if (exponent == 0.75f) {  // the default; square roots vectorise
+        for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));
+    } else {
+        for (float& x : numbers) x = std::pow(x, exponent);
+    }
+}
+
+}  // namespace
+
+ImportanceUse importance_use(const Solution& so_far) {
+    return so_far.view_importance.empty() ? ImportanceUse::off : so_far.options.method.importance;
+}
+
+Importance importance_of(const Solution& so_far) {
+    return Importance(so_far.view_importance, so_far.indirect_importance);
+}
+
+std::vector<float> total_importance(const Solution& so_far) {
+    std::vector<float> psi = so_far.view_importance;
+    for (std::size_t e = 0; e < psi.size(); ++e) psi[e] += so_far.indirect_importance[e];
+    return psi;
+}
+
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
+                                     const Emission& emission, const std::vector<PartImportance>& found) {
+    const SolveOptions& o = so_far.options;
+    const ElementForest& forest = *so_far.forest;
+    if (importance_use(so_far) == ImportanceUse::off || o.experimental.beta == 1) return {};
+    const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
+                           : o.experimental.total_importance               ? importance_of(so_far)
+                                                                           : Importance(so_far.indirect_importance);
+    ImportanceWeights weights{
+        importance_weight(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
+    weigh_parts(emission, found, static_cast<float>(o.importance.exponent), weights);
+    if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
+    neighbourhoods.smooth(forest, weights.nearby, taken_over);
+    for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance.exponent));
+    return weights;
+}
+
+std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
+                                     double exponent) {
+    const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
+    std::vector<float> weights(forest.size());
+    parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) weights[e] = importance[e];
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        const float parent = weights[forest.parent(first)];
+        for (std::uint32_t e = first; e < first + 4; ++e) weights[e] += share * (parent - weights[e]);
+    });
+    if (power == 1) return weights;
+    parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        raise(std::span(weights).subspan(begin, end - begin), power);
+    });
+    return weights;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+/// Binary tree of neighbouring patches, split along the longest axis of their centres. 4 bytes per patch.
+class Neighbourhoods {
+  public:
+    Neighbourhoods() = default;
+    explicit Neighbourhoods(const ElementForest& forest);
+
+    bool empty() const { return patches_.empty(); }
+
+    /// Moves the mean of each neighbourhood by `share` towards that of the next larger one, from the root to the
+    /// patches.
+    /// @param values  Per area, one for each patch. @param share  In [0, 1].
+    void smooth(const ElementForest& forest, std::span<float> values, float share) const;
+
+  private:
+    std::vector<std::uint32_t> patches_;  // neighbourhoods are ranges, halved recursively
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,121 @@
+#include "interflect/solver/iteration/merge.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Coefficients that scale children to their parent's mean: factor * child + offset.
+template <class T>
+struct Scaling {
+    T factor, offset;
+};
+Scaling<float> scaling(float children_mean, float parent_mean) {
+    const bool is_scaled = children_mean > 0;
+    return {is_scaled ? parent_mean / children_mean : 0, is_scaled ? 0 : parent_mean};
+}
+Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
+    const auto [fx, ox] = scaling(children_mean.x, parent_mean.x);
+    const auto [fy, oy] = scaling(children_mean.y, parent_mean.y);
+    const auto [fz, oz] = scaling(children_mean.z, parent_mean.z);
+    return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
+}
+
+template <class T>
+void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
+                const IterationPlan& plan, float most_history = std::numeric_limits<float>::infinity()) {
+    const ElementForest& forest = *state.forest;
+    const auto rays = static_cast<float>(plan.rays);
+    const auto merge_one = [&](std::uint32_t e) {
+        const float tau = plan.warms_up ? 1.0f : rays / (std::min(state.history[e], most_history) + rays);
+        mean[e] += tau * (received[e] - mean[e]);
+    };
+    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) merge_one(e);
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        T sum(0);
+        float area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            merge_one(e);
+            sum += mean[e] * forest.area(e);
+            area += forest.area(e);
+        }
+        const auto [factor, offset] = scaling(sum / area, mean[forest.parent(first)]);
+        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = mean[e] * factor + offset;
+    });
+    pull(forest, mean);
+}
+
+}  // namespace
+
+void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+           const IterationPlan& plan) {
+    merge_into(state, mean, received, plan);
+}
+void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+                       const IterationPlan& plan) {
+    const ElementForest& forest = *state.forest;
+    const auto rays = static_cast<float>(plan.rays);
+    const auto merged = [&](std::uint32_t e) {
+        return mean[e] + (received[e] - mean[e]) * (rays / (state.history[e] + rays));
+    };
+    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] = merged(e);
+    });
+    forest.for_siblings_from_roots([&](std::uint32_t first) {
+        Rgb sum(0);
+        float area = 0;
+        for (std::uint32_t e = first; e < first + 4; ++e) {
+            mean[e] = merged(e);
+            sum += mean[e] * forest.area(e);
+            area += forest.area(e);
+        }
+        const Rgb missing = mean[forest.parent(first)] - sum / area;
+        const std::array<float, 4> shares =
+            state.noise.shares(forest, state.solution.irradiance, first, state.history[first] + rays);
+        for (std::uint32_t k = 0; k < 4; ++k) mean[first + k] += missing * shares[k];
+    });
+}
+
+void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
+           const IterationPlan& plan) {
+    if (state.rays_of_other_views == 0) return merge_into(state, mean, received, plan);
+    const std::int64_t of_these_views = state.schedule.averaged_rays() - state.rays_of_other_views;
+    merge_into(state, mean, received, plan, static_cast<float>(of_these_views));
+}
+
+void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan) {
+    for (std::size_t g = 0; g < mean.size(); ++g)
+        if (state.solution.dimming[g] > 0) merge(state, mean[g], received[g], plan);
+}
+void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
+                       const IterationPlan& plan) {
+    for (std::size_t g = 0; g < mean.size(); ++g)
+        if (state.solution.dimming[g] > 0) merge_independent(state, mean[g], received[g], plan);
+}
+
+void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan) {
+    const auto rays = static_cast<double>(plan.rays);
+    const double tau = plan.warms_up ? 1 : rays / (state.escaped_power_rays + rays);
+    state.escaped_power += (escaped - state.escaped_power) * tau;
+    state.escaped_power_rays = plan.warms_up ? 0 : state.escaped_power_rays + rays;
+}
+
+void update_history(SolverState& state, const IterationPlan& plan) {
+    const auto rays = static_cast<float>(plan.rays),
+               inherited = static_cast<float>(state.options.experimental.inherited_weight);
+    parallel_for_ranges(state.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e)
+            state.history[e] =
+                plan.warms_up ? 0.0f : (state.history[e] + rays) * (e < plan.old_elements ? 1.0f : inherited);
+    });
+}
+
+}  // namespace interflect::detail

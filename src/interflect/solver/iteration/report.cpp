@@ -1,0 +1,50 @@
+#include "interflect/solver/iteration/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "interflect/elements/forest.h"
+#include "interflect/solver/error/error_estimate.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Returns the largest fraction of the planned rays, the planned time, and the samples for the target of the error.
+double fraction_done(const Limits& limits, const IterationReport& report) {
+    double fraction = static_cast<double>(report.rays) / static_cast<double>(limits.rays);
+    fraction = std::max(fraction, report.seconds / limits.time);
+    if (limits.until > 0) fraction = std::max(fraction, std::pow(limits.until / report.error_estimate, 2));
+    return std::clamp(fraction, 0.0, 1.0);
+}
+
+}  // namespace
+
+void report(SolverState& state, int iteration) {
+    IterationReport r;
+    r.iteration = iteration;
+    r.seconds = state.seconds();
+    r.rays = state.schedule.rays();
+    r.power_rays = state.power_rays;
+    r.importance_rays = state.importance_rays;
+    r.escaped_rays = state.escaped_rays;
+    r.elements = state.forest->size();
+    r.leaves = state.forest->patch_count() + (r.elements - state.forest->patch_count()) / 4 * 3;
+    r.total_power = radiated_power(state);
+    r.escaped_power = state.escaped_power;
+    const ErrorEstimate error = estimate_error(state);
+    r.error_estimate = error.total();
+    r.noise_estimate = error.noise;
+    r.discretisation_estimate = error.discretisation;
+    constexpr double share_with_more = 0.001;
+    r.largest_payload = state.payloads.largest_over_mean();
+    r.high_payload = state.payloads.quantile_over_mean(share_with_more);
+    state.solution.iterations.push_back(r);
+    if (state.monitor.on_progress)
+        state.monitor.on_progress({.rays = r.rays,
+                                   .fraction = fraction_done(state.options.limits, r),
+                                   .relative_error = r.error_estimate,
+                                   .iteration = &state.solution.iterations.back()});
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Returns the largest channel of M + H of each patch [as H].
+/// @param irradiance  One value per element, patches first.
+std::vector<float> patch_light(const Scene& scene, std::span<const Rgb> irradiance);
+
+}  // namespace interflect::detail

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "interflect/base/parallel.h"
+#include "interflect/core.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/light/materials.h"
+
+namespace interflect::detail {
+
+/// Radiosity B = M + rho H of the elements [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
+class Radiosity {
+  public:
+    Radiosity() = default;
+    /// @param emits  False: B = rho H.
+    Radiosity(const Materials& materials, std::span<const Rgb> irradiance, bool emits = true)
+        : materials_(&materials), irradiance_(irradiance), emits_(emits) {}
+
+    bool empty() const { return irradiance_.empty(); }
+    bool emits() const { return emits_; }
+
+    /// B, or 0 if it is not finite.
+    Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
+    Rgb of_element(std::uint32_t patch, std::uint32_t e) const {
+        const Rgb b = as_it_is(patch, e);
+        return is_finite(b) ? b : Rgb(0);
+    }
+    bool is_lost(const ElementForest& forest, std::uint32_t e) const {
+        return !is_finite(as_it_is(forest.patch(e), e));
+    }
+    /// Whether B of an inner element may differ from the mean of its children.
+    bool has_textures() const { return materials_->has_textures(); }
+
+  private:
+    Rgb as_it_is(std::uint32_t patch, std::uint32_t e) const {
+        const MeanSurface surface = materials_->surface(patch, e);
+        const Rgb reflected = surface.reflectance * irradiance_[e];
+        return emits_ ? surface.exitance + reflected : reflected;
+    }
+
+    const Materials* materials_ = nullptr;
+    std::span<const Rgb> irradiance_;
+    bool emits_ = false;
+};
+
+/// Returns the power of an element [lm or W]; with textures, the sum over its leaves.
+inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
+    const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
+    if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
+    RgbD sum(0);
+    for (std::uint32_t k = 0; k < 4; ++k) sum += power_of(forest, light, first_child + k);
+    return sum;
+}
+
+/// Returns the power of all patches [lm or W], summed in double precision and fixed order.
+inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
+    return parallel_sum(forest.patch_count(), elements_at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
+        RgbD sum(0);
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) sum += power_of(forest, light, i);
+        return sum;
+    });
+}
+
+/// Importance per area of the elements [1/m^2], the sum of two parts that may be empty.
+class Importance {
+  public:
+    Importance() = default;
+    explicit Importance(std::span<const float> a, std::span<const float> b = {}) : a_(a), b_(b) {}
+
+    bool empty() const { return a_.empty() && b_.empty(); }
+    float operator[](std::uint32_t e) const { return (a_.empty() ? 0 : a_[e]) + (b_.empty() ? 0 : b_[e]); }
+
+  private:
+    std::span<const float> a_, b_;
+};
+
+}  // namespace interflect::detail

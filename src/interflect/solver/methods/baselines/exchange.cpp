@@ -1,0 +1,229 @@
+#include "interflect/solver/methods/baselines/exchange.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "interflect/base/points.h"
+#include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// A convex polygon of at most `capacity` corners.
+struct Polygon {
+    static constexpr std::size_t capacity = 8;  // clipping at the horizon adds one corner
+
+    std::array<V3d, capacity> corner;
+    std::size_t count = 0;
+
+    void add(const V3d& c) { corner[count++] = c; }
+    std::span<const V3d> corners() const { return {corner.data(), count}; }
+};
+
+/// Returns the element's corners, counter-clockwise as seen from its front.
+Polygon polygon_of(const ElementForest& forest, std::uint32_t e) {
+    const PatchGeometry& geometry = forest.geometry(forest.patch(e));
+    const Cell cell = forest.cell(e);
+    Polygon polygon;
+    polygon.add(V3d(geometry.point(cell.at(0, 0))));
+    polygon.add(V3d(geometry.point(cell.at(1, 0))));
+    if (!geometry.is_triangle()) polygon.add(V3d(geometry.point(cell.at(1, 1))));
+    polygon.add(V3d(geometry.point(cell.at(0, 1))));
+    return polygon;
+}
+
+/// Returns the part of a polygon above the horizon: the plane through the origin with this normal (Sutherland and
+/// Hodgman 1974).
+Polygon clip_to_horizon(std::span<const V3d> polygon, const V3d& normal) {
+    Polygon above;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const V3d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+        const double from_height = normal.dot(from), to_height = normal.dot(to);
+        if (from_height >= 0) above.add(from);
+        if ((from_height > 0 && to_height < 0) || (from_height < 0 && to_height > 0))
+            above.add(from + (to - from) * (from_height / (from_height - to_height)));
+    }
+    return above;
+}
+
+/// Gaussian quadrature on [0, 1] with 2 or 4 points.
+struct GaussRule {
+    std::array<double, 4> node, weight;
+};
+constexpr GaussRule gauss_2{{0.2113248654051871, 0.7886751345948129, 0, 0}, {0.5, 0.5, 0, 0}};
+constexpr GaussRule gauss_4{{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263},
+                            {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269}};
+
+/// Quadrature points and weights on an element.
+struct Quadrature {
+    static constexpr std::size_t capacity = 16;
+
+    double span;  // extent of the points, relative to the element's width
+    std::array<V3f, capacity> point;
+    std::array<double, capacity> weight;  // sums to 1
+    std::size_t count = 0;
+
+    Quadrature(const ElementForest& forest, std::uint32_t e, Effort effort) {
+        const PatchGeometry& geometry = forest.geometry(forest.patch(e));
+        const Cell cell = forest.cell(e);
+        const auto side = static_cast<std::size_t>(effort);
+        const GaussRule& rule = effort == Effort::quick ? gauss_2 : gauss_4;
+        span = rule.node[side - 1] - rule.node[0];
+        double sum = 0;
+        for (std::size_t i = 0; i < side; ++i)
+            for (std::size_t j = 0; j < side; ++j) {
+                // A triangle is a square with one side collapsed to a point (Duffy 1982).
+                const double width = geometry.is_triangle() ? 1 - rule.node[i] : 1;
+                const Parameters p =
+                    cell.at(static_cast<float>(rule.node[i]), static_cast<float>(width * rule.node[j]));
+                point[count] = geometry.point(p);
+                weight[count] = rule.weight[i] * rule.weight[j] * width * static_cast<double>(geometry.jacobian(p));
+                sum += weight[count++];
+            }
+        for (std::size_t k = 0; k < count; ++k) weight[k] /= sum;
+    }
+};
+
+std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
+    return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
+}
+
+/// Unoccluded form factors from the points of one element to another element.
+struct FormFactors {
+    double mean = 0;
+    double spread = 0;  // largest minus smallest, extrapolated to the element's edges
+};
+
+FormFactors form_factors(const ElementForest& forest, const Quadrature& points, std::uint32_t from, std::uint32_t to) {
+    const V3d normal(forest.geometry(forest.patch(from)).normal());
+    const V3d normal_of_to(forest.geometry(forest.patch(to)).normal());
+    const Polygon polygon = polygon_of(forest, to);
+    FormFactors result;
+    double least = 1, most = 0;
+    for (std::size_t k = 0; k < points.count; ++k) {
+        const V3d x(points.point[k]);
+        const bool is_in_front = normal_of_to.dot(x - polygon.corner[0]) > 0;
+        const double f = is_in_front ? form_factor_to_polygon(x, normal, polygon.corners()) : 0;
+        result.mean += points.weight[k] * f;
+        least = std::min(least, f);
+        most = std::max(most, f);
+    }
+    result.spread = (most - least) / points.span;
+    return result;
+}
+
+Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
+Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
+
+/// Visibility tests along lines between elements, with a counter of rays.
+struct LinesOfSight {
+    const ElementForest& forest;
+    const RayCaster& ray_caster;
+    const Panes& panes;
+    std::uint64_t seed;
+    std::int64_t& rays;
+
+    /// Samples Exchange::transmittance and Exchange::variation along lines from the points of the smaller element. Each
+    /// line is weighted by its unoccluded light.
+    void sample(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
+        const PatchGeometry& geometry = forest.geometry(forest.patch(large));
+        const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
+        const Cell cell = forest.cell(large);
+        const float disk = forest.area(large) / static_cast<float>(points.count);  // area represented by y [m^2]
+        PointBlock random;
+        fill_points(PointSet::sobol, mix(mix(seed, place(forest, small)), place(forest, large)), 0, points.count,
+                    random);
+        double all = 0;
+        RgbD free(0, 0, 0);
+        Rgb least(1), most(0);
+        for (std::size_t k = 0; k < points.count; ++k) {
+            const V3f x = points.point[k];
+            const V3f y = geometry.point(geometry.uniform_parameters(random.coordinate[0][k], random.coordinate[1][k],
+                                                                     {cell.u, cell.v}, cell.size));
+            const V3f d = y - x;
+            const float cosines = std::max(0.0f, normal_x.dot(d)) * std::max(0.0f, -normal_y.dot(d)) / d.length2();
+            if (!(cosines > 0)) continue;
+            const float kernel = cosines / (std::numbers::pi_v<float> * d.length2() + disk);
+            const double along_line = points.weight[k] * static_cast<double>(kernel);
+            all += along_line;
+            // Tests both directions: the back of a one-sided face stops no ray, and only one of two coincident faces is
+            // hit.
+            Rgb line = transmittance(small, x, normal_x, large, y);
+            if (line != Rgb(0)) line = smaller(line, transmittance(large, y, normal_y, small, x));
+            free += RgbD(line) * along_line;
+            least = smaller(least, line);
+            most = larger(most, line);
+        }
+        exchange.transmittance = all > 0 ? Rgb(free / all) : Rgb(1);  // 1: no sampled line joins the two fronts
+        exchange.variation = all > 0 ? largest_channel(most - least) : 0;
+    }
+
+    /// Transmittance of the panes on a ray between points of two elements; 0 if another surface blocks the ray.
+    Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
+        const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
+        const Ray ray{origin, (to - origin).normalized()};
+        Hit hit;
+        ray_caster.trace(std::span(&ray, 1), std::span(&hit, 1));
+        ++rays;
+        const std::uint32_t target = forest.patch(element);
+        if (hit.patch == target) return Rgb(1);
+        std::vector<Panes::HitBehind> behind;
+        panes.trace(std::span(&ray, 1), std::span(&hit, 1), behind);
+        const auto found =
+            std::find_if(behind.begin(), behind.end(), [&](const auto& b) { return b.hit.patch == target; });
+        return found == behind.end() ? Rgb(0) : found->transmittance;
+    }
+};
+
+}  // namespace
+
+double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon) {
+    Polygon seen;
+    for (const V3d& corner : polygon) seen.add(corner - x);
+    seen = clip_to_horizon(seen.corners(), normal);
+    double sum = 0;
+    for (std::size_t i = 0; i < seen.count; ++i) {
+        const V3d &r = seen.corner[i], &s = seen.corner[(i + 1) % seen.count];
+        const V3d across = s.cross(r);  // s x r: a polygon that faces x is counter-clockwise as seen from x
+        const double length = across.length();
+        if (length > 0) sum += std::atan2(length, r.dot(s)) * normal.dot(across) / length;
+    }
+    return std::max(0.0, sum / (2 * std::numbers::pi));
+}
+
+bool ExchangeEstimator::face_each_other(const ElementPair& pair) const {
+    const auto reaches_above = [&](std::uint32_t e, std::uint32_t ground) {
+        const V3d normal(forest_.geometry(forest_.patch(ground)).normal());
+        const double height = normal.dot(polygon_of(forest_, ground).corner[0]) +
+                              static_cast<double>(ray_caster_.ray_offset(forest_.patch(ground)));
+        const Polygon polygon = polygon_of(forest_, e);
+        return std::any_of(polygon.corners().begin(), polygon.corners().end(),
+                           [&](const V3d& corner) { return normal.dot(corner) > height; });
+    };
+    return reaches_above(pair.a, pair.b) && reaches_above(pair.b, pair.a);
+}
+
+Exchange ExchangeEstimator::estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const {
+    const Quadrature points_of_a(forest_, pair.a, effort), points_of_b(forest_, pair.b, effort);
+    const FormFactors from_a = form_factors(forest_, points_of_a, pair.a, pair.b);
+    const FormFactors from_b = form_factors(forest_, points_of_b, pair.b, pair.a);
+    const double area_a = forest_.area(pair.a), area_b = forest_.area(pair.b);
+    const bool a_is_smaller = area_a <= area_b;
+    Exchange exchange;
+    exchange.area = static_cast<float>(a_is_smaller ? area_a * from_a.mean : area_b * from_b.mean);
+    if (exchange.area == 0) return exchange;
+    exchange.spread_over_a = static_cast<float>(area_a * from_a.spread);
+    exchange.spread_over_b = static_cast<float>(area_b * from_b.spread);
+    LinesOfSight lines{forest_, ray_caster_, panes_, seed_, rays};
+    if (a_is_smaller)
+        lines.sample(pair.a, pair.b, points_of_a, exchange);
+    else
+        lines.sample(pair.b, pair.a, points_of_b, exchange);
+    return exchange;
+}
+
+}  // namespace interflect::detail

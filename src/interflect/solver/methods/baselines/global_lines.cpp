@@ -1,0 +1,260 @@
+#include <ImathBox.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/parallel.h"
+#include "interflect/base/points.h"
+#include "interflect/base/random.h"
+#include "interflect/base/state_archive.h"
+#include "interflect/elements/forest.h"
+#include "interflect/geometry/tangent_frame.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/solver/methods/passes.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Lines per task; a task finds the next crossing of all its lines at a time.
+constexpr std::size_t lines_per_task = PointBlock::capacity;
+
+/// Deposits per line, on average over all lines, at which the sums of a patch overflow. A line crosses a patch once;
+/// more deposits occur through the backs of one-sided faces and through panes.
+constexpr double lines_headroom = 0x1p8;
+
+/// Sphere that contains the scene.
+struct LineDomain {
+    V3f centre;
+    float radius;
+
+    explicit LineDomain(const Scene& scene) {
+        Imath::Box3f box;
+        for (const V3f& v : scene.vertices) box.extendBy(v);
+        centre = box.center();
+        float square = 0;
+        for (const V3f& v : scene.vertices) square = std::max(square, (v - centre).length2());
+        constexpr float margin = 1.0001f;  // for rounding
+        radius = margin * std::sqrt(square);
+    }
+    /// Returns the area of the disk crossed by the lines of one direction [m^2].
+    double cross_section() const {
+        return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
+    }
+};
+
+/// Patch that faces a line, and the patch that it sees in the opposite direction, or `none`.
+struct LineSegment {
+    std::uint32_t front, back;
+    bool is_mutual;  ///< Whether `back` also sees `front`: not through the back of a one-sided face.
+};
+
+/// Lines of one task that may still cross a patch. Each thread reuses its bundle.
+struct LineBundle {
+    PointBlock points;
+    std::vector<Ray> lines, looking_back;
+    /// Per line: tolerance for a patch to coincide with the last crossed one, along the line [m]; infinite before the
+    /// first crossing.
+    std::vector<float> slack;
+    std::vector<std::uint32_t> crossed;  ///< Last patch that each line crossed.
+    std::vector<Hit> hits, seen;
+    std::vector<LineSegment> segments;
+    std::vector<Panes::HitBehind> behind;  ///< Hits through panes, by index of the segment.
+};
+
+/// Generates uniform lines: directions are uniform on the sphere, crossings are uniform on the disk through the centre.
+void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
+    fill_points(set, key, first, bundle.lines.size(), bundle.points);
+    bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
+    bundle.crossed.assign(bundle.lines.size(), none);
+    const auto& [a, b, c, d] = bundle.points.coordinate;
+    constexpr float turn = 2 * std::numbers::pi_v<float>;
+    for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
+        const float z = 1 - 2 * a[i], across = std::sqrt(std::max(0.0f, 1 - z * z));
+        const V3f direction(across * std::cos(turn * b[i]), across * std::sin(turn * b[i]), z);
+        const TangentFrame frame(direction);
+        const float r = std::sqrt(c[i]);
+        const V3f offset = frame.s * (r * std::cos(turn * d[i])) + frame.t * (r * std::sin(turn * d[i]));
+        bundle.lines[i] = {domain.centre + domain.radius * (offset - direction), direction};
+    }
+}
+
+/// Finds the next patch that faces each line, and the first patch in the opposite direction with the patches behind
+/// panes. Moves each line behind its patch. Drops lines that hit no patch. Also drops a line that hits the same patch
+/// again, which only rounding can cause: a line crosses a flat patch once.
+void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
+    constexpr float offsets_apart = 4;  // maximum distance of coincident patches, see RayCaster::ray_offset()
+    bundle.segments.clear();
+    bundle.looking_back.clear();
+    bundle.hits.resize(bundle.lines.size());
+    ray_caster.trace(bundle.lines, bundle.hits);
+    for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
+        const auto [patch, distance] = bundle.hits[i];
+        if (patch == none || patch == bundle.crossed[i]) continue;
+        const V3f direction = bundle.lines[i].direction;
+        const PatchGeometry& geometry = forest.geometry(patch);
+        // Projects the hit onto the patch, like other ray origins: its error may exceed the ray offset.
+        const V3f x = geometry.point(geometry.parameters_of(bundle.lines[i].origin + distance * direction));
+        const V3f offset = ray_caster.ray_offset(patch) * geometry.normal();
+        const std::size_t kept = bundle.segments.size();
+        bundle.looking_back.push_back({x + offset, -direction});
+        bundle.lines[kept] = {x - offset, direction};
+        bundle.hits[kept].distance = distance + bundle.slack[i];
+        bundle.slack[kept] = offsets_apart * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
+        bundle.crossed[kept] = patch;
+        bundle.segments.push_back({patch, none, true});
+    }
+    bundle.lines.resize(bundle.segments.size());
+    bundle.seen.resize(bundle.segments.size());
+    ray_caster.trace(bundle.looking_back, bundle.seen);
+    panes.trace(bundle.looking_back, bundle.seen, bundle.behind);
+    for (std::size_t i = 0; i < bundle.segments.size(); ++i) {
+        const auto [back, distance] = bundle.seen[i];
+        bundle.segments[i].back = back;
+        bundle.segments[i].is_mutual = back != none && distance <= bundle.hits[i].distance;
+    }
+}
+
+/// Contributions of the lines of a step, as integers: their sums do not depend on the order of deposits.
+class LineSums {
+  public:
+    /// @param power_per_radiosity  Power per unit of radiosity that a line carries along a segment, in each direction
+    /// [m^2].
+    LineSums(const ElementForest& forest, const Radiosity& light, double power_per_radiosity, std::int64_t lines)
+        : power_per_radiosity_(power_per_radiosity), power_(0), square_(0) {
+        double brightest = 0;
+        for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+            radiosity_.push_back(light.of(forest, i));
+            brightest = std::max(brightest, static_cast<double>(largest_channel(radiosity_[i])));
+        }
+        const double most = lines_headroom * static_cast<double>(lines) * power_per_radiosity * brightest;
+        power_ = FixedPoint(most);
+        square_ = FixedPoint(most * power_per_radiosity * brightest);
+        received_.resize(radiosity_.size());
+        squares_.resize(radiosity_.size(), 0);
+        started_.resize(radiosity_.size(), 0);
+        escaped_.resize(radiosity_.size());
+        escaped_rays_.resize(radiosity_.size(), 0);
+    }
+
+    void add(const LineSegment& segment) {
+        add_concurrently(started_[segment.front], 1);
+        carry(segment.front, segment.back, Rgb(segment.is_mutual ? 1.0f : 2.0f));
+        if (!segment.is_mutual) return;
+        add_concurrently(started_[segment.back], 1);
+        carry(segment.back, segment.front, Rgb(1));
+    }
+    /// Transmits light through the panes of a segment, in one direction only. Lines of the opposite direction carry the
+    /// opposite light, because a pane may be one-sided.
+    void add(const LineSegment& segment, const Panes::HitBehind& behind) {
+        carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
+    }
+
+    Received received(const ElementForest& forest) const {
+        Received r;
+        for (std::uint32_t i = 0; i < received_.size(); ++i) {
+            const double area = forest.area(i);
+            const RgbD arrived = power_.to_colour(received_[i]);
+            const RgbD lost = power_.to_colour(escaped_[i]);
+            r.irradiance.emplace_back(arrived / area);
+            r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
+            r.escaped_power += lost;
+            r.shot_power += arrived + lost;
+            if (channel_sum(radiosity_[i]) > 0)
+                r.escaped_rays += escaped_rays_[i];  // excludes rays of dark walls into the open
+        }
+        return r;
+    }
+    /// Returns the number of segments along which each patch sent light.
+    const std::vector<std::int64_t>& started() const { return started_; }
+
+  private:
+    /// @param to      A patch, or none if the light escapes.
+    /// @param factor Factor per channel: 2 if the lines of the opposite direction do not carry the same light.
+    void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
+        const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
+        if (to == none) {
+            add_concurrently(escaped_[from], power_.from(power));
+            add_concurrently(escaped_rays_[from], 1);
+            return;
+        }
+        const double y = luminance(power);
+        add_concurrently(received_[to], power_.from(power));
+        add_concurrently(squares_[to], square_.from(y * y));
+    }
+
+    double power_per_radiosity_;
+    std::vector<Rgb> radiosity_;
+    FixedPoint power_, square_;
+    std::vector<FixedPoint::Value> received_, escaped_;
+    std::vector<std::int64_t> squares_, started_, escaped_rays_;
+};
+
+/// Passes whose bounces are transported by global lines (Sbert 1993, 1997), see docs/method.md. The lines are uniform
+/// in a sphere of radius R around the scene and independent of the light sources. Every two patches that see each other
+/// along a line exchange light in both directions. Panes transmit it.
+///
+/// With N lines and B_a 4 pi R^2 / (2 N) along each segment, the expected power from a to b is A_a F_ab B_a. A line
+/// costs 1 + 2 h rays on average, where h = sum A / (4 pi R^2); this mean gives the number of lines of a step. Constant
+/// on patches: no refinement. Cost: O(N h log(patches)) time.
+class GlobalLines final : public Passes {
+  public:
+    explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
+        for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i)
+            area_ += state.forest->area(i) * state.ray_caster.uncovered_share(i);
+    }
+
+  protected:
+    Received trace_step(SolverState& state, TransportStep step) override {
+        const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
+        const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
+        const ElementForest& forest = *state.forest;
+        LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
+        // Each bounce has its own lines: the product of bounces is unbiased only if they are independent.
+        const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
+        PerThread<LineBundle> bundles;
+        std::atomic<bool> is_cut_short{false};
+        const auto trace_some = [&](std::size_t begin, std::size_t end) {
+            LineBundle& bundle = bundles.local();
+            bundle.lines.resize(end - begin);
+            make_lines(domain_, state.options.experimental.points, key, begin, bundle);
+            // A line crosses each flat patch at most once.
+            for (std::uint32_t i = 0; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
+                if (is_cut_short || state.stop.is_due()) {
+                    is_cut_short = true;
+                    return;
+                }
+                find_segments(forest, state.ray_caster, panes_, bundle);
+                for (const LineSegment& segment : bundle.segments) sums.add(segment);
+                for (const Panes::HitBehind& behind : bundle.behind) sums.add(bundle.segments[behind.ray], behind);
+            }
+        };
+        parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop, trace_some);
+        if (is_cut_short) throw Interrupted();
+        ++state.streams.allocations;
+        Received received = sums.received(forest);
+        state.escaped_rays += received.escaped_rays;
+        state.streams.used.resize(forest.size(), 0);
+        for (std::uint32_t i = 0; i < forest.size(); ++i)
+            state.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
+        return received;
+    }
+
+  private:
+    static constexpr std::uint64_t line_purpose = 0x6c696e6573;
+    const LineDomain domain_;
+    const Panes panes_;
+    double area_ = 0;  // area of the patches that lines can hit [m^2]
+};
+
+}  // namespace
+
+std::unique_ptr<IterationMethod> make_global_lines(SolverState& state) { return std::make_unique<GlobalLines>(state); }
+
+}  // namespace interflect::detail

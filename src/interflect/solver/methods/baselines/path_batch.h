@@ -1,0 +1,245 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/parallel.h"
+#include "interflect/base/points.h"
+#include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/solver/sampling/ray_allocation.h"
+#include "interflect/solver/sampling/ray_maker.h"
+#include "interflect/solver/state/solver_state.h"
+
+namespace interflect::detail {
+
+/// Paths per task of a PathBatch, which traces one bounce of all of them at a time. Large enough for long Embree
+/// batches.
+inline constexpr std::size_t paths_per_task = 4096;
+/// Maximum number of copies of a particle at a hit. If importance rises further, later hits split it again.
+inline constexpr double most_copies = 8;
+/// Ratio of received to expected power at which the sums of a batch overflow; leaves 2^45 units for the expected power.
+inline constexpr double sum_headroom = 0x1p16;
+/// Keys of the random numbers, one per purpose.
+enum class WalkPurpose : std::uint64_t {
+    light = 1,
+    importance,
+    pilot,
+    batch,
+    allocation,
+    emission,
+    survival,
+    reflection
+};
+
+constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uint64_t index = 0) {
+    return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
+}
+
+/// WalkSource of the particles. Every vector has an entry per patch; `emitted` and `density` continue with the parts of
+/// emitting luminaires. Importance (Eq. 7) is emitted by the cameras. A patch first emits the reflected part of the
+/// importance that it received from them, equal in all channels.
+struct WalkSource {
+    std::vector<Rgb> emitted;      ///< Initial power of a source: W [lm or W], or rho V.
+    std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
+    std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
+    bool is_grey = false;          ///< Importance: panes transmit the mean of their channels.
+};
+
+/// Contributions of a batch of paths, as integers: their sums do not depend on the order of deposits.
+struct PathSums {
+    FixedPoint unit;
+    std::vector<FixedPoint::Value> received;  ///< Power received by each patch.
+    FixedPoint::Value escaped{};
+    std::vector<std::int64_t> started;  ///< Number of rays that left each patch.
+    std::int64_t rays = 0, escaped_rays = 0;
+
+    /// @param hits Maximum number of hits of a ray: more than one if it passes through panes.
+    PathSums(const WalkSource& payload, double hits)
+        : unit(sum_headroom * hits * most_expected(payload)),
+          received(payload.reflectance.size()),
+          started(payload.reflectance.size(), 0) {}
+
+    /// Returns an upper bound of the expected received power in any channel: emitted power over 1 - rho.
+    static double most_expected(const WalkSource& payload) {
+        double power = 0, rho = 0;
+        for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
+        for (const Rgb& r : payload.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
+        return power / (1 - rho);
+    }
+};
+
+/// Power about to leave a patch or a part of the luminaires.
+struct Particle {
+    std::uint32_t patch;
+    Rgb power;
+};
+
+/// Active particles of one task. Each thread reuses its wavefront.
+struct Wavefront {
+    std::vector<Particle> particles, reflected;
+    std::vector<Ray> rays;
+    std::vector<Parameters> origins;
+    std::vector<Hit> hits;
+    std::vector<Panes::HitBehind> behind;
+    PointBlock points;
+
+    void make_room_for_rays() {
+        rays.resize(particles.size());
+        origins.resize(particles.size());
+        hits.resize(particles.size());
+    }
+};
+
+/// Batch of paths, each traced from its emission to its end.
+class PathBatch {
+  public:
+    /// @param paths > 0.
+    /// @param key Key of the batch's random numbers.
+    PathBatch(const SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key)
+        : forest_(*state.forest),
+          emission_(state.emission),
+          ray_caster_(state.ray_caster),
+          panes_(state.scene, state.ray_caster),
+          stop_(state.stop),
+          first_points_(state.options.experimental.points),
+          payload_(payload),
+          paths_(paths),
+          key_(key),
+          sums_(payload, panes_.empty() ? 1 : 1 + Panes::most_in_a_row) {
+        const auto weight = [&](std::size_t i) {
+            return static_cast<double>(channel_sum(payload.emitted[i])) * payload.density[i];
+        };
+        double sum = 0;
+        for (std::size_t i = 0; i < payload.emitted.size(); ++i) sum += weight(i);
+        if (!(sum > 0)) return;
+        quantum_ = sum / static_cast<double>(paths);
+        for (std::size_t i = 0; i < payload.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
+        allocation_.emplace(q_, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
+    }
+
+    const PathSums& follow() {
+        if (!(quantum_ > 0)) return sums_;
+        PerThread<Wavefront> wavefronts;
+        const auto follow_some = [&](std::size_t begin, std::size_t end) {
+            follow(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), wavefronts.local());
+        };
+        parallel_for_ranges(static_cast<std::size_t>(paths_), paths_per_task, stop_, follow_some);
+        return sums_;
+    }
+
+  private:
+    void follow(std::int64_t begin, std::int64_t end, Wavefront& w) {
+        const auto task = static_cast<std::uint64_t>(begin);
+        emit(begin, end, w);
+        for (std::uint64_t bounce = 1; !w.particles.empty(); ++bounce) {
+            ray_caster_.trace(w.rays, w.hits);
+            panes_.trace(w.rays, w.hits, w.behind);
+            score(w);
+            survive(random_double(sub_key(key_, WalkPurpose::survival, task), bounce), w);
+            reflect(mix(sub_key(key_, WalkPurpose::reflection, task), bounce), w);
+        }
+    }
+
+    /// Starts the paths begin ... end - 1. A path of source s carries W_s / (N q_s). The paths of a source are
+    /// consecutive points of its sequence.
+    void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
+        w.particles.resize(static_cast<std::size_t>(end - begin));
+        w.make_room_for_rays();
+        const auto emit_some = [&](std::size_t source, std::int64_t first, std::int64_t from, std::int64_t to) {
+            const auto s = static_cast<std::uint32_t>(source);
+            const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
+            const double share = quantum_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
+            std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(payload_.emitted[s]) * share)});
+            const std::uint64_t key = sub_key(key_, WalkPurpose::emission, s);
+            const auto first_sample = static_cast<std::uint64_t>(from - first);
+            const std::span<Ray> rays = std::span(w.rays).subspan(offset, count);
+            if (s < forest_.patch_count())
+                shoot_rays(forest_.geometry(s), Cell(), ray_caster_.ray_offset(s), first_points_, key, first_sample,
+                           w.points, rays, std::span(w.origins).subspan(offset, count));
+            else
+                emission_.shoot(s - forest_.patch_count(), first_points_, key, first_sample, w.points, rays);
+        };
+        allocation_->for_each_source(begin, end, emit_some);
+    }
+
+    /// Deposits the power of every particle at the first patch that it hits, and the filtered power at the patches
+    /// behind panes. Lists the power that each of these patches reflects.
+    void score(Wavefront& w) {
+        FixedPoint::Value escaped{};
+        std::int64_t escaped_rays = 0;
+        w.reflected.clear();
+        const auto arrive = [&](std::uint32_t patch, const Rgb& power) {
+            const FixedPoint::Value term = sums_.unit.from(RgbD(power));
+            if (patch == none) {
+                for (std::size_t c = 0; c < 3; ++c) escaped[c] += term[c];
+                ++escaped_rays;
+                return;
+            }
+            add_concurrently(sums_.received[patch], term);
+            w.reflected.push_back({patch, payload_.reflectance[patch] * power});
+        };
+        auto behind = w.behind.begin();
+        for (std::size_t i = 0; i < w.particles.size(); ++i) {
+            const auto& [source, power] = w.particles[i];
+            if (source < sums_.started.size()) add_concurrently(sums_.started[source], 1);
+            arrive(w.hits[i].patch, power);
+            for (; behind != w.behind.end() && behind->ray == i; ++behind) {
+                const Rgb& t = behind->transmittance;
+                arrive(behind->hit.patch, power * (payload_.is_grey ? Rgb(channel_sum(t) / 3) : t));
+            }
+        }
+        add_concurrently(sums_.escaped, escaped);
+        add_concurrently(sums_.rays, static_cast<std::int64_t>(w.particles.size()));
+        add_concurrently(sums_.escaped_rays, escaped_rays);
+    }
+
+    /// Applies Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each
+    /// with 1/n of the power. With n = power * density / quantum, a copy carries the power of a particle emitted there.
+    /// One random number samples the copies of a wavefront systematically, so their total hardly varies.
+    void survive(double offset, Wavefront& w) const {
+        w.particles.clear();
+        double cumulative = offset;
+        for (const auto& [patch, power] : w.reflected) {
+            const double n =
+                std::min(most_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / quantum_);
+            const double before = std::floor(cumulative);
+            cumulative += n;
+            const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
+            if (copies > 0) w.particles.insert(w.particles.end(), copies, {patch, power * static_cast<float>(1 / n)});
+        }
+    }
+
+    /// Generates the rays of the reflected particles.
+    void reflect(std::uint64_t key, Wavefront& w) const {
+        w.make_room_for_rays();
+        for (std::size_t i = 0; i < w.particles.size(); ++i)
+            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.ray_offset(w.particles[i].patch),
+                       PointSet::random, key, i, w.points, std::span(w.rays).subspan(i, 1),
+                       std::span(w.origins).subspan(i, 1));
+    }
+
+    const ElementForest& forest_;
+    const Emission& emission_;
+    const RayCaster& ray_caster_;
+    const Panes panes_;
+    const StopRequest& stop_;
+    PointSet first_points_;
+    const WalkSource& payload_;
+    std::int64_t paths_;
+    std::uint64_t key_;
+    PathSums sums_;
+    double quantum_ = 0;    // power of a particle where the density is 1, summed over the channels
+    std::vector<float> q_;  // share of the paths that start on each source
+    std::optional<RayAllocation> allocation_;
+};
+
+}  // namespace interflect::detail

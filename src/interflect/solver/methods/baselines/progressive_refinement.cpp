@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/state_archive.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/error/noise_update.h"
+#include "interflect/solver/iteration/iteration_method.h"
+#include "interflect/solver/iteration/merge.h"
+#include "interflect/solver/iteration/run_step.h"
+#include "interflect/solver/sampling/ray_plan.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// A step shoots all patches whose sampling weight is at least this share of the largest.
+constexpr float share_of_largest = 0.5f;
+/// The last step shoots the rest: if less than this share of the initial amount is unshot, or if a step would get fewer
+/// rays.
+constexpr double negligible_rest = 0.01;
+constexpr std::int64_t fewest_rays_of_step = 16;
+/// Sum of the weights of all steps, until a series of steps has measured it.
+constexpr double assumed_shots = 2;
+
+/// Distribution of rays over one series of steps, from darkness until little is left to shoot. Weights are relative to
+/// the initially unshot amount.
+struct ShotBudget {
+    std::int64_t left;  ///< Rays.
+    double expected;    ///< Sum of the weights of all steps.
+    double shot = 0;    ///< Sum of the weights so far.
+
+    /// Returns the expected sum for the next series.
+    double measured() const { return shot > 0 ? shot : expected; }
+    /// @param weight Amount selected for a step.
+    /// @param unshot Total unshot amount. Later reflections are expected in proportion to it.
+    std::int64_t share(double weight, double unshot) const {
+        return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
+    }
+    /// Returns the number of random walks for the remaining rays: a walk shoots its power `expected` times.
+    std::int64_t walks() const {
+        return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
+    }
+    bool is_last(double weight, double unshot) const {
+        const std::int64_t next = share(weight, unshot);
+        return next < fewest_rays_of_step || left - next < fewest_rays_of_step;
+    }
+};
+
+/// Keeps the sampling weights that are at least share_of_largest times the largest; sets the others to 0.
+void choose_largest(std::vector<float>& q) {
+    const float least = share_of_largest * *std::max_element(q.begin(), q.end());
+    for (float& weight : q)
+        if (weight < least) weight = 0;
+}
+
+double sum_of(const std::vector<float>& q) {
+    double sum = 0;
+    for (const float weight : q) sum += weight;
+    return sum;
+}
+
+/// Removes the amounts that were shot and adds the received ones.
+template <class T>
+void replace_shot(std::vector<T>& unshot, const std::vector<float>& chosen, const std::vector<T>& arrived) {
+    for (std::size_t i = 0; i < unshot.size(); ++i) unshot[i] = (chosen[i] > 0 ? T(0) : unshot[i]) + arrived[i];
+}
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+/// A series of steps of importance.
+struct ImportanceSeries {
+    ShotBudget budget;
+    std::vector<float> unshot, fresh;  ///< The latter summed over the steps.
+    double first = 0;                  ///< Unshot before the first step.
+};
+
+/// A series of steps of power.
+struct PowerSeries {
+    ShotBudget budget;
+    ImportanceWeights weights;
+    std::vector<Rgb> unshot;                           ///< Irradiance.
+    Estimate fresh;                                    ///< Sum of the steps.
+    bool emits = true;                                 ///< Whether the next step is the first.
+    double first_power = 0, first_weighted_power = 0;  ///< See PowerStep; before the first step.
+};
+
+/// Performs one step. @return Whether another follows.
+bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
+    const ElementForest& forest = *state.forest;
+    double unshot = 0;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i)
+        unshot += static_cast<double>(state.materials.mean_reflectance(i) * series.unshot[i]) * forest.area(i);
+    if (!(unshot > 0)) return false;
+    if (series.budget.shot == 0) series.first = unshot;
+    unshot /= series.first;
+    TransportStep step(plan_importance(state.materials, state.solution, Importance(series.unshot), 0));
+    std::vector<float> chosen = step.q;
+    choose_largest(chosen);
+    double weight = unshot * sum_of(chosen) / sum_of(step.q);
+    const bool is_last = unshot < negligible_rest || series.budget.is_last(weight, unshot);
+    if (is_last) chosen = step.q, weight = unshot;
+    step.q = chosen;
+    step.rays = is_last ? series.budget.left : series.budget.share(weight, unshot);
+    const std::int64_t rays = step.rays;
+    const Received received = run_step(state, std::move(step));
+    state.importance_rays += rays;
+    series.budget.left -= rays;
+    series.budget.shot += weight;
+    replace_shot(series.unshot, chosen, received.importance);
+    for (std::size_t i = 0; i < series.fresh.size(); ++i) series.fresh[i] += received.importance[i];
+    return !is_last;
+}
+
+/// Performs one step. @return Whether another follows.
+bool shoot_some_power(SolverState& state, PowerSeries& series) {
+    const Radiosity light(state.materials, series.unshot, series.emits);
+    auto [plan, power, weighted_power, lost] =
+        plan_power(state.materials, state.emission, state.solution, light, series.weights, false, 0);
+    if (!(power > 0)) return false;
+    TransportStep step(std::move(plan));
+    if (series.emits) series.first_power = power, series.first_weighted_power = weighted_power;
+    const double beta = series.first_weighted_power > 0 ? state.options.experimental.beta : 1;
+    const double unshot =
+        beta * ratio(power, series.first_power) + (1 - beta) * ratio(weighted_power, series.first_weighted_power);
+    std::vector<float> chosen = step.q;
+    if (series.emits)  // all emitters, and all parts of the luminaires
+        for (std::uint32_t i = 0; i < state.forest->size(); ++i)
+            chosen[i] = channel_sum(state.materials.exitance(i)) > 0 ? chosen[i] : 0;
+    else
+        choose_largest(chosen);
+    double weight = unshot * sum_of(chosen) / sum_of(step.q);
+    // Unweighted power: unimportant power may reach important patches when it is shot.
+    const bool is_last = power < negligible_rest * series.first_power || series.budget.is_last(weight, unshot);
+    if (is_last) chosen = step.q, weight = unshot * series.budget.expected;
+    step.q = chosen;
+    const std::int64_t rays = is_last ? series.budget.left : series.budget.share(weight, unshot);
+    step.to_the_end = is_last;
+    step.rays = is_last ? series.budget.walks() : rays;
+    const Received received = run_step(state, std::move(step));
+    state.power_rays += rays;
+    state.payloads += received.payloads;
+    state.solution.non_finite += lost;
+    series.fresh.escaped_power += received.escaped_power;
+    series.budget.left -= rays;
+    series.budget.shot += weight;
+    series.emits = false;
+    replace_shot(series.unshot, chosen, received.irradiance);
+    for (std::size_t i = 0; i < series.unshot.size(); ++i) {
+        series.fresh.irradiance[i] += received.irradiance[i];
+        series.fresh.variance[i] += received.variance[i];
+    }
+    return !is_last;
+}
+
+/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995) with rays in place of form factors, see
+/// docs/method.md. Each step shoots the patches with the most unshot power, weighted by importance if there is a view.
+/// The first step shoots the emitters. Importance is computed by the same steps in dual order. A step is a batch of all
+/// patches with at least half of the largest amount, so transport() traces long batches.
+///
+/// An iteration is a solution from darkness. Random walks complete its last step of power, and carry most of the power
+/// if rays are few. Constant on patches: no refinement. The same seed gives the same bits for any number of threads.
+class ProgressiveRefinement final : public IterationMethod {
+  public:
+    /// Computes importance, which guides the first power rays.
+    void prepare(SolverState& state) override {
+        current_.importance_history = 0;
+        shoot_importance(state,
+                         std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
+        state.schedule.began_with(0, state.importance_rays);
+    }
+    void update_importance(SolverState& state, IterationPlan& plan) override;
+    Estimate trace(SolverState& state, IterationPlan& plan) override;
+    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void discard() override { current_ = before_; }
+    void change_views(SolverState& state) override;
+    void archive(StateArchive& archive) override;
+
+  private:
+    std::int64_t lacking_importance(const SolverState& state, std::int64_t planned) const;
+    void shoot_importance(SolverState& state, std::int64_t rays);
+
+    struct Numbers {
+        double importance_shots = assumed_shots, power_shots = assumed_shots;  // see ShotBudget::expected
+        std::int64_t importance_history = 0;                                   // number of rays in the mean
+    };
+    Numbers current_, before_;  // the latter before the iteration
+};
+
+/// Returns the number of rays that importance lacks of its share alpha of `planned` rays in total.
+std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
+    if (importance_use(state.solution) != ImportanceUse::full) return 0;
+    const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
+    return std::max<std::int64_t>(0, share - current_.importance_history);
+}
+
+/// Transports importance from the views and merges the result with the mean.
+void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t rays) {
+    if (rays <= 0) return;
+    ImportanceSeries series{{rays, current_.importance_shots}, state.solution.view_importance, {}};
+    series.fresh.assign(series.unshot.size(), 0.0f);
+    while (shoot_some_importance(state, series)) {
+    }
+    current_.importance_shots = series.budget.measured();
+    current_.importance_history += rays;
+    const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(current_.importance_history));
+    std::vector<float>& psi = state.solution.indirect_importance;
+    for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (series.fresh[i] - psi[i]);
+}
+
+void ProgressiveRefinement::update_importance(SolverState& state, IterationPlan& plan) {
+    before_ = current_;
+    plan.importance_rays = std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
+    const std::int64_t rays_before = state.importance_rays;
+    shoot_importance(state, plan.importance_rays);
+    plan.traced = state.importance_rays - rays_before;
+}
+
+Estimate ProgressiveRefinement::trace(SolverState& state, IterationPlan& plan) {
+    const std::vector<Rgb> dark(state.forest->size(), Rgb(0));
+    PowerSeries series{{plan.rays - plan.importance_rays, current_.power_shots},
+                       importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance),
+                       dark,
+                       {dark, std::vector<float>(dark.size(), 0.0f), {}}};
+    if (series.budget.left > 0) {
+        const std::int64_t rays_before = state.power_rays;
+        state.payloads = {};
+        while (shoot_some_power(state, series)) {
+        }
+        current_.power_shots = series.budget.measured();
+        plan.traced += state.power_rays - rays_before;
+    }
+    // Rays stay unused if no surface reflects the importance or the light.
+    plan.traced = std::max<std::int64_t>(1, plan.traced);
+    return std::move(series.fresh);
+}
+
+void ProgressiveRefinement::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+    IterationPlan of_power = plan;
+    of_power.rays -= plan.importance_rays;
+    if (of_power.rays == 0) return;
+    if (!plan.warms_up) estimate_noise(state, estimate, of_power.rays);
+    detail::merge(state, state.solution.irradiance, estimate.irradiance, of_power);
+    merge_escaped_power(state, estimate.escaped_power, of_power);
+    update_history(state, of_power);
+}
+
+void ProgressiveRefinement::change_views(SolverState& state) {
+    IterationMethod::change_views(state);
+    current_.importance_history = 0;
+    current_.importance_shots = assumed_shots;
+}
+
+void ProgressiveRefinement::archive(StateArchive& archive) {
+    archive("pr/importance_shots", current_.importance_shots);
+    archive("pr/power_shots", current_.power_shots);
+    archive("pr/importance_history", current_.importance_history);
+}
+
+}  // namespace
+
+std::unique_ptr<IterationMethod> make_progressive_refinement(SolverState&) {
+    return std::make_unique<ProgressiveRefinement>();
+}
+
+}  // namespace interflect::detail

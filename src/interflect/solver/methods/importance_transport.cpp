@@ -1,0 +1,38 @@
+#include "interflect/solver/methods/importance_transport.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+#include "interflect/solver/iteration/run_step.h"
+#include "interflect/solver/methods/bounce_budget.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// The transport ends when at most this share of importance is unshot.
+constexpr double negligible_importance = 0.005;
+
+}  // namespace
+
+void find_importance(SolverState& state, std::int64_t rays) {
+    Solution& solution = state.solution;
+    std::vector<float> unshot = solution.view_importance;
+    BounceBudget budget(rays, 0);
+    double left = 1;  // sum of the importance received in a bounce; initially all of V
+    while (left > negligible_importance && !budget.is_last()) {
+        TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
+                                           std::max<std::int64_t>(1, budget.next(left).expected)));
+        state.importance_rays += step.rays;
+        unshot = run_step(state, std::move(step)).importance;
+        left = 0;
+        for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
+            solution.indirect_importance[e] += unshot[e];
+            if (e < state.forest->patch_count()) left += static_cast<double>(unshot[e]) * state.forest->area(e);
+        }
+    }
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interflect/solver/state/solver_state.h"
+
+namespace interflect::detail {
+
+/// Transports importance from the views bounce by bounce (Eq. 7, 8) with about `rays` rays. Adds each
+/// bounce to the estimate. @throws Interrupted
+void find_importance(SolverState& state, std::int64_t rays);
+
+}  // namespace interflect::detail

@@ -1,0 +1,83 @@
+#include "interflect/solver/noise/noise_model.h"
+
+#include <algorithm>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Decay of earlier iterations, because mesh and sampling weights change.
+constexpr double memory = 0.75;
+constexpr double largest_scale = 100;
+/// Number of contributions at siblings below which their measured shares of the noise count less than equal shares.
+constexpr float few_arrivals = 16;
+
+}  // namespace
+
+NoiseModel::Spread& NoiseModel::Spread::operator+=(const Spread& other) {
+    for (std::size_t n = 0; n < rarities; ++n) {
+        observed[n] += other.observed[n];
+        independent[n] += other.independent[n];
+    }
+    return *this;
+}
+
+void NoiseModel::grow(const ElementForest& forest, std::uint32_t first) {
+    inherit(forest, first, per_ray_);
+    for (std::uint32_t e = first; e < forest.size(); ++e) per_ray_[e] = 4 * per_ray_[forest.parent(e)];
+}
+
+std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
+                                        float rays) const {
+    float variance = 0, area = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) variance += forest.area(e) * per_ray_[e], area += forest.area(e);
+    std::array<float, 4> shares{1, 1, 1, 1};
+    if (!(variance > 0) || !(rays > 0)) return shares;
+    variance /= area;
+    const float h = luminance(mean[forest.parent(first)]);
+    const float contributions = 4 * rays * h * h / variance, trust = contributions / (contributions + few_arrivals);
+    for (std::uint32_t k = 0; k < 4; ++k) shares[k] = trust * per_ray_[first + k] / variance + (1 - trust);
+    return shares;
+}
+
+void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
+                     std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight) {
+    const Spread spread =
+        parallel_sum(forest.size(), elements_at_once, Spread(), [&](std::size_t begin, std::size_t end) {
+            Spread sum;
+            for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+                const float m = history[e];
+                if (!(m > 0)) continue;
+                float difference = luminance(fresh.irradiance[e]) - luminance(mean[e]);
+                if (const std::uint32_t parent = forest.parent(e); parent != none)
+                    difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
+                const double w = weight(e);
+                const std::size_t n = rarity(forest, mean, e);
+                // Expected value of the observed difference for independent rays.
+                const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
+                sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
+                sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);
+            }
+            return sum;
+        });
+    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e) {
+            const float share = iterations_ == 0 ? 1 : rays / (rays + std::max(history[e], rays));
+            per_ray_[e] += share * (rays * fresh.variance[e] - per_ray_[e]);
+        }
+    });
+    ++iterations_;
+    if (!is_known()) return;
+    for (std::size_t n = 0; n < rarities; ++n) {
+        spread_.observed[n] = memory * spread_.observed[n] + spread.observed[n];
+        spread_.independent[n] = memory * spread_.independent[n] + spread.independent[n];
+        if (!(spread_.independent[n] > 0)) continue;
+        const double scale = spread_.observed[n] / spread_.independent[n];
+        scale_[n] = static_cast<float>(std::clamp(scale, 1 / largest_scale, largest_scale));
+    }
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interflect/base/state_archive.h"
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solution.h"
+#include "interflect/solver/iteration/iteration_method.h"
+#include "interflect/solver/state/solver_state.h"
+
+namespace interflect::detail {
+
+/// A run of the solver: the scene, the method and their state. See Solver.
+struct Run {
+    /// @param caster  Of this scene. @throws InputError as Solver does.
+    Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options);
+
+    const std::shared_ptr<const Scene> undimmed_scene;
+    std::shared_ptr<const Scene> scene = undimmed_scene;  // with current exitances
+    const std::shared_ptr<const RayCaster> ray_caster;
+    SolverState state;
+    const std::unique_ptr<IterationMethod> method;
+    bool is_prepared = false, is_finished = false;
+    double error = std::numeric_limits<double>::infinity();  // estimate for the current views
+    int iteration = 0;
+    std::vector<float> known_dimming;  // factors for which the stored light was computed
+
+    std::mutex finishing;              // guards `finished`
+    std::optional<Solution> finished;  // cached solution()
+
+    /// Scales the sources of a group and their light.
+    void dim(std::size_t group, float factor);
+    /// Returns the current solution with its own copy of the forest, because that of the run grows.
+    Solution snapshot();
+    /// @throws std::runtime_error if the data are inconsistent.
+    void archive(StateArchive& archive);
+
+  private:
+    void dim_sources();
+};
+
+/// The main loop: continues the run until a limit is reached or the plan is complete. @throws Interrupted
+void iterate_until(Run& run, const Limits& limits);
+
+}  // namespace interflect::detail

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/base/state_archive.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/sampling/ray_allocation.h"
+#include "interflect/solver/sampling/ray_plan.h"
+
+namespace interflect::detail {
+
+/// Payload of one ray of each source of a step. From leaf s: power A_s B_s / (N q_s) and importance A_s rho_s psi_s /
+/// (N q_s). From a luminaire part: its power / (N q_s).
+class Payload {
+  public:
+    Payload(const Materials& materials, const ElementForest& forest, const RayPlan& plan, double q_sum)
+        : materials_(materials),
+          forest_(forest),
+          plan_(plan),
+          elements_(forest.size()),
+          q_sum_over_rays_(q_sum / static_cast<double>(plan.rays)) {}
+
+    RgbD power(std::uint32_t source) const { return per_ray(source, radiated(source)); }
+    RgbD power(std::uint32_t source, std::size_t group) const {
+        if (source < elements_) {
+            const Rgb share = plan_.groups.of(materials_, forest_, source, group);
+            return is_finite(share) ? per_ray(source, RgbD(share)) : RgbD(0);
+        }
+        return plan_.groups.has_part(*plan_.emission, source - elements_, group) ? power(source) : RgbD(0);
+    }
+    double importance(std::uint32_t source) const { return source < elements_ ? importance_of_leaf(source) : 0; }
+
+  private:
+    RgbD radiated(std::uint32_t source) const {
+        return source < elements_ ? RgbD(plan_.light.of(forest_, source)) : plan_.emission->power(source - elements_);
+    }
+    RgbD per_ray(std::uint32_t source, const RgbD& light) const {
+        if (!plan_.equal_payloads) return light * (source < elements_ ? area_per_ray(source) : per_ray(source));
+        const double sum = channel_sum(radiated(source));
+        return sum > 0 ? light / sum : RgbD(0);
+    }
+    double importance_of_leaf(std::uint32_t leaf) const {
+        return materials_.mean_reflectance(forest_.patch(leaf), leaf) * plan_.importance[leaf] * area_per_ray(leaf);
+    }
+    double per_ray(std::uint32_t source) const { return q_sum_over_rays_ / plan_.q[source]; }
+    double area_per_ray(std::uint32_t leaf) const { return forest_.area(leaf) * per_ray(leaf); }
+
+    const Materials& materials_;
+    const ElementForest& forest_;
+    const RayPlan& plan_;
+    std::uint32_t elements_;  // size of the forest at the start of the step
+    double q_sum_over_rays_;
+};
+
+/// Histogram of ray power, in bins of a quarter of an octave.
+class PayloadHistogram {
+  public:
+    /// @param power  Sum of the channels [lm or W].
+    void add(double power, std::int64_t rays);
+    PayloadHistogram& operator+=(const PayloadHistogram& other);
+
+    double largest_over_mean() const;  ///< Returns 1 if no power was carried.
+    /// Returns the power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
+    double quantile_over_mean(double share) const;
+
+    void archive(StateArchive& archive) {
+        archive("payloads/rays", rays_);
+        archive("payloads/power", power_);
+        archive("payloads/largest", largest_);
+        archive("payloads/count", count_);
+    }
+
+  private:
+    static constexpr int bins_per_octave = 4, middle_bin = 512, bins = 2 * middle_bin;
+    std::vector<std::int64_t> rays_;  // by bin; empty before the first ray
+    double power_ = 0, largest_ = 0;
+    std::int64_t count_ = 0;
+};
+
+/// Sums over all rays of a step.
+struct PayloadTotals {
+    RgbD power{0, 0, 0};  ///< [lm or W]
+    double square = 0;    ///< Squared luminance of each ray's power.
+    double importance = 0;
+    double importance_square = 0;  ///< Squared importance of each ray.
+    PayloadHistogram histogram;
+
+    PayloadTotals& operator+=(const PayloadTotals& other) {
+        power += other.power;
+        square += other.square;
+        importance += other.importance;
+        importance_square += other.importance_square;
+        histogram += other.histogram;
+        return *this;
+    }
+};
+PayloadTotals total_payload(const RayPlan& plan, const RayAllocation& allocation, const Payload& payload);
+
+}  // namespace interflect::detail

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "interflect/scene.h"
+#include "interflect/solve.h"
+
+namespace interflect::detail {
+
+/// Minimum area of elements. It depends on the views and on the size of surfaces, not of the world.
+class ElementFloor {
+  public:
+    ElementFloor(const Scene& scene, const SolveOptions& options);
+
+    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
+    float pixel_area(const V3f& centre, const V3f& normal) const;
+
+    /// @param is_seen  Visible to a view: the result is pixel_area(), else unseen().
+    /// @return         [m^2]; RefinementOptions::min_area if given.
+    float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
+
+    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
+    float unseen() const { return unseen_; }
+
+  private:
+    struct Eye {
+        V3f position;
+        float pixel;  // width at distance 1
+    };
+    std::vector<Eye> eyes_;
+    float unseen_;
+    bool is_given_;
+};
+
+}  // namespace interflect::detail

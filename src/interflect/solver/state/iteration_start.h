@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "interflect/solver/state/solver_state.h"
+
+namespace interflect::detail {
+
+/// Copies of all data that an iteration changes before it ends, for discarding an interrupted iteration. The run then
+/// repeats the iteration and has the bits of an uninterrupted run. Memory: 12 bytes per element.
+class IterationStart {
+  public:
+    explicit IterationStart(const SolverState& state);
+    /// Discards the changes since the constructor. Irradiance and its statistics may only have grown with the mesh.
+    void restore(SolverState& state) const;
+
+  private:
+    std::uint32_t elements_;
+    SampleStreams streams_;
+    std::vector<Imath::Box3f> targets_;
+    std::vector<PartImportance> part_importance_;
+    std::vector<float> indirect_importance_;
+    std::int64_t power_rays_, importance_rays_, escaped_rays_;
+    decltype(Solution::non_finite) non_finite_;
+    PayloadHistogram payloads_;
+    std::size_t reports_;
+};
+
+}  // namespace interflect::detail

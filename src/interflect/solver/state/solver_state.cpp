@@ -1,0 +1,153 @@
+#include "interflect/solver/state/solver_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "interflect/base/address_space.h"
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/light/radiosity.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// A step may create more elements than it keeps (Oracle::max_elements). Reserves addresses for more than one or two
+/// seconds of that, within half of the free address space.
+std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
+    constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
+    const std::size_t groups = std::min(scene.light_groups.size() + 1, most_light_groups);
+    const std::size_t per_element = ElementForest::reserved_per_element +
+                                    ContributionSums::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
+    if (!options.method.refines) return scene.patches.size();
+    if (!options.method.is_stochastic) return options.refinement.max_elements;  // never exceeded
+    const std::size_t fitting = free_address_space() / 2 / per_element;
+    return std::min(largest, options.refinement.max_elements +
+                                 std::min(excess, fitting - std::min(fitting, options.refinement.max_elements)));
+}
+
+V3f centre_of(const ElementForest& forest, std::uint32_t element) {
+    const PatchGeometry& geometry = forest.geometry(forest.patch(element));
+    return geometry.point(forest.cell(element).centre(geometry.is_triangle()));
+}
+
+}  // namespace
+
+SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOptions& o)
+    : scene(s),
+      materials(scene, caster),
+      emission(scene),
+      ray_caster(caster),
+      groups(source_groups(scene)),
+      forest(std::make_shared<ElementForest>(scene, forest_capacity(scene, o))),
+      view(o.views, o.seed),
+      floor(scene, o),
+      streams(o.experimental.points, o.seed),
+      contributions(forest->capacity(), groups.size()),
+      schedule(o, scene.patches.size()),
+      noise(scene.patches.size()) {
+    solution.forest = forest;
+    solution.options = o;
+    solution.irradiance.assign(forest->size(), Rgb(0, 0, 0));
+    solution.groups.assign(groups.size(), solution.irradiance);
+    solution.group_names = groups.names;
+    solution.dimming.assign(groups.size(), 1);
+    history.assign(forest->size(), 0.0f);
+    solution.emitted_power = radiated_power(*this);
+    compute_view_importance(*this);
+}
+
+void SolverState::begin_work(const Monitor& m) {
+    monitor = m;
+    stop = StopRequest(m.stop);
+    start = StopRequest::Clock::now();
+}
+
+void set_sources(SolverState& state, const Scene& lit) {
+    state.lit = &lit;
+    state.materials = Materials(lit, state.ray_caster);
+    state.materials.grow(*state.forest);
+    state.emission = Emission(lit, state.targets);
+    state.solution.emitted_power =
+        radiated_power(*state.forest, Radiosity(state.materials, std::vector<Rgb>(state.forest->size(), Rgb(0))));
+    state.solution.emitted_power += state.emission.total_power();
+}
+
+void set_targets(SolverState& state, std::vector<Imath::Box3f> targets) {
+    state.targets = std::move(targets);
+    state.emission = Emission(*state.lit, state.targets);
+    state.part_importance.assign(state.emission.part_count(), {});
+    std::vector<std::uint64_t>& used = state.streams.used_by_parts;
+    used.resize(std::min(used.size(), state.emission.part_count()));
+}
+
+void compute_view_importance(SolverState& state) {
+    if (state.targets.empty())
+        state.part_importance.assign(state.emission.part_count(), {});
+    else
+        set_targets(state, {});
+    state.view = ViewImportance(state.options.views, state.options.seed);
+    state.floor = ElementFloor(state.scene, state.options);
+    state.view.trace_view_rays(*state.forest, state.ray_caster, Panes(state.scene, state.ray_caster),
+                               state.options.importance.camera_rays);
+    state.solution.view_importance.clear();
+    state.solution.indirect_importance.clear();
+    if (state.view.empty()) return;
+    if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
+    state.solution.indirect_importance.assign(state.forest->size(), 0.0f);
+}
+
+GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits) {
+    if (state.groups.empty()) return {};
+    return {&state.groups, &irradiance, &state.solution.dimming, emits};
+}
+
+RgbD radiated_power(const SolverState& state) {
+    return radiated_power(*state.forest, Radiosity(state.materials, state.solution.irradiance)) +
+           state.emission.total_power();
+}
+
+bool refines_by_variance(const SolveOptions& o) {
+    return o.method.refines && o.method.follows_variance && !o.experimental.one_bounce &&
+           o.refinement.criterion == RefinementCriterion::variance;
+}
+
+float min_area(const SolverState& state, std::uint32_t element) {
+    const std::uint32_t patch = state.forest->patch(element);
+    const bool is_seen = !state.view.empty() && state.solution.view_importance[patch] > 0;
+    return state.floor.min_area(centre_of(*state.forest, element), state.forest->geometry(patch).normal(), is_seen);
+}
+
+float pixel_area(const SolverState& state, std::uint32_t element) {
+    const V3f normal = state.forest->geometry(state.forest->patch(element)).normal();
+    return state.floor.pixel_area(centre_of(*state.forest, element), normal);
+}
+
+void grow_with_forest(SolverState& state, std::uint32_t first) {
+    inherit(*state.forest, first, state.solution.irradiance);
+    inherit(*state.forest, first, state.solution.groups);
+    state.noise.grow(*state.forest, first);
+    state.materials.grow(*state.forest);
+    inherit(*state.forest, first, state.history);
+    if (state.view.empty()) return;
+    inherit(*state.forest, first, state.solution.indirect_importance);
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
+}
+
+void refine_view_importance(SolverState& state) {
+    constexpr std::int64_t rays_per_camera_ray = 64;
+    if (state.view.empty()) return;
+    const std::int64_t wanted =
+        std::min<std::int64_t>(state.schedule.averaged_rays() / rays_per_camera_ray, most_camera_rays);
+    if (wanted < 2 * state.view.rays()) return;
+    state.view.trace_view_rays(*state.forest, state.ray_caster, Panes(state.scene, state.ray_caster),
+                               static_cast<int>((wanted - state.view.rays()) / state.view.views()));
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,243 @@
+#include "interflect/solver/transport/transport.h"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "interflect/base/fixed_point.h"
+#include "interflect/base/parallel.h"
+#include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/solver/deposit/contributions.h"
+#include "interflect/solver/deposit/descent.h"
+#include "interflect/solver/deposit/found_importance.h"
+#include "interflect/solver/sampling/payload.h"
+#include "interflect/solver/sampling/ray_allocation.h"
+#include "interflect/solver/sampling/ray_maker.h"
+#include "interflect/solver/transport/walks.h"
+
+namespace interflect::detail {
+
+namespace {
+
+std::uint64_t walk_key(const SampleStreams& streams) {
+    constexpr std::uint64_t purpose = 0x77616c6b;  // unique among random streams
+    return mix(mix(streams.seed, purpose), streams.allocations);
+}
+
+/// Rays per task: many enough to amortise it, few enough for the second-level cache.
+constexpr std::size_t batch_rays = 1024;
+constexpr std::size_t rays_ahead = 32;
+
+void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
+    constexpr std::size_t blocks_at_once = 16;
+    streams.used.resize(std::max(streams.used.size(), elements), 0);
+    streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
+    parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
+                std::uint64_t& used = s < elements ? streams.used[s] : streams.used_by_parts[s - elements];
+                used += static_cast<std::uint64_t>(next - first);
+                return true;
+            });
+    });
+    ++streams.allocations;
+}
+
+/// Upper bound of the visits of a random walk. The expected number is at most 1 / (1 - rho); the factor covers chance
+/// and panes, and leaves 2^49 units for the expected power.
+double most_visits(const Scene& scene) {
+    constexpr double headroom = 0x1p12;
+    double rho = 0;
+    for (const Material& m : scene.materials) rho = std::max(rho, static_cast<double>(largest_channel(m.reflectance)));
+    return headroom / (1 - rho);
+}
+
+/// Rays and payloads of a step. Refers to the step.
+struct Shooting {
+    Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
+             const TransportStep& step, const SampleStreams& streams)
+        : rays(forest, ray_caster, step, streams),
+          payload(materials, forest, step, rays.allocation().q_sum()),
+          all(total_payload(step, rays.allocation(), payload)),
+          units(all, step.to_the_end ? most_visits(materials.scene()) : 1),
+          panes(materials.scene(), ray_caster) {}
+
+    RayMaker rays;
+    Payload payload;
+    PayloadTotals all;
+    ContributionUnits units;
+    Panes panes;
+};
+
+/// Data of one task; one object per thread, reused.
+struct Batch {
+    explicit Batch(const Descent& d) : descent(d) {}
+
+    RayBatch shot;
+    std::vector<Hit> hits;
+    std::vector<Panes::HitBehind> behind;
+    std::vector<std::int64_t> group_terms;  // of one source
+    Walkers walkers;
+    Descent descent;
+};
+
+void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
+    forest.put_in_order(old_size);
+    while (forest.size() > old_size) forest.drop_last_siblings();
+}
+
+/// Returns an empty result without importance, or if patches receive it and no luminaire shoots.
+std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
+                                                     const ElementForest& forest) {
+    if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
+    std::vector<double> largest((forest.size() + elements_at_once - 1) / elements_at_once, 0.0);
+    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        double& most = largest[begin / elements_at_once];
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+            most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
+    });
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // hits per ray
+    return std::optional<FoundImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
+                                          step.rays, forest.size() + step.part_count());
+}
+
+// The steps of a batch. Then ContributionSums contain integers that several machines could sum.
+
+void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
+    shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
+    batch.hits.resize(batch.shot.rays.size());
+    ray_caster.trace(batch.shot.rays, batch.hits);
+    shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
+}
+
+/// Deposits the filtered payload of rays behind panes.
+void deposit_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
+                    std::span<const Panes::HitBehind> behind, Batch& batch) {
+    const std::uint32_t source = rays.source;
+    for (const auto& [ray, transmittance, hit] : behind) {
+        shooting.units.add_groups(step, shooting.payload, source, batch.group_terms, transmittance);
+        batch.descent.deposit(source, shooting.units.contribution(step, shooting.payload, source, transmittance),
+                              batch.group_terms, std::span(batch.shot.rays).subspan(ray, 1),
+                              std::span(batch.shot.origins).subspan(ray, 1), std::span(&hit, 1),
+                              channel_sum(transmittance) / 3);
+    }
+}
+
+/// Deposits the payload of a batch; the oracle may create elements.
+void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) {
+    auto& [shot, hits, all_behind, group_terms, walkers, descent] = batch;
+    std::span<const Panes::HitBehind> behind = all_behind;
+    std::size_t fetched = 0;
+    for (const SourceRays& rays : shot.sources) {
+        const auto [source, first, last] = rays;
+        const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size()), count = last - first;
+        for (; fetched < fetch; ++fetched) descent.prefetch(hits[fetched]);
+        shooting.units.add_groups(step, shooting.payload, source, group_terms);
+        descent.deposit(source, shooting.units.contribution(step, shooting.payload, source), group_terms,
+                        std::span(shot.rays).subspan(first, count), std::span(shot.origins).subspan(first, count),
+                        std::span(hits).subspan(first, count));
+        const auto of_others =
+            std::find_if(behind.begin(), behind.end(), [last = last](const auto& b) { return b.ray >= last; });
+        const auto own = static_cast<std::size_t>(of_others - behind.begin());
+        deposit_behind(step, shooting, rays, behind.first(own), batch);
+        behind = behind.subspan(own);
+    }
+    descent.finish_batch();
+}
+
+/// Continues a batch as random walks. @param task  Index of the first ray.
+void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
+    Walkers& walkers = batch.walkers;
+    const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
+        if (hit.patch == none) return;
+        walks.add(batch.shot.rays[ray], hit, shooting.payload.power(source), transmittance, walkers);
+        for (std::size_t g = 0; g < step.groups.size(); ++g)
+            walkers.received_groups.push_back(shooting.payload.power(source, g) * RgbD(transmittance));
+    };
+    auto behind = batch.behind.begin();
+    for (const auto [source, first, last] : batch.shot.sources) {
+        for (std::uint32_t ray = first; ray < last; ++ray) add(source, ray, batch.hits[ray], Rgb(1));
+        for (; behind != batch.behind.end() && behind->ray < last; ++behind)
+            add(source, behind->ray, behind->hit, behind->transmittance);
+    }
+    walks.follow(task, walkers, batch.descent);
+}
+
+/// Joins the points of all threads, in any order.
+StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
+    std::vector<StartPoint> all;
+    for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
+    return StartPoints(std::move(all));
+}
+
+}  // namespace
+
+Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+                   SampleStreams& streams, ContributionSums& sums, const StopRequest& stop) {
+    assert(step.q.size() == forest.size() + step.part_count() && step.rays > 0);
+    const Shooting shooting(materials, forest, ray_caster, step, streams);
+    const std::uint32_t old_size = forest.size();
+    if (!(shooting.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
+
+    sums.begin(old_size);
+    std::optional<FoundImportance> importance = make_found_importance(step, materials, forest);
+    const Walks walks(materials, forest, ray_caster, shooting.panes, step, shooting.units, old_size, walk_key(streams));
+    PerThread<Batch> batches([&] {
+        return Batch({materials, forest, step, old_size, sums, importance ? &*importance : nullptr});
+    });
+    try {
+        parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop,
+                            [&](std::size_t begin, std::size_t end) {
+                                Batch& batch = batches.local();
+                                trace(shooting, ray_caster, begin, end, batch);
+                                deposit(step, shooting, batch);
+                                if (step.to_the_end) walk(step, shooting, walks, begin, batch);
+                            });
+    } catch (const Interrupted&) {
+        sums.clear(forest.size());
+        drop_new_elements(forest, old_size);
+        throw;
+    }
+    Escaped escaped;
+    std::vector<std::vector<StartPoint>> start_points;
+    for (Batch& batch : batches) {
+        escaped += batch.descent.finish();
+        start_points.push_back(batch.descent.start_points());
+    }
+    const RayAllocation& allocation = shooting.rays.allocation();
+    advance(streams, allocation, old_size, step.part_count());
+    Received received = collect(step, forest, old_size, allocation, shooting.all, shooting.units,
+                                importance ? &*importance : nullptr, sums);
+    received.start_points = start_points_of(start_points);
+    received.escaped_rays = escaped.rays;
+    received.escaped_power = shooting.units.power.to_colour(escaped.power);
+    if (step.emission) {
+        received.shot_power -= step.emission->repeated_power();
+        received.escaped_power -= step.emission->repeated_power();
+    }
+    return received;
+}
+
+Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
+                   SampleStreams& streams) {
+    ContributionSums sums(forest.capacity(), step.groups.size());
+    return transport(materials, forest, ray_caster, std::move(step), streams, sums, StopRequest());
+}
+
+std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
+                                const SampleStreams& streams) {
+    const RayMaker maker(forest, ray_caster, step, streams);
+    std::vector<Ray> rays(static_cast<std::size_t>(step.rays));
+    parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
+        RayBatch batch;
+        maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
+        std::copy(batch.rays.begin(), batch.rays.end(), rays.begin() + static_cast<std::ptrdiff_t>(begin));
+    });
+    return rays;
+}
+
+}  // namespace interflect::detail

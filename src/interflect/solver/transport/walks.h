@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/base/points.h"
+#include "interflect/elements/forest.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/solver/deposit/contribution_units.h"
+#include "interflect/solver/deposit/descent.h"
+#include "interflect/solver/deposit/transport_step.h"
+#include "interflect/solver/light/materials.h"
+
+namespace interflect::detail {
+
+/// Power that a leaf is about to reflect.
+struct ReflectedPower {
+    std::uint32_t leaf, patch;
+    Parameters at;  ///< Where the leaf received it.
+    RgbD power;     ///< [lm or W]
+    double of_ray;  ///< Power of the ray that brought it, before any pane, all channels.
+};
+
+/// Particles of one task; one object per thread, reused.
+struct Walkers {
+    std::vector<ReflectedPower> received, reflected;
+    std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    std::vector<Panes::HitBehind> behind;
+    std::vector<std::int64_t> group_terms;
+    PointBlock points;
+};
+
+/// Random walks complete the transport of a pass (TransportStep::to_the_end). A particle survives with the probability
+/// of its reflectance, times the transmittance of the panes that it crossed: a ray through panes arrives several times,
+/// and without this factor the number of particles would grow from bounce to bounce. Unlike a bounce, a walk costs no
+/// time for elements that it does not visit.
+class Walks {
+  public:
+    /// @param elements  Size of the forest before the step. Newer elements receive through ancestors.
+    Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
+          const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
+
+    /// Adds a particle at a hit point. The caller appends its power by light group, filtered by the transmittance, to
+    /// `received_groups`.
+    /// @param power  Power of the ray before any pane.
+    /// @param transmittance  Of the panes in front of the hit.
+    void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
+    /// Traces particles until they are absorbed or escape. @param task  Key of the random numbers.
+    void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
+
+  private:
+    void survive(double offset, Walkers& walkers) const;
+    void shoot(std::uint64_t key, Walkers& walkers) const;
+    void receive(Walkers& walkers, Descent& descent) const;
+    void deposit(const Ray& ray, const Hit& hit, const Rgb& transmittance, std::size_t walker, Walkers& walkers,
+                 Descent& descent) const;
+
+    const Materials& materials_;
+    const ElementForest& forest_;
+    const RayCaster& ray_caster_;
+    const Panes& panes_;
+    const TransportStep& step_;
+    const ContributionUnits& units_;
+    std::uint32_t elements_;
+    std::uint64_t key_;
+};
+
+}  // namespace interflect::detail
