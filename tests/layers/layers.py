@@ -10,11 +10,19 @@ LAYERS = [
     "render", "photometry", "metrics", "exports", "cluster",
 ]
 
+# The folders of the solver, in the same order; its own files come last.
+SOLVER_LAYERS = [
+    "light", "importance", "sampling", "noise", "deposit", "transport", "state", "error", "refinement", "iteration", "methods",
+    "methods/baselines", ".",
+]
+MOST_FILES = 12  # of a folder of the solver
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
+SOLVER_INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/solver/([^"]+)"', re.MULTILINE)
 USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)
 PRAGMA_ONCE = re.compile(r"^#pragma once$", re.MULTILINE)
-NAMESPACE = re.compile(r"^namespace interflect\b(?!::inline detail\b).*", re.MULTILINE)
-DETAIL = re.compile(r"^namespace interflect::inline detail \{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
+NAMESPACE = re.compile(r"^namespace interflect\b(?!::detail\b).*", re.MULTILINE)
+DETAIL = re.compile(r"^namespace (?:interflect::)?detail \{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
 FORWARD_DECLARATION = re.compile(r"(class|struct) \w+;")
 LITERAL = re.compile(r"""'\\?.'|"(?:[^"\\\n]|\\.)*\"""")
 OPTION = re.compile(r"--[a-z]")
@@ -29,6 +37,7 @@ def faults(root: Path) -> list[str]:
     for folder in folders:
         if folder.name in LAYERS:
             found += layer_faults(folder)
+    found += solver_faults(library / "solver")
     public = sorted((root / "include").rglob("*.h"))
     for header in public:
         found += [f"{header}: includes interflect/{folder}/, which is not installed"
@@ -38,7 +47,7 @@ def faults(root: Path) -> list[str]:
                   for block in DETAIL.findall(header.read_text())
                   for line in block.splitlines() if not FORWARD_DECLARATION.fullmatch(line)]
     for header in sorted(library.rglob("*.h")):
-        found += [f"{header}: '{line}' is for public headers: expected 'namespace interflect::inline detail'"
+        found += [f"{header}: '{line}' is for public headers: expected 'namespace interflect::detail'"
                   for line in NAMESPACE.findall(header.read_text())]
     for source in sorted([*public, *library.rglob("*.h"), *library.rglob("*.cpp")]):
         found += [f"{source}: {literal} names an option of the command line, which other programs do not have"
@@ -59,6 +68,25 @@ def layer_faults(folder: Path) -> list[str]:
         for included in INCLUDE.findall(source.read_text()):
             if included not in [folder.name, *uses]:
                 found.append(f"{source}: includes interflect/{included}/, which {build_file} does not name under USES")
+    return found
+
+
+def solver_faults(solver: Path) -> list[str]:
+    """Finds folders with too many files, and includes from later folders of the solver."""
+    found = []
+    for folder in sorted(path for path in solver.rglob("*") if path.is_dir()):
+        name = folder.relative_to(solver).as_posix()
+        files = [path for path in folder.iterdir() if path.is_file()]
+        if name not in SOLVER_LAYERS:
+            found.append(f"{folder}: not one of the solver's folders {' '.join(SOLVER_LAYERS)}")
+            continue
+        if len(files) > MOST_FILES:
+            found.append(f"{folder}: {len(files)} files, expected at most {MOST_FILES}")
+        for source in sorted(path for path in files if path.suffix in (".h", ".cpp")):
+            for included in SOLVER_INCLUDE.findall(source.read_text()):
+                layer = Path(included).parent.as_posix()
+                if layer not in SOLVER_LAYERS or SOLVER_LAYERS.index(layer) > SOLVER_LAYERS.index(name):
+                    found.append(f"{source}: includes {included}, which is not before solver/{name}")
     return found
 
 

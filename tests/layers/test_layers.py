@@ -66,11 +66,36 @@ class Checker(unittest.TestCase):
         self.assert_only_fault("base/colour.h", "is for public headers")
 
     def test_public_header_with_internal_names(self):
-        declared = "namespace interflect::inline detail {\nclass Cell;\n}\n"
+        declared = "namespace interflect::detail {\nclass Cell;\n}\n"
         self.write("../../include/interflect/scene.h", f"#pragma once\n{declared}")
         self.assertEqual(faults(self.root), [])
         self.write("../../include/interflect/scene.h", f"#pragma once\n{declared.replace(';', ' { int x; };')}")
         self.assert_only_fault("include/interflect/scene.h", "forward declarations alone")
+
+    def write_solver(self, name, text):
+        self.write("solver/CMakeLists.txt", "interflect_folder(solver SOURCES solve.cpp USES base)")
+        self.write(f"solver/{name}", text)
+
+    def test_include_from_an_earlier_folder_of_the_solver(self):
+        self.write_solver("transport/transport.cpp", '#include "interflect/solver/sampling/payload.h"\n')
+        self.assertEqual(faults(self.root), [])
+
+    def test_include_from_a_later_folder_of_the_solver(self):
+        self.write_solver("sampling/payload.cpp", '#include "interflect/solver/transport/transport.h"\n')
+        self.assert_only_fault("sampling/payload.cpp", "not before solver/sampling")
+
+    def test_include_of_the_main_loop(self):
+        self.write_solver("methods/passes.cpp", '#include "interflect/solver/run.h"\n')
+        self.assert_only_fault("methods/passes.cpp", "not before solver/methods")
+
+    def test_unknown_folder_of_the_solver(self):
+        self.write_solver("gadgets/gadget.cpp", "")
+        self.assert_only_fault("gadgets", "not one of the solver's folders")
+
+    def test_folder_of_the_solver_with_too_many_files(self):
+        for i in range(13):
+            self.write_solver(f"light/light_{i}.cpp", "")
+        self.assert_only_fault("solver/light", "13 files")
 
     def test_message_with_an_option_of_the_command_line(self):
         self.write("base/colour.cpp", 'throw InputError("too many; \\"x\\" --max-patches raises it");\n')

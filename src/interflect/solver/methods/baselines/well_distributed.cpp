@@ -1,4 +1,4 @@
-#include "interflect/solver/methods/well_distributed.h"
+#include "interflect/solver/methods/baselines/well_distributed.h"
 
 #include <algorithm>
 #include <cmath>
