@@ -1,3 +1,5 @@
+/// @file
+/// Writes a solved scene for other programs (lit glTF, lightmaps, meshes, probes), or a scene for other renderers.
 #pragma once
 
 #include <cstdint>

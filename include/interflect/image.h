@@ -1,3 +1,5 @@
+/// @file
+/// Images, their files, tone mapping and exposure.
 #pragma once
 
 #include <cstddef>

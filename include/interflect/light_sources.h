@@ -1,3 +1,5 @@
+/// @file
+/// Light sources other than surfaces: points, spots, the sun, skies, measured luminaires; models of daylight.
 #pragma once
 
 #include <cstddef>

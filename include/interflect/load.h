@@ -1,3 +1,5 @@
+/// @file
+/// Reads scenes and measured light from files; adds luminaires and daylight.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,5 @@
+/// @file
+/// Light at points and on grids: irradiance, statistics of areas, glare, probes.
 #pragma once
 
 #include <array>

@@ -1,3 +1,5 @@
+/// @file
+/// Before solving: cuts faces at contacts, and finds faults that would spoil the light.
 #pragma once
 
 #include <cstddef>

@@ -1,3 +1,5 @@
+/// @file
+/// First hits of rays, by Embree.
 #pragma once
 
 #include <cstddef>

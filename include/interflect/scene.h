@@ -1,3 +1,5 @@
+/// @file
+/// The scene: patches, materials, textures, views, light sources and light groups.
 #pragma once
 
 #include <ImathVec.h>

@@ -6,7 +6,7 @@ import unittest
 
 from command import ROOT, CommandTest, room
 
-# Structures of solve.h, their members in SolveOptions, and their headings in `solve --help`.
+# Structures of solve_options.h, their members in SolveOptions, and their headings in `solve --help`.
 GROUPS = {
     "Limits": ("limits", "Limits"),
     "RefinementOptions": ("refinement", "Refinement"),
@@ -18,8 +18,8 @@ OF_NO_GROUP = {"importance", "views"}  # options in files; the first depends on 
 
 
 def members(structure: str) -> list[str]:
-    """Returns the member names of a structure of solve.h: 'double smoothing = 0.9, exponent = 0.75;' has two."""
-    text = (ROOT / "include" / "interflect" / "solve.h").read_text()
+    """Returns the member names of a structure of solve_options.h: 'double smoothing = 0.9, exponent = 0.75;' has two."""
+    text = (ROOT / "include" / "interflect" / "solve_options.h").read_text()
     body = re.search(rf"^struct {structure} {{\n(.*?)^}};", text, re.MULTILINE | re.DOTALL).group(1)
     statements = re.sub(r"//.*", "", body).split(";")
     return [name for statement in statements for name in re.findall(r"(\w+) =", statement)]

@@ -99,7 +99,7 @@ TEST(Schedule, EndsWithTheFinalIterationEvenIfLightRanOutBeforeTheRaysDid) {
         ASSERT_GT(plan.rays, 0);
         schedule.done(plan);
     }
-    plan.rays -= 2;
+    plan.traced -= 2;
     schedule.done(plan);
     EXPECT_EQ(schedule.rays(), 998);
     EXPECT_EQ(schedule.next(0).rays, 0);

@@ -330,10 +330,10 @@ TEST(TransportRays, AreThoseThatTransportTraces) {
     std::vector<double> hit_count(room.forest.size(), 0.0);
     for (const Hit& hit : hits)
         if (hit.patch != none) ++hit_count[hit.patch];
-    const double quantum = channel_sum(room.radiated_power()) / static_cast<double>(rays);
+    const double payload = channel_sum(room.radiated_power()) / static_cast<double>(rays);
     const Received received = room.receive(streams);
     for (std::uint32_t i = 0; i < hit_count.size(); ++i)
-        EXPECT_NEAR(channel_sum(received.irradiance[i]) * room.forest.area(i) / quantum, hit_count[i],
+        EXPECT_NEAR(channel_sum(received.irradiance[i]) * room.forest.area(i) / payload, hit_count[i],
                     1e-5 * hit_count[i] + 1e-3);
 }
 

@@ -15,9 +15,9 @@ struct MemoryNeed {
     std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
     /// Bytes per element: tree 11, H 12, importance 8, history and noise 8, consumed points 8, result of the pass 16,
-    /// unshot radiosity and its importance 16, contributions 40 or received values 16, points that reflect 9; measured
+    /// unshot radiosity and its importance 16, contributions 40 or received values 16, points that reflect 5; measured
     /// 127 to 129.
-    std::size_t per_element = 136;
+    std::size_t per_element = 132;
     /// Additional bytes with textures: three colours, and an index for four siblings.
     static constexpr std::size_t per_textured_element = 37;
     /// Bytes for H, unshot light and result of the pass, 12 each, and contributions 24 or received light 12.

@@ -128,6 +128,11 @@ void require_stored_here(hid_t set, const std::string& name) {
 
 }  // namespace
 
+std::recursive_mutex& Hdf5Lock::mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
 Hdf5Handle::Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
     if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}{}", what, reason_of_disk()));
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,16 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
+/// HDF5 is not thread-safe in every build: readers and writers exclude those of other threads.
+class Hdf5Lock {
+  public:
+    Hdf5Lock() : lock_(mutex()) {}
+
+  private:
+    static std::recursive_mutex& mutex();
+    std::unique_lock<std::recursive_mutex> lock_;
+};
+
 /// Reads arrays of float, double, std::uint32_t, char or std::byte. Throws std::runtime_error, allocates at most the
 /// size of the file, and refuses arrays in other files (links, external or virtual storage).
 class Hdf5Reader {
@@ -42,6 +53,7 @@ class Hdf5Reader {
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
   private:
+    Hdf5Lock lock_;
     Hdf5Handle file_, links_;
 };
 
@@ -71,6 +83,7 @@ class Hdf5Writer {
     std::string image();
 
   private:
+    Hdf5Lock lock_;
     Hdf5Handle file_;
 };
 

@@ -172,8 +172,8 @@ void for_each_number(Report& r, const Access& access) {
     access.field_or_null("error_estimate", r.error_estimate, infinity);
     access.field_or_null("noise_estimate", r.noise_estimate, infinity);
     access.field_or_null("discretisation_estimate", r.discretisation_estimate, infinity);
-    access.field("largest_payload", r.largest_payload);
-    access.field("high_payload", r.high_payload);
+    access.field("largest_quantum", r.largest_payload);
+    access.field("high_quantum", r.high_payload);
 }
 
 }  // namespace

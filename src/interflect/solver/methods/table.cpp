@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "interflect/core.h"
 #include "interflect/solve_options.h"
@@ -26,53 +25,78 @@ std::unique_ptr<IterationMethod> make_progressive_refinement(SolverState& state)
 
 }  // namespace detail
 
+using namespace detail;
+
 namespace {
 
 constexpr const char* equal_power = "it keeps every ray, which needs rays of equal power";
 constexpr const char* uniform_lines = "its lines are spread evenly, whatever they meet";
 
-constexpr std::array method_table = {
-    Method{.name = "srr", .source = "Neumann et al. 1995", .separates_groups = true, .follows_dimming = true},
-    Method{.name = "isrr",
-           .source = "Neumann et al. 1996",
-           .importance = ImportanceUse::full,
-           .separates_groups = true,
-           .follows_dimming = true},
-    Method{.name = "wdrs",
-           .source = "Neumann, Neumann and Bekaert 1997",
-           .no_importance = equal_power,
-           .separates_groups = true},
-    Method{.name = "hwdrs",
-           .source = "Bekaert et al. 1998",
-           .refines = true,
-           .no_importance = equal_power,
-           .separates_groups = true},
-    Method{.name = "hsrr",
-           .source = "srr on the hierarchy of Bekaert et al. 1998",
-           .refines = true,
-           .follows_variance = true,
-           .separates_groups = true,
-           .follows_dimming = true},
-    Method{.name = "ihsrr",
-           .source = "Prikryl et al. 2000",
-           .refines = true,
-           .follows_variance = true,
-           .importance = ImportanceUse::full,
-           .separates_groups = true,
-           .follows_dimming = true},
-    Method{.name = "random-walk", .source = "Pattanaik and Mudur 1992, 1995"},
-    Method{.name = "hr",
-           .source = "Hanrahan et al. 1991, Smits et al. 1992",
-           .refines = true,
-           .is_stochastic = false,
-           .takes_luminaires = false},
-    Method{.name = "global-lines",
-           .source = "Sbert 1993, 1997",
-           .no_importance = uniform_lines,
-           .takes_luminaires = false},
-    Method{
-        .name = "pr", .source = "Cohen et al. 1988, Bekaert and Willems 1994, 1995", .importance = ImportanceUse::full},
+using Make = std::unique_ptr<IterationMethod>(SolverState& state);
+
+struct Row {
+    Method method;
+    Make* make;
 };
+
+constexpr std::array rows = {
+    Row{{.name = "srr", .source = "Neumann et al. 1995", .separates_groups = true, .follows_dimming = true},
+        make_ray_radiosity},
+    Row{{.name = "isrr",
+         .source = "Neumann et al. 1996",
+         .importance = ImportanceUse::full,
+         .separates_groups = true,
+         .follows_dimming = true},
+        make_ray_radiosity},
+    Row{{.name = "wdrs",
+         .source = "Neumann, Neumann and Bekaert 1997",
+         .no_importance = equal_power,
+         .separates_groups = true},
+        make_well_distributed_rays},
+    Row{{.name = "hwdrs",
+         .source = "Bekaert et al. 1998",
+         .refines = true,
+         .no_importance = equal_power,
+         .separates_groups = true},
+        make_well_distributed_rays},
+    Row{{.name = "hsrr",
+         .source = "srr on the hierarchy of Bekaert et al. 1998",
+         .refines = true,
+         .follows_variance = true,
+         .separates_groups = true,
+         .follows_dimming = true},
+        make_ray_radiosity},
+    Row{{.name = "ihsrr",
+         .source = "Prikryl et al. 2000",
+         .refines = true,
+         .follows_variance = true,
+         .importance = ImportanceUse::full,
+         .separates_groups = true,
+         .follows_dimming = true},
+        make_ray_radiosity},
+    Row{{.name = "random-walk", .source = "Pattanaik and Mudur 1992, 1995"}, make_random_walks},
+    Row{{.name = "hr",
+         .source = "Hanrahan et al. 1991, Smits et al. 1992",
+         .refines = true,
+         .is_stochastic = false,
+         .takes_luminaires = false},
+        make_linked_elements},
+    Row{{.name = "global-lines",
+         .source = "Sbert 1993, 1997",
+         .no_importance = uniform_lines,
+         .takes_luminaires = false},
+        make_global_lines},
+    Row{{.name = "pr",
+         .source = "Cohen et al. 1988, Bekaert and Willems 1994, 1995",
+         .importance = ImportanceUse::full},
+        make_progressive_refinement},
+};
+
+constexpr auto method_table = [] {
+    std::array<Method, rows.size()> table{};
+    for (std::size_t i = 0; i < rows.size(); ++i) table[i] = rows[i].method;
+    return table;
+}();
 
 }  // namespace
 
@@ -106,28 +130,9 @@ void use_published_algorithm(SolveOptions& options) {
 
 namespace detail {
 
-namespace {
-
-using Make = std::unique_ptr<IterationMethod>(SolverState& state);
-constexpr std::array<std::pair<std::string_view, Make*>, method_table.size()> makers = {{
-    {"srr", make_ray_radiosity},
-    {"isrr", make_ray_radiosity},
-    {"wdrs", make_well_distributed_rays},
-    {"hwdrs", make_well_distributed_rays},
-    {"hsrr", make_ray_radiosity},
-    {"ihsrr", make_ray_radiosity},
-    {"random-walk", make_random_walks},
-    {"hr", make_linked_elements},
-    {"global-lines", make_global_lines},
-    {"pr", make_progressive_refinement},
-}};
-
-}  // namespace
-
 std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state) {
     const std::string_view name = find_method(state.options.method.name).name;
-    const auto found = std::find_if(makers.begin(), makers.end(), [&](const auto& m) { return m.first == name; });
-    return found->second(state);
+    return std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.method.name == name; })->make(state);
 }
 
 }  // namespace detail

@@ -121,13 +121,13 @@ class PathBatch {
         double sum = 0;
         for (std::size_t i = 0; i < payload.emitted.size(); ++i) sum += weight(i);
         if (!(sum > 0)) return;
-        quantum_ = sum / static_cast<double>(paths);
+        unit_power_ = sum / static_cast<double>(paths);
         for (std::size_t i = 0; i < payload.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
         allocation_.emplace(q_, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
     }
 
     const PathSums& follow() {
-        if (!(quantum_ > 0)) return sums_;
+        if (!(unit_power_ > 0)) return sums_;
         PerThread<Wavefront> wavefronts;
         const auto follow_some = [&](std::size_t begin, std::size_t end) {
             follow(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), wavefronts.local());
@@ -157,7 +157,8 @@ class PathBatch {
         const auto emit_some = [&](std::size_t source, std::int64_t first, std::int64_t from, std::int64_t to) {
             const auto s = static_cast<std::uint32_t>(source);
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
-            const double share = quantum_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
+            const double share =
+                unit_power_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
             std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(payload_.emitted[s]) * share)});
             const std::uint64_t key = sub_key(key_, WalkPurpose::emission, s);
             const auto first_sample = static_cast<std::uint64_t>(from - first);
@@ -203,14 +204,14 @@ class PathBatch {
     }
 
     /// Applies Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each
-    /// with 1/n of the power. With n = power * density / quantum, a copy carries the power of a particle emitted there.
-    /// One random number samples the copies of a wavefront systematically, so their total hardly varies.
+    /// with 1/n of the power. With n = power * density / unit_power_, a copy carries the power of a particle emitted
+    /// there. One random number samples the copies of a wavefront systematically, so their total hardly varies.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;
         for (const auto& [patch, power] : w.reflected) {
             const double n =
-                std::min(most_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / quantum_);
+                std::min(most_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / unit_power_);
             const double before = std::floor(cumulative);
             cumulative += n;
             const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
@@ -237,8 +238,8 @@ class PathBatch {
     std::int64_t paths_;
     std::uint64_t key_;
     PathSums sums_;
-    double quantum_ = 0;    // power of a particle where the density is 1, summed over the channels
-    std::vector<float> q_;  // share of the paths that start on each source
+    double unit_power_ = 0;  // power of a particle where the density is 1, summed over the channels
+    std::vector<float> q_;   // share of the paths that start on each source
     std::optional<RayAllocation> allocation_;
 };
 
