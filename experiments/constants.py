@@ -86,9 +86,9 @@ def gallery() -> Scene:
 def attic() -> Scene:
     """A dark room with a sloping roof and one dormer that lets in a sky and the sun; crates on the floor."""
     mgf = Mgf()
-    mgf.material("white", "rd 0.58")
-    mgf.material("grey", "rd 0.22")
-    mgf.material("wood", "rd 0.31", colour=(0.41, 0.39))
+    mgf.material("white", "rd 0.58", sides=2)
+    mgf.material("grey", "rd 0.22", sides=2)
+    mgf.material("wood", "rd 0.31", sides=2, colour=(0.41, 0.39))
     mgf.quad("wood", (0, 0, 0), (6.3, 0, 0), (0, 7.9, 0))
     mgf.quad("white", (0, 0, 0), (0, 0, 3.4), (6.3, 0, 0))
     mgf.quad("white", (0, 7.9, 0), (6.3, 0, 0), (0, 0, 3.4))
@@ -98,7 +98,7 @@ def attic() -> Scene:
     mgf.face("white", (0, 0, 3.4), (6.3, 0, 1.2), (6.3, 0, 3.4))  # behind the roof
     for i in range(7):
         mgf.box("wood", (0.5 + 0.73 * i, 1.1 + 0.9 * ((3 * i) % 7), 0), (0.5, 0.4 + 0.05 * i, 0.3 + 0.09 * i), turn=23 * i)
-    return Scene(mgf.text(), eye=(0.7, 7.2, 1.5), look_at=(4.9, 2.0, 0.4), fov=66, options="--sun 100,34 --cie-sky 12")
+    return Scene(mgf.text(), eye=(0.7, 7.2, 1.5), look_at=(4.9, 2.0, 0.4), fov=66, options="--sun 100,34 --sky clear")
 
 
 def stairwell() -> Scene:
@@ -106,11 +106,8 @@ def stairwell() -> Scene:
     mgf = Mgf()
     mgf.room((9.4, 4.1, 2.9))
     mgf.lamp("tube", 16000)
-    mgf.wall_with_hole("white", (4.9, 0, 0), (0, 4.1, 0), (0, 0, 2.9), (0.18, 0, 0.42, 0.74))
-    mgf.wall_with_hole("white", (5.0, 4.1, 0), (0, -4.1, 0), (0, 0, 2.9), (0.58, 0, 0.82, 0.74))
-    mgf.quad("grey", (4.9, 0.74, 2.146), (0.1, 0, 0), (0, 0.98, 0)[::1])
-    for y in (0.74, 1.72):
-        mgf.quad("grey", (4.9, y, 0), *(((0, 0, 2.146), (0.1, 0, 0)) if y > 1 else ((0.1, 0, 0), (0, 0, 2.146))))
+    for low, size in (((4.9, 0, 0), (0.1, 0.74, 2.9)), ((4.9, 1.72, 0), (0.1, 2.38, 2.9)), ((4.9, 0.74, 2.15), (0.1, 0.98, 0.75))):
+        mgf.box("white", low, size)
     mgf.fixture("tube", (6.4, 1.1, 2.75), (1.5, 0.12, 0.1), ceiling=2.9)
     mgf.fixture("tube", (7.9, 2.7, 2.75), (0.12, 1.0, 0.1), ceiling=2.9)
     for step in range(6):
@@ -180,7 +177,7 @@ class Bench:
         os.environ["INTERFLECT_CONSTANT"] = f"{run.constant}={run.factor}"
         with tempfile.TemporaryDirectory() as folder:
             picture, stats = Path(folder) / "picture.exr", Path(folder) / "stats"
-            options = f"{scene.view()} {scene.options} --size {SCALE.size[0]}x{SCALE.size[1]} --rays {RAYS} --seed {run.seed} --no-mirrors"
+            options = f"{scene.view()} {scene.options} --size {SCALE.size[0]}x{SCALE.size[1]} --rays {RAYS} --seed {run.seed}"
             render = f"--shading smooth -o {picture} --stats {stats}"
             program.run(self.command, ["render", str(path), *options.split(), *render.split()])
             values = luminance(read_exr(picture))
