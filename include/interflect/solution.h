@@ -68,16 +68,17 @@ struct Solution {
 
 /// A leaf of the mesh: a patch that is not divided, or a piece of one.
 struct Leaf {
-    std::uint32_t element = 0;             ///< Index into the vectors of Solution.
-    std::uint32_t patch = 0;               ///< Index into Scene::patches.
-    int level = 0;                         ///< Number of divisions of the patch; 0: the patch itself.
-    int vertex_count = 4;                  ///< 3 or 4.
-    std::array<Imath::V3d, 4> vertices{};  ///< World coordinates [m], counter-clockwise seen from the lit side. A triangle repeats the last.
-    float area = 0;                        ///< [m^2]
-    Rgb irradiance{0, 0, 0};               ///< H [lm/m^2 or W/m^2].
-    float importance = 0;                  ///< psi, all bounces; 0 without a view [1/m^2].
-    float standard_error = 0;              ///< As Solution::standard_error.
-    float discretisation_error = 0;        ///< As Solution::discretisation_error.
+    std::uint32_t element = 0;  ///< Index into the vectors of Solution.
+    std::uint32_t patch = 0;    ///< Index into Scene::patches.
+    int level = 0;              ///< Number of divisions of the patch; 0: the patch itself.
+    int vertex_count = 4;       ///< 3 or 4.
+    /// World coordinates [m], counter-clockwise seen from the lit side. A triangle repeats the last.
+    std::array<Imath::V3d, 4> vertices{};
+    float area = 0;                  ///< [m^2]
+    Rgb irradiance{0, 0, 0};         ///< H [lm/m^2 or W/m^2].
+    float importance = 0;            ///< psi, all bounces; 0 without a view [1/m^2].
+    float standard_error = 0;        ///< As Solution::standard_error.
+    float discretisation_error = 0;  ///< As Solution::discretisation_error.
 };
 
 /// The mesh of a solution, with one entry per leaf, in the order of the elements.

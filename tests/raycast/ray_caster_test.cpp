@@ -1,9 +1,7 @@
 // Ray hits: no ray leaves a closed room, and each face reports the visible side. Seen to fail (scripts/mutation-test)
 // when the backs of two-sided faces are reported as fronts, when backs of one-sided faces stop rays, and when rays do
 // not start off their surface.
-
 #include "interflect/ray_caster.h"
-#include "interflect/raycast/prepared_rays.h"
 
 #include <ImathMatrix.h>
 #include <gmock/gmock.h>
@@ -15,6 +13,7 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/raycast/prepared_rays.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,15 +1,14 @@
 // Means over neighbouring patches, which prevent small lamps from appearing unimportant. Seen to fail
 // (scripts/mutation-test) if patches are not weighted by area, or if neighbourhoods do not pass on the values of the
 // next larger ones.
-
 #include "interflect/solver/importance/neighbourhoods.h"
-#include "interflect/elements/forest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "interflect/elements/forest.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,9 +1,6 @@
 // Sampling weights of rays, Eq. 3 and 8-11 of Prikryl et al. 2000, on values that can be checked by hand. Seen to fail
 // if an area is missing, if rho is missing in Eq. 8, or if infinite weights are kept or not counted.
-
 #include "interflect/solver/sampling/probabilities.h"
-#include "interflect/elements/forest.h"
-#include "interflect/solver/importance/importance_weights.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +9,8 @@
 #include <functional>
 #include <limits>
 
+#include "interflect/elements/forest.h"
+#include "interflect/solver/importance/importance_weights.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,6 +1,3 @@
-#include "interflect/exports/saved_run.h"
-#include "interflect/solution.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +17,10 @@
 #include "interflect/exports/description.h"
 #include "interflect/exports/hdf5_arrays.h"
 #include "interflect/exports/json_text.h"
+#include "interflect/exports/saved_run.h"
 #include "interflect/exports/solve_report.h"
 #include "interflect/exports/texture_records.h"
+#include "interflect/solution.h"
 
 namespace interflect {
 

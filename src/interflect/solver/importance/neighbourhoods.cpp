@@ -1,10 +1,11 @@
 #include "interflect/solver/importance/neighbourhoods.h"
-#include "interflect/elements/forest.h"
 
 #include <ImathBox.h>
 
 #include <algorithm>
 #include <numeric>
+
+#include "interflect/elements/forest.h"
 
 namespace interflect::detail {
 

@@ -1,9 +1,10 @@
 #include "interflect/solver/state/schedule.h"
-#include "interflect/base/state_archive.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "interflect/base/state_archive.h"
 
 namespace interflect::detail {
 
