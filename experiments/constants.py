@@ -136,7 +136,7 @@ def instrumented() -> Path:
             text = replaced(text, name, file)
         first = text.index("#include")
         path.write_text(text[:first] + '#include "interflect/base/tuned.h"\n' + text[first:])
-    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DINTERFLECT_UNITY=ON"]
+    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DINTERFLECT_UNITY=ON", "-DINTERFLECT_TESTS=OFF"]
     subprocess.run(["cmake", "-S", source, "-B", build, *options], check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", build, "--target", "interflect_command"], check=True)
     return next(build.rglob("bin/interflect"))
