@@ -5,10 +5,9 @@
 
 namespace interflect::detail {
 
-/// Address space still available to the process [bytes], by RLIMIT_AS (ulimit -v); the largest number without a limit.
+/// Returns the address space left under RLIMIT_AS [bytes]; the maximum of the type if unlimited.
 std::size_t free_address_space();
 
-/// Address space cannot be reserved.
 class AddressSpaceError : public std::runtime_error {
   public:
     explicit AddressSpaceError(std::size_t bytes);

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view hex_digits = "0123456789abcdef";
 constexpr std::size_t escape_length = 4;  // \xNN
 
-/// Form of a UTF-8 sequence by its first byte, and the smallest code point that needs this length.
+/// Lead byte of a UTF-8 sequence, its length and its smallest code point.
 struct SequenceKind {
     std::uint8_t mask, lead;
     std::size_t length;
@@ -19,7 +19,6 @@ struct SequenceKind {
 constexpr SequenceKind sequence_kinds[] = {
     {0x80, 0x00, 1, 0}, {0xe0, 0xc0, 2, 0x80}, {0xf0, 0xe0, 3, 0x800}, {0xf8, 0xf0, 4, 0x10000}};
 
-/// The first character of a text.
 struct Character {
     std::size_t length = 0;  ///< [bytes]; 0 for invalid UTF-8.
     std::uint32_t code_point = 0;

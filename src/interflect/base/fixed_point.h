@@ -9,14 +9,13 @@
 
 namespace interflect::detail {
 
-/// Non-negative colours as integers in a common unit. Sums are independent of the order of terms and thus of the number
-/// of threads. The unit is total / 2^61, with an upper bound of the sum as total: up to 2^61 terms stay below 2^63,
-/// even if all are rounded up. Each of 10^12 equal terms still has 2^21 units.
+/// Non-negative colours as integers in units of total / 2^61, so sums do not depend on the order of their terms. 2^61
+/// terms stay below 2^63 even if all are rounded up; each of 10^12 equal terms has 2^21 units.
 class FixedPoint {
   public:
     using Value = std::array<std::int64_t, 3>;
 
-    /// @param total  Upper bound of the sum of all terms, per channel; finite. 0 if all terms are 0.
+    /// @param total  Upper bound of the sum of all terms, per channel; finite, >= 0.
     explicit FixedPoint(double total) : unit_(total * 0x1p-61), per_unit_(total > 0 ? 1 / unit_ : 0) {}
 
     Value from(const RgbD& c) const {

@@ -26,12 +26,12 @@
 
 namespace interflect::detail {
 
-/// One T per thread. Uses malloc because ThreadSanitizer cannot follow TBB's allocator between threads.
+/// One T per thread. ThreadSanitizer cannot follow TBB's allocator, hence std::allocator.
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
-/// Calls body(begin, end) on all threads for a partition of [0, count). Ranges start at multiples of `grain` and are at
-/// most that long, independent of the number of threads.
+/// Calls body(begin, end) for consecutive ranges of at most `grain` indices in [0, count). The ranges do not depend on
+/// the number of threads.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
     const std::size_t ranges = (count + grain - 1) / grain;
@@ -41,7 +41,7 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
         return;
     }
 #ifdef INTERFLECT_THREAD_SANITIZER
-    // ThreadSanitizer reports TBB's tasks as races, so plain threads share the ranges.
+    // ThreadSanitizer reports TBB's tasks as races.
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t range = next++; range < ranges; range = next++) do_range(range);
@@ -54,7 +54,7 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
 #endif
 }
 
-/// Sum of body(begin, end) over the same ranges in order: equal bits for any number of threads.
+/// Sums body(begin, end) over these ranges in order, so any number of threads gives equal bits.
 /// @param zero  The empty sum.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {
@@ -66,7 +66,7 @@ T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& 
     return sum;
 }
 
-/// @param less  Must be a total order, because the sort is not stable.
+/// @param less  A total order, because the sort is not stable.
 template <class T, class Less>
 void parallel_sort(std::vector<T>& values, const Less& less) {
 #ifdef INTERFLECT_THREAD_SANITIZER
@@ -76,7 +76,6 @@ void parallel_sort(std::vector<T>& values, const Less& less) {
 #endif
 }
 
-/// Calls both functions, in parallel if a thread is free.
 template <class A, class B>
 void parallel_invoke(const A& a, const B& b) {
 #ifdef INTERFLECT_THREAD_SANITIZER

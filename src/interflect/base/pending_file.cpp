@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Follows symbolic links. The target need not exist.
+/// The target need not exist.
 fs::path target_of(fs::path path) {
-    constexpr int most_links = 40;  // as in the kernel
+    constexpr int most_links = 40;  // as in Linux
     for (int link = 0; fs::is_symlink(fs::symlink_status(path)); ++link) {
         if (link == most_links) throw InputError("too many symbolic links, or a loop of them");
         path = path.parent_path() / fs::read_symlink(path);
@@ -39,7 +39,7 @@ fs::path target_of(fs::path path) {
 
 bool is_standard_output(const fs::path& path) { return path == "-"; }
 
-/// Copies a file into an existing device or pipe. @throws std::runtime_error
+/// Writes to an existing device or pipe. @throws std::runtime_error
 void copy_into(const fs::path& from, const fs::path& device) {
     const auto fail = [&] {
         throw std::runtime_error("cannot write '" + device.string() + "': " + std::strerror(errno));
@@ -75,7 +75,7 @@ std::string temporary_prefix() {
     return ".interflect-" + std::string(host.data()) + "-";
 }
 
-/// Short, because file names have at most 255 bytes.
+/// Drops long extensions, because file names have at most 255 bytes.
 std::string temporary_name(const fs::path& final_path) {
     static std::atomic<int> made = 0;
     constexpr std::size_t longest_extension = 16;
@@ -84,7 +84,7 @@ std::string temporary_name(const fs::path& final_path) {
            std::string(temporary_mark) + (extension.size() <= longest_extension ? extension : "");
 }
 
-/// Whether a file name is that of a temporary file of an ended process.
+/// Whether the process that made the file has ended.
 bool is_stale(std::string_view name, std::string_view prefix) {
     if (!name.starts_with(prefix) || name.find(temporary_mark) == std::string_view::npos) return false;
     pid_t process = 0;
@@ -94,7 +94,7 @@ bool is_stale(std::string_view name, std::string_view prefix) {
            ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Removes temporary files of killed processes on this host, where permitted.
+/// Considers only this host.
 void remove_stale_files(const fs::path& folder) {
     const std::string prefix = temporary_prefix();
     std::error_code ignored;
@@ -102,7 +102,7 @@ void remove_stale_files(const fs::path& folder) {
         if (is_stale(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
 }
 
-/// Current temporary files, in plain memory for a signal handler. A slot is free while its path is null.
+/// Paths of the live files, for a signal handler; null if the slot is free.
 constexpr std::size_t slot_count = 16;
 std::array<std::atomic<const char*>, slot_count> listed_paths{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -122,7 +122,7 @@ void unlist(std::size_t slot) {
 }  // namespace
 
 PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path)), slot_(slot_count) {
-    std::error_code loop;  // loop of symbolic links, reported by target_of()
+    std::error_code loop;
     const fs::file_status status = fs::status(final_path_, loop);
     if (final_path_.filename().empty() || fs::is_directory(status))
         throw_cannot_write(final_path_, "it names a folder, expected a file name");
@@ -167,7 +167,7 @@ PendingFile::PendingFile(PendingFile&& other) noexcept
 
 PendingFile::~PendingFile() {
     unlist(slot_);
-    std::error_code ignored;  // failure to remove a temporary file is ignored
+    std::error_code ignored;
     if (!temporary_path_.empty()) fs::remove(temporary_path_, ignored);
 }
 

@@ -4,18 +4,16 @@
 
 namespace interflect::detail {
 
-/// An output file that appears under its name only when complete: a temporary file is renamed. Create it before long
-/// work, to report an unwritable path at once. The target of a symbolic link is replaced, not the link. Devices, pipes
-/// and sockets are not replaced; the output is copied into them. The path '-' is standard output.
+/// An output file that appears under its name only when complete, by renaming a temporary file. Construct it before
+/// long work to report an unwritable path at once. Replaces the target of a symbolic link; copies the output into
+/// devices, pipes and standard output ('-').
 ///
-/// A killed process leaves a temporary file, .interflect-HOST-PID-N.part.EXTENSION, which the next PendingFile in the
-/// folder on the same host removes.
+/// A killed process leaves .interflect-HOST-PID-N.part.EXTENSION, which the next PendingFile in that folder on that
+/// host removes.
 class PendingFile {
   public:
-    /// Checks that the temporary file can be created.
     /// @throws InputError if `final_path` is a folder, its folder is missing, or it cannot be written.
     explicit PendingFile(std::filesystem::path final_path);
-    /// Removes the temporary file unless commit() was completed.
     ~PendingFile();
     PendingFile(PendingFile&& other) noexcept;
     PendingFile(const PendingFile&) = delete;
@@ -23,18 +21,18 @@ class PendingFile {
     PendingFile& operator=(PendingFile&&) = delete;
 
     const std::filesystem::path& final_path() const { return final_path_; }
-    /// Path to write to: same extension as final_path(), same folder as the file to be replaced.
+    /// Has the extension of final_path().
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
-    /// Renames the temporary file, replacing any existing file, or copies it into a device. @throws std::runtime_error
+    /// @throws std::runtime_error if the file cannot be replaced, or the device cannot be written.
     void commit();
 
   private:
     std::filesystem::path final_path_, temporary_path_;
-    std::filesystem::path replaced_path_;  // empty if the final path is no regular file and is written in place
-    std::size_t slot_;                     // in the list of temporary files; past its end if not listed
+    std::filesystem::path replaced_path_;  // empty for devices, pipes and standard output
+    std::size_t slot_;                     // index into the list of live files; its size if not listed
 };
 
-/// Removes the temporary files of up to 16 live PendingFiles. Safe in a signal handler, if the process then ends.
+/// Removes the files of up to 16 live PendingFiles. Async-signal-safe, provided the process then ends.
 void remove_temporary_files() noexcept;
 
 }  // namespace interflect::detail

@@ -7,11 +7,10 @@
 
 namespace interflect::detail {
 
-/// A set of integers below a bound with constant-time rank, which serves as index into a compact table. 2 bits per
-/// integer below the bound.
+/// A set of integers below a bound with rank in O(1), for indexing compact tables. Two bits per integer.
 class RankedBits {
   public:
-    RankedBits() = default;  ///< The empty set.
+    RankedBits() = default;
     /// @param members  Ascending, unique, below `bound`; fewer than 2^32.
     RankedBits(std::size_t bound, const std::vector<std::uint32_t>& members) : words_(bound / 64 + 1) {
         for (const std::uint32_t member : members) words_[member / 64].bits |= std::uint64_t{1} << member % 64;
@@ -25,7 +24,7 @@ class RankedBits {
     bool operator[](std::uint32_t number) const {
         return number / 64 < words_.size() && (words_[number / 64].bits >> number % 64 & 1u);
     }
-    /// Number of members less than `number`, which must be a member.
+    /// Number of smaller members. @param number  A member.
     std::uint32_t rank(std::uint32_t number) const {
         const Word& word = words_[number / 64];
         const std::uint64_t lower = (std::uint64_t{1} << number % 64) - 1;

@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// An array of `capacity` zeros that never moves, so threads may use new entries while others read old ones. Address
-/// space is reserved at once; memory is allocated by page on first access.
+/// An array of `capacity` zeros that never moves, so threads can fill new entries while others read old ones. Reserves
+/// address space only; the system allocates pages on first access.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -25,7 +25,7 @@ class StableArray {
             ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory == MAP_FAILED) throw AddressSpaceError(bytes());
         data_ = static_cast<T*>(memory);
-        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // entries are accessed at random; failure costs only time
+        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // fewer TLB misses for random access; may fail
     }
     ~StableArray() {
         if (data_) ::munmap(data_, bytes());
@@ -42,7 +42,7 @@ class StableArray {
     const T& operator[](std::size_t i) const { return data_[i]; }
     std::size_t capacity() const { return capacity_; }
 
-    /// Frees the memory of entries, in whole pages; their values are lost.
+    /// Frees the whole pages within a range, which become zero again.
     void release(std::size_t begin, std::size_t end) {
         constexpr std::size_t page = 4096;
         const std::size_t first = (begin * sizeof(T) + page - 1) / page * page, last = end * sizeof(T) / page * page;

@@ -13,11 +13,11 @@
 
 namespace interflect::detail {
 
-/// State of a run, as named arrays of bytes in native layout. Each class lists its members once, in archive(), for
-/// writing and reading. Only the same version of Interflect can read them.
+/// State of a run as named byte arrays in native layout; readable only by the same version. The archive() of each class
+/// lists its members for both writing and reading.
 class StateArchive {
   public:
-    /// For writing. Refers to the values, which must not change until they are written.
+    /// For writing. Refers to the values, which must stay unchanged until written.
     StateArchive() = default;
     /// For reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
@@ -44,7 +44,7 @@ class StateArchive {
         }
     }
 
-    /// For data stored in another form: writes `values`, or returns the data read.
+    /// For data stored in another form. Writes and returns `values`, or returns the values read.
     template <class T>
     std::vector<T> by_value(const std::string& name, std::vector<T> values) {
         if (!reads_) {
@@ -79,7 +79,6 @@ class StateArchive {
     std::map<std::string, std::vector<std::byte>> arrays_;
 };
 
-/// Archives [group][element] arrays. Reads the number of groups that was written.
 template <class T>
 void archive_groups(StateArchive& archive, const std::string& name, std::vector<std::vector<T>>& groups) {
     constexpr std::uint64_t most = 256;

@@ -9,10 +9,9 @@
 
 namespace interflect::detail {
 
-/// Thrown if a run must stop; the current step is lost.
+/// Thrown when a run must stop; the current step is lost.
 struct Interrupted {};
 
-/// Condition for stopping a run. All threads check it before each batch of rays.
 class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
@@ -37,7 +36,7 @@ class StopRequest {
     double seconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// Like parallel_for_ranges() above, but starts no range once the run must stop. @throws Interrupted
+/// Starts no more ranges once the run must stop. @throws Interrupted
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
     std::atomic<bool> is_over{false};

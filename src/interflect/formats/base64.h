@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Decodes base64 (RFC 4648), padded or not; nullopt if invalid.
+/// Decodes RFC 4648, with or without padding; nullopt if invalid.
 std::optional<std::string> decode_base64(std::string_view text);
 
 }  // namespace interflect::detail

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Reads a number from the first sizeof(Number) bytes.
+/// @param bytes  At least sizeof(Number).
 template <class Number>
 Number number_of(std::string_view bytes, std::endian order) {
     std::array<char, sizeof(Number)> raw;

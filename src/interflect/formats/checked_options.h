@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Returns `options` unchanged. @throws InputError  if an option is out of range.
+/// @return  `options`. @throws InputError if one is out of range.
 const ReadOptions& checked(const ReadOptions& options);
 
 }  // namespace interflect::detail

@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Returns the extension in lower case, independent of the locale.
+/// Independent of the locale.
 inline std::string lower_case_extension(const std::filesystem::path& path) {
     std::string text = path.extension().string();
     for (char& c : text)

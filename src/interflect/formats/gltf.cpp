@@ -21,7 +21,7 @@ namespace {
 
 using Imath::M44d;
 
-/// Extensions that are read, or reported at the place of use.
+/// Extensions that are read, or reported where they are used.
 constexpr std::string_view known_extensions[] = {
     "EXT_lights_ies",
     "EXT_mesh_gpu_instancing",
@@ -107,13 +107,13 @@ class SceneReader {
         std::uint64_t faces = 0;
         for (const std::uint32_t primitive : primitives) faces += asset_.model.meshes[primitive].indices.size() / 3;
         const std::vector<M44d> places = places_of(node, std::max<std::uint64_t>(faces, primitives.size()));
-        // The joints, not the node, place a skinned mesh in the world.
+        // Joints, not the node, place a skinned mesh in the world.
         for (const M44d& place : places)
             for (const std::uint32_t primitive : primitives)
                 asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object});
     }
 
-    /// Each face makes at least one patch (scene_of()).
+    /// Each face becomes at least one patch.
     void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
         faces_ += static_cast<double>(copies) * static_cast<double>(faces);
         if (faces_ > static_cast<double>(asset_.options().max_patches))
@@ -123,7 +123,7 @@ class SceneReader {
                             node.place(), copies, faces, asset_.options().max_patches));
     }
 
-    /// Returns the mesh's transforms: of the node, or of its instances (EXT_mesh_gpu_instancing).
+    /// Returns the places of a node's mesh, several with EXT_mesh_gpu_instancing. @param faces  Per instance.
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {
@@ -158,7 +158,7 @@ class SceneReader {
         return places;
     }
 
-    /// Returns the matrix from mesh to world for each joint.
+    /// Returns the matrix from mesh to world per joint.
     const std::vector<M44d>& joints_of(std::uint32_t index) {
         const auto [entry, is_new] = joints_.try_emplace(index);
         std::vector<M44d>& result = entry->second;

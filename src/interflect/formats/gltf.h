@@ -8,11 +8,11 @@
 
 namespace interflect::detail {
 
-/// Reads a glTF 2.0 file (.gltf or .glb); see docs/gltf.md.
-/// @throws InputError  with file and place; also as scene_of() and beyond the limits of `options`.
+/// Reads a glTF 2.0 file, .gltf or .glb (docs/gltf.md).
+/// @throws InputError for invalid input and limits of `options`; also as scene_of().
 Scene read_gltf(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads from memory. @param path  Name for messages; other files are relative to its folder.
+/// @param path  Name for messages; its folder contains referenced files.
 Scene read_gltf_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace interflect::detail

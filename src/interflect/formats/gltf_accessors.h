@@ -12,28 +12,28 @@ namespace interflect::detail {
 /// Bounds-checked elements of an accessor.
 struct GltfElements {
     const char* first = nullptr;
-    std::size_t stride = 0;  ///< In bytes; 0: all elements are identical.
+    std::size_t stride = 0;  ///< [bytes]; 0: all elements are equal.
     std::uint64_t count = 0;
-    int component_type = 0;   ///< glTF enum value; 5126 is float.
-    int components = 1;       ///< Per element.
+    int component_type = 0;  ///< glTF constant; 5126 is float.
+    int components = 1;
     bool normalized = false;  ///< Integers are fractions of their largest value.
 
-    /// Returns a component after normalisation. Arguments must be in range.
+    /// Returns a normalised component; arguments must be in range.
     double number(std::uint64_t element, int component) const;
-    /// Returns an element of unsigned type without normalisation.
+    /// Returns an element of unsigned type, not normalised.
     std::uint32_t whole_number(std::uint64_t element) const;
 };
 
-/// Accessors of a glTF file, of all component types. Sparse accessors and those without data (zeros) are supported.
+/// Supports sparse accessors and those without data (zeros).
 class GltfAccessors {
   public:
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
 
     std::size_t count() const { return accessors_.size(); }
-    /// @param types  Accepted types, such as "VEC3 VEC4". @param user  Named in errors.
-    /// @return  Valid while this object lives. @throws GltfFault  if elements lie outside their buffer.
+    /// @param types  Accepted types, such as "VEC3 VEC4". @param user  Object for messages.
+    /// @return  Valid while this object lives. @throws GltfFault if elements lie outside their buffer.
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& user);
-    /// Returns indices: unsigned scalars, not normalized.
+    /// Requires unsigned scalars.
     GltfElements indices(std::uint32_t index, const GltfValue& user);
 
   private:
@@ -43,7 +43,7 @@ class GltfAccessors {
     GltfAsset& asset_;
     GltfBuffers& buffers_;
     std::vector<GltfValue> accessors_;
-    std::map<std::uint32_t, std::string> sparse_;  // packed
+    std::map<std::uint32_t, std::string> sparse_;
 };
 
 }  // namespace interflect::detail

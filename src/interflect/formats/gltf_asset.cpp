@@ -23,7 +23,7 @@ std::uint32_t word(std::string_view bytes, std::size_t offset) {
     return value;
 }
 
-/// Removes the first chunk if it has the given type.
+/// Removes the first chunk if it has this type.
 std::optional<std::string_view> take_chunk(std::string_view& bytes, std::uint32_t type) {
     constexpr std::size_t header = 8;
     if (bytes.empty()) return std::nullopt;
@@ -59,7 +59,6 @@ bool has_scheme(std::string_view uri) {
     return colon != uri.npos && uri.find_first_of("/?#") > colon;
 }
 
-/// Shortens a URI for messages.
 std::string cut(const std::string& uri) {
     constexpr std::size_t longest = 100;
     return escaped(uri.size() > longest ? uri.substr(0, longest) + "..." : uri);

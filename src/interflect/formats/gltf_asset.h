@@ -11,16 +11,16 @@
 
 namespace interflect::detail {
 
-/// Parts of a GLB file. A .gltf file is all JSON.
+/// Chunks of a GLB file; a .gltf file is all JSON.
 struct GltfParts {
     std::string_view json, binary;
-    bool is_binary = false;  ///< GLB with a binary chunk.
+    bool is_binary = false;  ///< Has a binary chunk.
 };
 
-/// @throws GltfFault  for a truncated GLB or another version.
+/// @throws GltfFault for a truncated GLB or another version.
 GltfParts gltf_parts(std::string_view bytes);
 
-/// Data shared by the glTF readers: JSON, referenced files, and the resulting model.
+/// State shared by the glTF readers.
 class GltfAsset {
   public:
     GltfAsset(const std::filesystem::path& path, const ReadOptions& options, const nlohmann::json& json);
@@ -31,9 +31,9 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
-    /// Returns the bytes of a data URI or of a file in the scene's folder. @param user  Named in errors.
+    /// Reads a data URI, or a file in the scene's folder. @param user  Object for messages.
     std::string read_uri(const std::string& uri, const GltfValue& user);
-    /// Counts memory. @throws GltfFault  if the total exceeds options.max_model_bytes.
+    /// @throws GltfFault if the total exceeds options.max_model_bytes.
     void take_bytes(std::uint64_t count, const GltfValue& user);
 
     Model model;

@@ -10,7 +10,7 @@
 
 namespace interflect::detail {
 
-/// Buffers and buffer views, read and decompressed on first use.
+/// Reads and decompresses on first use.
 class GltfBuffers {
   public:
     struct View {

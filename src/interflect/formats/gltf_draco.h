@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Attribute values, interleaved by vertex.
+/// Interleaved by vertex.
 struct DracoAttribute {
     int components = 0;
     std::vector<float> values;
@@ -16,13 +16,13 @@ struct DracoAttribute {
 
 struct DracoMesh {
     std::uint64_t vertex_count = 0;
-    std::vector<std::uint32_t> indices;      ///< Triangles.
-    std::vector<DracoAttribute> attributes;  ///< In the requested order.
+    std::vector<std::uint32_t> indices;  ///< Triangles.
+    std::vector<DracoAttribute> attributes;
 };
 
-/// Decodes KHR_draco_mesh_compression. @param attributes  Unique identifiers.
-/// @param most_triangles, most_vertices  Limits, checked before memory is allocated. @param extension  Named in errors.
-/// @throws GltfFault  for damaged data.
+/// @param attributes  Unique identifiers in the file, also the order of the result.
+/// @param most_triangles, most_vertices  Checked before memory is allocated.
+/// @throws GltfFault for damaged data.
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
 

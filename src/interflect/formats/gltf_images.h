@@ -13,22 +13,22 @@
 
 namespace interflect::detail {
 
-/// Covered fraction of a surface at each point; the rest is open.
+/// Opaque fraction of a surface.
 struct GltfCoverage {
-    std::uint32_t image = none;  ///< Image with the alpha channel, if any.
+    std::uint32_t image = none;  ///< Image with alpha, if any.
     float factor = 1;            ///< Multiplies alpha.
     float cutoff = 0;            ///< Threshold, if positive.
 
     float at(float alpha) const { return cutoff > 0 ? (factor * alpha >= cutoff ? 1.0f : 0.0f) : factor * alpha; }
 };
 
-/// Key of a texture, equal for equal textures.
+/// Inputs of a texture. Equal inputs share one.
 struct GltfTexels {
     std::uint32_t colour = none;    ///< sRGB image; white if absent.
-    std::uint32_t metallic = none;  ///< Image with metallic in the blue channel, if any.
-    float metallic_factor = 0;      ///< Colours are multiplied by 1 - metallic.
-    Rgb factor{1, 1, 1};            ///< Multiplies the result, which is clamped to 1.
-    GltfCoverage coverage{};        ///< Open parts have the colour `open`.
+    std::uint32_t metallic = none;  ///< Image with metallic in its blue channel.
+    float metallic_factor = 0;      ///< Scales colours by 1 - metallic.
+    Rgb factor{1, 1, 1};            ///< Scales colours before clamping to 1.
+    GltfCoverage coverage{};        ///< Blends the colour with `open`.
     Rgb open{0, 0, 0};
 
     auto key() const {
@@ -37,28 +37,27 @@ struct GltfTexels {
     }
 };
 
-/// Means over an image.
 struct GltfImageMeans {
     Rgb colour{1, 1, 1};  ///< After sRGB decoding.
-    Rgb stored{1, 1, 1};  ///< Without decoding.
+    Rgb stored{1, 1, 1};  ///< Before sRGB decoding.
     float alpha = 1;
-    float least_alpha = 1;  ///< Minimum.
+    float least_alpha = 1;
 };
 
-/// PNG and JPEG images of a glTF file, from buffer views, data URIs and files.
+/// PNG and JPEG images from buffer views, data URIs and files.
 class GltfImages {
   public:
     GltfImages(GltfAsset& asset, GltfBuffers& buffers);
 
-    /// Returns the image of a texture. Returns `none`, with a warning, if it is missing.
+    /// Warns about a missing image.
     std::uint32_t image_of_texture(std::uint32_t texture);
     std::size_t texture_count() const { return textures_.size(); }
     bool repeats(std::uint32_t texture) const;
 
-    /// @return  Index into Model::textures; whether a texel was clamped to 1.
+    /// @return  Index into Model::textures, and whether a texel was clamped to 1.
     std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
-    /// Downsamples the textures beyond the texel limit, with a warning. Call it after all textures of a material exist,
-    /// since they must keep equal sizes.
+    /// Downsamples textures beyond the texel limit. Call it when all textures of a material exist, because they must
+    /// keep equal sizes.
     void limit_textures();
     const GltfImageMeans& means(std::uint32_t image);
 

@@ -12,7 +12,6 @@
 
 namespace interflect::detail {
 
-/// Lights and cameras: KHR_lights_punctual, EXT_lights_ies and views.
 class GltfLights {
   public:
     GltfLights(GltfAsset& asset, GltfBuffers& buffers);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto most_reflected = static_cast<float>(largest_reflectance);
 
-/// For primitives without a material. glTF's own default is a metal without diffuse reflection.
+/// For primitives without a material; glTF's own default does not reflect diffusely.
 constexpr float default_reflectance = 0.5f;
 
 GltfMapping mapping_of(const GltfValue& use) {
@@ -43,14 +43,14 @@ struct GltfMaterials::Parts {
     GltfTextureUse metallic_texture;
     Rgb emissive{0, 0, 0};  ///< [cd/m^2]
     GltfTextureUse emissive_texture;
-    float transmission = 0;  ///< Mean over the texture.
+    float transmission = 0;  ///< mean over its texture
     GltfTextureUse coverage_texture;
-    float coverage = 1;  ///< Covered fraction of the area. With a texture, a factor of its alpha.
-    float cutoff = 0;    ///< As in GltfCoverage.
+    float coverage = 1;  ///< opaque fraction of the area, or factor of the texture's alpha
+    float cutoff = 0;    ///< as in GltfCoverage
     std::optional<GltfMapping> mapping;
 
     GltfCoverage coverage_from_texture() const { return {coverage_texture.image, coverage, cutoff}; }
-    /// Returns the covered fraction if uniform, else 1, since the textures contain it.
+    /// Returns 1 if the textures contain the coverage.
     float even_coverage() const { return coverage_texture.image == none ? coverage : 1; }
 };
 
@@ -82,7 +82,7 @@ void GltfMaterials::warn_of_ignored(const GltfValue& owner) {
     warn_of("KHR_materials_anisotropy", if_positive("anisotropyStrength"));
     warn_of("KHR_materials_sheen",
             [&](const GltfValue& sheen) { return sheen.numbers<3>("sheenColorFactor", black) != black; });
-    // Blender writes a diffuse material (Specular 0) with the factor 1 and a black colour.
+    // Blender writes diffuse materials (Specular 0) with factor 1 and black.
     warn_of("KHR_materials_specular", [&](const GltfValue& specular) {
         return specular.number("specularFactor", 1) > 0 && specular.numbers<3>("specularColorFactor", white) != black;
     });
@@ -139,7 +139,7 @@ void GltfMaterials::apply_alpha(const GltfValue& owner, Parts& parts, GltfSurfac
     }
 }
 
-/// Chooses one mapping for the vertices. Textures with other mappings are replaced by their means.
+/// Textures with other mappings become their means.
 void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool textured) {
     GltfTextureUse* const uses[] = {&parts.coverage_texture, &parts.emissive_texture, &parts.base_texture,
                                     &parts.metallic_texture};
@@ -203,7 +203,7 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
         asset_.warn("transmission-texture", "what goes through a surface has the mean of its base colour's texture",
                     owner.place());
     constexpr float above_rounding = 1 - 0x1p-20f;
-    const Rgb through = base * (parts.transmission * (1 - metallic));  // of covered parts
+    const Rgb through = base * (parts.transmission * (1 - metallic));  // of opaque parts
     if (coverage.image != none) {
         material.transmittance = Rgb(1);
         material.transmittance_texture =

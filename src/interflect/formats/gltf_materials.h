@@ -9,10 +9,9 @@
 
 namespace interflect::detail {
 
-/// Texture coordinate set and transform.
 struct GltfMapping {
     std::uint64_t set = 0;                                ///< TEXCOORD_set
-    double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;  ///< (u, v) becomes (xx u + xy v + x, yx u + yy v + y).
+    double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;  ///< (u, v) becomes (xx u + xy v + x, yx u + yy v + y)
 
     bool operator==(const GltfMapping&) const = default;
     /// Returns coordinates as in Scene, v upwards.
@@ -21,32 +20,31 @@ struct GltfMapping {
     }
 };
 
-/// Material of a primitive.
 struct GltfSurface {
     std::uint32_t material = 0;          ///< Index into Model::materials.
-    std::optional<GltfMapping> mapping;  ///< Mapping of the textures.
+    std::optional<GltfMapping> mapping;  ///< Shared by all textures.
     bool repeats = true;                 ///< Whether textures repeat beyond [0, 1].
     bool double_sided = false;
     bool is_invisible = false;  ///< Hidden by its alpha mask.
 };
 
 struct GltfTextureUse {
-    std::uint32_t image = none;  ///< `none`: untextured
+    std::uint32_t image = none;
     GltfMapping mapping;
     bool repeats = true;
 };
 
-/// Materials of a glTF file, converted on first use.
+/// Converts materials on first use.
 class GltfMaterials {
   public:
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index     Below count(), or `none` for the default material.
-    /// @param textured  If false, textures are replaced by their means.
+    /// @param index  Index in the file, or `none` for the default material.
+    /// @param textured  false: textures become their means.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
-    /// Warns about omitted reflection. Call it after all materials are made.
+    /// Warns about omitted reflection. Call after the last surface().
     void warn_of_lost();
 
   private:

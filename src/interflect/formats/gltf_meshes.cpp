@@ -16,7 +16,7 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
-constexpr const char* lightmap_set = "TEXCOORD_1";  // set by lightmap bakers
+constexpr const char* lightmap_set = "TEXCOORD_1";  // by convention
 constexpr const char* normal_set = "NORMAL";
 /// Accepted rounding beyond [0, 1].
 constexpr double lightmap_tolerance = 1e-4;
@@ -34,7 +34,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// Converts a strip or fan to triangles, without the degenerate ones by which strips turn or jump.
+/// Drops the degenerate triangles at which strips turn.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -48,7 +48,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Returns the used vertices, ascending, and makes `indices` refer to them.
+/// Renumbers `indices` to the used vertices, which it returns in ascending order.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {
@@ -118,7 +118,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// Returns the coordinate set of the material's textures ("TEXCOORD_0"); empty if untextured.
+/// Returns an empty text for untextured materials.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
@@ -251,7 +251,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
     mesh.positions.reserve(used.size());
     for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
-    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // deformed ones are not computed
+    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // normals are not deformed
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) mesh.texture_coordinates.reserve(used.size());

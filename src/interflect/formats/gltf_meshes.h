@@ -13,20 +13,19 @@
 
 namespace interflect::detail {
 
-/// Deformation of a mesh.
 struct GltfPose {
     std::vector<double> weights;          ///< Morph target weights; empty: the mesh's own.
-    std::uint32_t skin = none;            ///< Part of the cache key.
-    std::span<const Imath::M44d> joints;  ///< From the mesh to the world.
+    std::uint32_t skin = none;            ///< Cache key.
+    std::span<const Imath::M44d> joints;  ///< Mesh to world.
 };
 
-/// Meshes of a glTF file, read once per pose.
+/// Reads each mesh once per pose.
 class GltfMeshes {
   public:
     GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
 
     std::size_t count() const { return meshes_.size(); }
-    /// Returns indices into Model::meshes, one per primitive with faces.
+    /// @return  Indices into Model::meshes, one per primitive with faces.
     const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
 
   private:

@@ -7,8 +7,8 @@
 
 namespace interflect::detail {
 
-/// Decompresses a buffer view (EXT_meshopt_compression). @param extension  The view's extension object.
-/// @throws GltfFault  for damaged data or an invalid extension. GltfAsset::take_bytes() is called first.
+/// EXT_meshopt_compression. Counts memory with take_bytes() first.
+/// @throws GltfFault for damaged data or an invalid extension.
 std::string decode_meshopt(const GltfValue& extension, std::string_view compressed, GltfAsset& asset);
 
 }  // namespace interflect::detail

@@ -17,7 +17,7 @@ using Imath::V3d;
 
 V3d vector_of(const std::array<double, 3>& values) { return {values[0], values[1], values[2]}; }
 
-/// glTF stores columns, which become rows for row vectors.
+/// glTF's columns are rows for row vectors.
 M44d local_transform(const GltfValue& node) {
     if (node.has("matrix")) {
         const auto m = node.numbers<16>("matrix", {});
@@ -59,7 +59,7 @@ GltfNodes::GltfNodes(GltfAsset& asset)
     if (reached < values_.size()) throw GltfFault("nodes: some are their own ancestors");
 }
 
-/// Visits the nodes below `roots` depth first. Not recursive, since files may nest arbitrarily deep.
+/// Depth first, without recursion, since files may nest arbitrarily deep.
 template <class Visit>
 void GltfNodes::traverse(const std::vector<std::uint32_t>& roots, const Visit& visit) const {
     std::vector<std::uint32_t> waiting(roots.rbegin(), roots.rend());

@@ -12,17 +12,17 @@ struct GltfNode {
     const GltfValue* value = nullptr;
     Imath::M44d to_world;
     std::string name;    ///< May be empty.
-    std::string dotted;  ///< With the names of its ancestors: "room.desk.leg".
+    std::string dotted;  ///< Name with its ancestors: "room.desk.leg".
 };
 
 class GltfNodes {
   public:
-    /// @throws GltfFault  for cycles, for a node with two parents, and for invalid transforms.
+    /// @throws GltfFault for cycles, a node with two parents, or invalid transforms.
     explicit GltfNodes(GltfAsset& asset);
 
     std::size_t count() const { return values_.size(); }
     const Imath::M44d& to_world(std::uint32_t node) const { return to_world_[node]; }
-    /// Returns the nodes of the file's scene, or of its first scene; without scenes, all. Parents come first.
+    /// Returns the nodes of the file's default or first scene, or all without scenes. Parents come first.
     std::vector<GltfNode> in_scene() const;
 
   private:
@@ -37,7 +37,7 @@ class GltfNodes {
     std::vector<Imath::M44d> to_world_;
 };
 
-/// Applies scale, then the quaternion (x, y, z, w), then translation. @throws GltfFault  for a quaternion of length 0.
+/// Scales, rotates (quaternion x, y, z, w), then translates. @throws GltfFault for a zero quaternion.
 Imath::M44d gltf_transform(const Imath::V3d& scale, const std::array<double, 4>& rotation,
                            const Imath::V3d& translation, const GltfValue& owner);
 

@@ -12,16 +12,16 @@
 
 namespace interflect::detail {
 
-/// Message with the place in the file but without the file name.
+/// Names the place in the file, not the file.
 struct GltfFault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// JSON value with its place: "meshes[3] 'chair'.primitives[0]". An absent value acts as an empty object. Getters check
-/// types; errors are GltfFaults with place and key.
+/// JSON value with its place, such as "meshes[3] 'chair'.primitives[0]". Absent values act as empty objects. Getters
+/// throw GltfFault for values of wrong type or range.
 class GltfValue {
   public:
-    /// Larger integers are rejected to avoid overflow.
+    /// Prevents overflow of sums.
     static constexpr std::uint64_t largest_integer = std::uint64_t{1} << 40;
 
     /// @param json  Must outlive this object; null: absent.
@@ -34,13 +34,13 @@ class GltfValue {
 
     GltfValue object(const char* key) const;
     GltfValue extension(const char* name) const { return object("extensions").object(name); }
-    /// Returns an array of objects; empty if absent.
+    /// Returns an empty array if absent.
     std::vector<GltfValue> objects(const char* key) const;
 
     std::optional<std::uint64_t> find_integer(const char* key) const;
     std::uint64_t integer(const char* key) const;
     std::uint64_t integer(const char* key, std::uint64_t otherwise) const;
-    /// Returns an index below `count`; `none` if absent.
+    /// Returns an index below `count`, or `none` if absent.
     std::uint32_t index(const char* key, std::size_t count) const;
     std::uint32_t required_index(const char* key, std::size_t count) const;
     std::vector<std::uint32_t> indices(const char* key, std::size_t count) const;
@@ -78,7 +78,7 @@ class GltfValue {
     std::string place_;
 };
 
-/// Returns "nodes[3] 'chair'", with long names truncated.
+/// Returns "nodes[3] 'chair'"; truncates long names.
 std::string gltf_place(const std::string& list, std::size_t index, const std::string& name);
 
 }  // namespace interflect::detail

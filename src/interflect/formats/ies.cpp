@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int first_year = 1986, last_year_of_factor = 1995, year_of_reserved = 2002;
 
-/// Opening sizes of LM-63 [m]: across, along and above the C0 plane. Negative: round.
+/// Luminous opening [m]: width across the C0 plane, length along it; negative if round.
 struct Dimensions {
     double width, length, height;
 };
@@ -48,8 +48,8 @@ std::optional<std::string_view> tilt_of(std::string_view line) {
     return line.starts_with('=') ? std::optional(trimmed(line.substr(1))) : std::nullopt;
 }
 
-/// Two negative sizes are the diameters of a cylinder, three those of an ellipsoid. Up to 1995, a single negative size
-/// is the diameter of a circle if the other size is 0.
+/// Two negative sizes are the diameters of a cylinder, three of an ellipsoid. Until LM-63-1995, one negative size is
+/// the diameter of a circle if the other is 0.
 LuminousOpening opening_of(const Dimensions& d, bool& is_known) {
     using Shape = LuminousOpening::Shape;
     const bool round[3] = {d.length < 0, d.width < 0, d.height < 0};
@@ -79,7 +79,7 @@ class IesReader {
     PhotometricWeb read();
 
   private:
-    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // LM-63's numbers
+    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // numbers of LM-63
 
     void read_labels();
     void read_version(std::string_view first_line);
@@ -240,7 +240,7 @@ void IesReader::read_opening(double metres) {
     if (!is_known) warn("ies-opening", "the luminous opening has no shape of IES LM-63; it is read as a box");
 }
 
-/// Snaps angles near multiples of 90 degrees to make symmetry tests exact.
+/// Snaps to near multiples of 90 degrees, so symmetry tests are exact.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;
@@ -267,7 +267,7 @@ PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t h
     return {std::move(horizontal), std::move(intensities)};
 }
 
-/// A single plane means rotational symmetry. Ranges of 90 or 180 degrees are mirrored.
+/// A single plane means rotational symmetry. Ranges of 90 and 180 degrees are mirrored.
 void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> horizontal) {
     constexpr auto half = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
     const bool is_complete = (vertical.front() == 0 || vertical.front() == right_angle) &&
@@ -292,8 +292,7 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
     web_.intensities = all.intensities();
 }
 
-/// Horizontal angles from 0 are mirrored; types A and B count them clockwise. The polar axis is the nadir for type A
-/// and y for type B.
+/// Ranges from 0 are mirrored; horizontal angles run clockwise. The pole is the nadir for type A and y for type B.
 void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type) {
     if (horizontal.size() < 2) text_.refuse("a single horizontal angle; expected at least two of types A and B");
     if (std::abs(vertical.back()) < right_angle || std::abs(horizontal.back()) < right_angle)

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Locates errors by parsing again, since not all exceptions of the parser have a position.
+/// Parses again to find the position of an error, which some exceptions lack.
 class FaultFinder : public nlohmann::json_sax<json> {
   public:
     std::size_t offset() const { return offset_; }

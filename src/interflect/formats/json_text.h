@@ -6,8 +6,7 @@
 
 namespace interflect::detail {
 
-/// Parses JSON. @param path  Named in errors. @throws InputError  with file and line for invalid JSON and for numbers
-/// beyond double precision.
+/// @throws InputError with file and line for invalid JSON, or numbers beyond double precision.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace interflect::detail

@@ -25,7 +25,7 @@ class LdtReader {
     PhotometricWeb read();
 
   private:
-    /// Isym.
+    /// Isym
     enum Symmetry { none_at_all = 0, rotation = 1, c0_plane = 2, c90_plane = 3, both_planes = 4 };
 
     std::string_view line(const char* what);
@@ -56,7 +56,7 @@ PhotometricWeb LdtReader::read() {
     line("the distance between C planes");
     const std::size_t height = count_line("the number of intensities in a C plane", 2, most / plane_count);
     line("the distance between intensities");
-    skip_lines(8);  // report, name, number, file, date; the housing's length, width and height
+    skip_lines(8);  // report, name, number, file, date; size of the housing
     read_opening();
     skip_lines(2);  // downward flux, light output ratio
     factor_ = number_line("the conversion factor");
@@ -108,7 +108,7 @@ void LdtReader::skip_lines(int count) {
     for (int i = 0; i < count; ++i) line("the luminous intensities");
 }
 
-/// Lengths are along C90, widths along C0; width 0: round.
+/// Lengths are along C90, widths along C0; width 0 means round.
 void LdtReader::read_opening() {
     constexpr double metres = 1e-3;  // per millimetre
     const double length = number_line("the length of the luminous area"),
@@ -123,7 +123,7 @@ void LdtReader::read_opening() {
                     millimetres * static_cast<float>(metres), 2};
 }
 
-/// Set: number, type, flux, colour, colour rendering, power. A negative number means absolute photometry.
+/// Number, type, flux, colour, colour rendering, power. A negative number means absolute photometry.
 void LdtReader::read_lamps() {
     constexpr std::size_t most_sets = 20;
     const std::size_t sets = count_line("the number of sets of lamps", 1, most_sets);
@@ -154,7 +154,7 @@ std::vector<float> LdtReader::angles(std::size_t count, const char* kind, double
     return result;
 }
 
-/// Returns the planes with stored intensities. With symmetry 3 they run from C270 to C90.
+/// Returns the stored planes. Isym 3 stores C270 to C90.
 std::vector<float> LdtReader::planes_of(const std::vector<float>& all, Symmetry symmetry) const {
     const std::size_t count = all.size();
     const auto part = [&](std::size_t first, std::size_t end) {

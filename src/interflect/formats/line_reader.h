@@ -7,10 +7,9 @@
 
 namespace interflect::detail {
 
-/// Splits text into lines of words (views). A backslash before a line end joins the lines and counts as white space.
+/// Splits text into lines of words. A backslash before a line end joins two lines.
 class LineReader {
   public:
-    /// Position between two lines.
     struct Position {
         std::size_t offset = 0;
         std::int64_t line = 1;  ///< From 1.
@@ -21,14 +20,14 @@ class LineReader {
     /// Advances to the next line with words. @return  false at the end.
     bool next();
 
-    std::span<const std::string_view> words() const { return words_; }  ///< Valid until next().
-    /// Returns the unmodified text from the second to the last word, such as a name with spaces; may be empty.
+    std::span<const std::string_view> words() const { return words_; }  ///< Views, valid until next().
+    /// Returns the text from the second to the last word, such as a name with spaces.
     std::string_view rest() const {
         if (words_.size() < 2) return {};
         return {words_[1].data(), words_.back().data() + words_.back().size()};
     }
     std::int64_t line() const { return line_; }     ///< From 1.
-    std::size_t length() const { return length_; }  ///< In characters, with continuations.
+    std::size_t length() const { return length_; }  ///< [characters], including joined lines
 
     Position position() const { return next_; }
     void seek(const Position& position) { next_ = position; }

@@ -59,7 +59,7 @@ bool emits(const Scene& scene) {
     });
 }
 
-/// Diagonals of scenes that probably have a wrong unit [m].
+/// Diagonals that indicate a wrong unit [m].
 constexpr float implausibly_large = 2000, implausibly_small = 0.05f;
 
 void warn_of_size(Scene& scene) {

@@ -7,8 +7,7 @@
 
 namespace interflect::detail {
 
-/// Returns whether a surface shows mirror images. @param roughness  Standard deviation of microfacet slopes, as in MGF
-/// and Radiance.
+/// Whether a surface shows mirror images. @param roughness  RMS microfacet slope, as in MGF and Radiance.
 inline bool is_mirror(double specular_reflectance, double roughness) {
     constexpr double roughest = 0.02;
     return specular_reflectance > 0 && roughness <= roughest;
@@ -22,7 +21,7 @@ inline Material default_material() {
     return grey;
 }
 
-/// Clamps to `largest_reflectance`. @return  Whether it did.
+/// @return  Whether a channel exceeded `largest_reflectance`.
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;
     for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], static_cast<float>(largest_reflectance));

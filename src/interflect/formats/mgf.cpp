@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 using Imath::V3d;
 
-/// Reads relative to the world's origin, and again relative to a closer origin if the scene is far away.
+/// Reads a scene far from the world's origin again, relative to a closer one, to preserve precision.
 Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {
     V3d origin(0);
     {

@@ -8,44 +8,30 @@
 
 namespace interflect::detail {
 
-/// Reads a scene in the Materials and Geometry Format, version 2.0 (Ward 1996, http://radsite.lbl.gov/mgf/).
+/// Reads a scene in the Materials and Geometry Format 2.0 (Ward 1996, http://radsite.lbl.gov/mgf/).
 ///
-/// * `f fh sph torus cyl cone ring prism` become patches (add_polygon), curved ones with options.curve_divisions pieces
-///   per quarter circle. A face makes one patch with `sides 1`, else two. Mirroring keeps the front outside. Faces
-///   share vertices at equal positions. Normals (`n`) orient rings and tori only.
-/// * `c cxy cspec cct cmix` give colours in linear Rec. 709 (to_rec709()); MGF's neutral is R = G = B. Spectra and
-///   mixture weights may be negative. Chromaticities without luminance count as bluest or reddest.
-/// * `rd` (limited to 0.99) is reflectance, `ed` exitance [lm/m^2], `ts` the transmittance of thin glass without
-///   roughness ("rough-transmission"). `rs` is a mirror visible to the camera if its roughness is at most 0.02. Other
-///   `rs` and all `td` are omitted; "specular-reflection" and "diffuse-transmission" report the share. `ir` is only
-///   checked.
-/// * `o` names objects, joined by dots. Copies of an array are objects "a0", "a1" ..., or "a0.0" ...
-/// * `xf` and `i`: file names are relative to the including file; contexts are shared. A file's end closes everything
-///   left open, with a warning; of an unclosed array only the first copy is read.
-/// * `uv` and `texture` (docs/mgf-extensions.md) are extensions: texture coordinates of a vertex, and an image that
-///   multiplies `rd`, `ts` or `ed`.
-/// * `ies` places a measured luminaire (load_photometric_web(), with its warnings); `light` is an extension for other
-///   lights.
+/// * `f fh sph torus cyl cone ring prism` become patches, two per face unless `sides 1`, with shared vertices.
+/// * `c cxy cspec cct cmix` become linear Rec. 709; MGF's neutral is R = G = B. Spectra and mixture weights may be
+/// negative.
+/// * `rd` is limited to 0.99; `ts` ignores roughness. `rs` is a mirror for the camera if its roughness is at most 0.02.
+/// Other `rs` and all `td` are omitted, with their share in a warning. `ir` is only checked.
+/// * `o` and the copies of arrays ("a0", "a1") name objects, joined by dots.
+/// * The end of a file closes everything open, with a warning; an unclosed array is read once.
+/// * `ies` places a measured luminaire. `uv`, `texture` and `light` are extensions (docs/mgf-extensions.md).
 ///
-/// A scene far from the world's origin is read a second time relative to Scene::origin (origin_for), to keep precision.
-/// Scene::files lists the files read. Time and memory are linear in the text with arrays expanded.
+/// Scenes far from the world's origin are relative to Scene::origin. Linear in the text with arrays expanded.
 ///
-/// Other warnings: "unsupported-entity", "reflectance-clamped", "out-of-gamut" (desaturated), "no-luminance",
-/// "unused-fault" (in an unused colour or material), "degenerate-face" (fewer than three distinct vertices, too narrow,
-/// or no area because its outline crosses itself), "unbalanced-object", "unclosed-object", "unclosed-transform".
-///
-/// @throws InputError  with file, line and the expected input, for:
-/// - unreadable files, files that include themselves, and input beyond the limits of `options`
-/// - missing arguments, undefined names, and numbers out of range or not finite in single precision
+/// @throws InputError with file, line and expected input, for:
+/// - unreadable files, recursive includes, and input beyond the limits of `options`
+/// - missing arguments, undefined names, and numbers out of range
 /// - unusable images, and textures without coordinates
 /// - arrays and includes that repeat far more text than patches
-/// - faces or exitances beyond limits.h, and holes with fewer than three distinct vertices
-/// - large faces so distant that rounding would remove them
+/// - faces or exitances beyond limits.h, and distant faces that rounding would remove
 /// - scenes without a face that has an area
 /// Errors in a colour or material count only if a face uses it.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads from memory. @param path  Name for messages; includes are relative to its folder.
+/// @param path  Name for messages; its folder contains includes.
 Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

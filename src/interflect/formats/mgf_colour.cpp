@@ -18,7 +18,7 @@ using Imath::V3d;
 constexpr double shortest = 380, longest = 780;  // [nm]
 constexpr int table_step = 10;                   // [nm]
 
-/// CIE 1931 2-degree colour matching functions every 10 nm from 380 nm, times 10^4 (CIE 15, table T.4, rounded).
+/// CIE 1931 2-degree colour matching functions every 10 nm, times 10^4 (CIE 15, table T.4, rounded).
 constexpr std::array<std::array<int, 3>, 41> colour_matching = {{
     {14, 0, 65},        {42, 1, 201},       {143, 4, 679},      {435, 12, 2074},    {1344, 40, 6456},
     {2839, 116, 13856}, {3483, 230, 17471}, {3362, 380, 17721}, {2908, 600, 16692}, {1954, 910, 12876},
@@ -39,10 +39,10 @@ V3d colour_matching_at(double wavelength) {
     return row(colour_matching[i]) * (1 - t) + row(colour_matching[i + 1]) * t;
 }
 
-/// Minimum of |Y| and |X + Y + Z| relative to |X| + |Y| + |Z|.
+/// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
 constexpr double least_share = 1e-6;
 
-/// Only ratios to Y matter, so values may be negative. @throws std::invalid_argument
+/// Values may be negative. @throws std::invalid_argument
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     const double size = std::abs(xyz.x) + std::abs(xyz.y) + std::abs(xyz.z), total = xyz.x + xyz.y + xyz.z;
     if (!(std::abs(xyz.y) > least_share * size && std::abs(total) > least_share * size))
@@ -50,7 +50,7 @@ Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     return {xyz.x / total, xyz.y / total};
 }
 
-/// Scaled so that equal energy gives equal tristimulus values.
+/// Normalised: equal energy gives equal tristimulus values.
 template <class Spectrum>
 Chromaticity integrate(const Spectrum& spectrum) {
     V3d sum(0), equal_energy(0);
@@ -64,14 +64,14 @@ Chromaticity integrate(const Spectrum& spectrum) {
 
 V3d xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
 
-/// XYZ' = m XYZ. Transposed, since Imath multiplies row vectors.
+/// Transposed because Imath multiplies row vectors.
 V3d multiply(const M33d& m, const V3d& v) { return v * m.transposed(); }
 
 M33d diagonal(const V3d& d) { return {d.x, 0, 0, 0, d.y, 0, 0, 0, d.z}; }
 
 M33d columns(const V3d& a, const V3d& b, const V3d& c) { return {a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z}; }
 
-/// From XYZ under illuminant E; derived in the header.
+/// See to_rec709().
 M33d make_rec709_from_xyz() {
     const V3d white = xyz_of(0.3127, 0.3290);
     const M33d bradford(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296);
@@ -89,7 +89,7 @@ const M33d& rec709_from_xyz() {
 /// Relative excess ignored as rounding.
 constexpr double rounding = 1e-9;
 
-/// Returns the largest saturation, 0 (neutral) to 1 (`channel`), that keeps a channel in [0, limit]. Luminance is 1.
+/// Returns the largest saturation, 0 (neutral) to 1, that keeps a channel in [0, limit] at luminance 1.
 double saturation_within(double channel, double limit) {
     if (channel < -rounding) return 1 / (1 - channel);
     if (channel > limit * (1 + rounding)) return (limit - 1) / (channel - 1);
@@ -120,7 +120,7 @@ Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const
 Chromaticity chromaticity_of_black_body(double kelvin) {
     if (!(kelvin >= 1000)) throw std::invalid_argument("a colour temperature must be at least 1000 K");
     constexpr double second_radiation_constant = 1.438777e7;  // [nm K]
-    // Relative to 560 nm, since absolute values would overflow.
+    // Relative to 560 nm, because absolute values would overflow.
     const auto planck = [&](double nm) {
         return std::pow(nm, -5) / std::expm1(second_radiation_constant / (nm * kelvin));
     };
@@ -141,8 +141,8 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
         luminance = largest;
     }
     V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
-    constexpr double least_channel = 1e-15;  // where white is 1
-    // Adaptation preserves Y of neutral only, so enter the gamut first, then set the luminance.
+    constexpr double least_channel = 1e-15;  // relative to white
+    // Adaptation preserves Y of neutral only, so the luminance is set after the gamut is entered.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
     rgb = with_saturation(rgb, in_gamut);

@@ -16,25 +16,25 @@
 
 namespace interflect::detail {
 
-/// Named contexts of one kind (colours, materials or vertices) and the current one. Context{} must be MGF's default.
-/// Names are views of the input text, which must outlive the table.
+/// Named contexts of one kind and the current one. Context{} must be MGF's default. Names are views of the input text,
+/// which must outlive the table.
 template <class Context>
 class ContextTable {
   public:
-    /// @param kind  For errors: "vertex".
+    /// @param kind  For messages: "vertex".
     ContextTable(std::string_view kind, std::size_t max_name_length) : kind_(kind), max_name_length_(max_name_length) {}
 
     Context& current() { return *current_; }
-    std::string_view current_name() const { return current_name_; }  ///< Empty for the unnamed context.
+    std::string_view current_name() const { return current_name_; }  ///< Empty if unnamed.
 
-    /// @throws std::invalid_argument  for an undefined name.
+    /// @throws std::invalid_argument for an undefined name.
     Context& find(std::string_view name) {
         const auto entry = named_.find(name);
         if (entry == named_.end()) throw std::invalid_argument(fmt::format("{} '{}' is not defined", kind_, name));
         return entry->second;
     }
 
-    /// Applies the words after the keyword: none (new unnamed context), `name` (existing), `name =` (new) or `name =
+    /// @param words  After the keyword: none (new unnamed context), `name` (existing), `name =` (new) or `name =
     /// template` (copy). @throws std::invalid_argument
     void enter(std::span<const std::string_view> words) {
         if (words.empty()) {
@@ -60,7 +60,7 @@ class ContextTable {
         if (name.size() > max_name_length_)
             throw std::invalid_argument(
                 fmt::format("a name of {} characters; at most {} are read", name.size(), max_name_length_));
-        // '-' separates loops of a face; a lone '=' indicates a missing name.
+        // '-' separates loops of a face; a lone '=' lacks a name.
         if (name[0] == '-' || name == "=") throw std::invalid_argument(fmt::format("'{}' cannot be a name", name));
     }
 
@@ -68,7 +68,7 @@ class ContextTable {
     std::size_t max_name_length_;
     std::unordered_map<std::string_view, Context> named_;
     Context unnamed_;
-    Context* current_ = &unnamed_;  // stable: unordered_map does not move elements
+    Context* current_ = &unnamed_;  // unordered_map does not move elements
     std::string_view current_name_;
 };
 
@@ -77,23 +77,23 @@ struct MgfColour {
     std::uint32_t fault = none;  ///< Index in MgfFaults.
 };
 
-/// Image of a `texture` entity; path empty if absent.
+/// Path is empty if absent.
 struct MgfTexture {
     std::string path;
     Location where;
 };
 
-/// Black and two-sided by default. Reflectances and transmittances are luminous, 0 to 1.
+/// Reflectances and transmittances are luminous, 0 to 1.
 struct MgfMaterial {
     bool two_sided = true;
-    double rd = 0, td = 0, rs = 0, ts = 0;  ///< Diffuse and specular.
-    double ed = 0;                          ///< [lm/m^2]
+    double rd = 0, td = 0, rs = 0, ts = 0;
+    double ed = 0;  ///< [lm/m^2]
     double rs_roughness = 0, ts_roughness = 0;
     MgfColour rd_colour, rs_colour, ts_colour, ed_colour;
     MgfTexture rd_texture, ts_texture, ed_texture;
     Location defined;                  ///< Last change.
-    std::uint32_t fault = none;        ///< Index in MgfFaults of the first error.
-    std::uint32_t scene_index = none;  ///< Index in Scene::materials once used.
+    std::uint32_t fault = none;        ///< First error, in MgfFaults.
+    std::uint32_t scene_index = none;  ///< Index into Scene::materials, once used.
 
     bool is_textured() const {
         return !(rd_texture.path.empty() && ts_texture.path.empty() && ed_texture.path.empty());

@@ -10,15 +10,15 @@
 
 namespace interflect::detail {
 
-/// Errors in colours and materials, reported only if a face uses them, since real files define more than they use.
+/// Errors in colours and materials, reported only if a face uses them, since files define more than they use.
 class MgfFaults {
   public:
     /// Stores one error per line. @return  Its index.
     std::uint32_t add(const Location& where, const std::string& message);
 
-    /// @throws InputError  unless `fault` is none.
+    /// @throws InputError unless `fault` is none.
     void refuse(std::uint32_t fault) const;
-    /// Refuses errors of the material and of its rd and ed colours.
+    /// Includes errors of the rd and ed colours.
     void refuse_faults_of(const MgfMaterial& material) const;
     void refuse_first() const { refuse(faults_.empty() ? none : 0); }
 

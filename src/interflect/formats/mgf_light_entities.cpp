@@ -1,4 +1,4 @@
-// `ies`, and `light`, an extension of MGF: see docs/mgf-extensions.md.
+// `ies`, and the extension `light` (docs/mgf-extensions.md).
 #include <fmt/format.h>
 
 #include <cctype>
@@ -23,10 +23,9 @@ bool is_name(std::string_view word) { return std::isalpha(static_cast<unsigned c
 
 }  // namespace
 
-/// Converts a vertex normal to a light's world direction.
+/// Returns the unit normal of a vertex in the world.
 V3f MgfReader::direction_of(std::string_view vertex) { return turned(normal_of(vertex)); }
 
-/// Transforms to a unit vector in the world.
 V3f MgfReader::turned(const V3d& direction) const {
     V3d result;
     total_transform().multDirMatrix(direction, result);

@@ -9,8 +9,6 @@
 
 namespace interflect::detail {
 
-// ---- Colours
-
 void MgfReader::colour_xy(MgfWords words) {
     constexpr double least_y = 1e-6;
     const Chromaticity c{number_argument(words[0]), number_argument(words[1])};
@@ -44,8 +42,6 @@ void MgfReader::colour_mix(MgfWords words) {
     }
     colours_.current() = {mix(parts)};
 }
-
-// ---- Materials
 
 MgfMaterial& MgfReader::changed_material() {
     MgfMaterial& material = materials_.current();
@@ -97,7 +93,6 @@ void MgfReader::exitance(MgfWords words) {
     material.ed_colour = colours_.current();
 }
 
-/// The image is read when a face uses the material.
 void MgfReader::texture(MgfWords words) {
     if (words[0] != "rd" && words[0] != "ts" && words[0] != "ed")
         throw MgfFault(fmt::format("a texture is one of rd, ts or ed, not of '{}'", words[0]));

@@ -12,24 +12,23 @@
 
 namespace interflect::detail {
 
-/// Open objects: of `o`, and of each array copy.
+/// Open objects: `o` and array copies.
 class MgfObjects {
   public:
     MgfObjects(const ReadOptions& options, MgfSceneBuilder& scene) : options_(options), scene_(scene) {}
 
     std::size_t depth() const { return open_.size(); }
 
-    /// @param is_copy  Closed only by close_copy(). @throws std::invalid_argument  beyond a limit.
+    /// @param is_copy  Closed by close_copy() only. @throws std::invalid_argument beyond a limit.
     void open(std::string_view name, bool is_copy, const Location& where);
-    /// Closes the innermost object. @return  false if it does not belong to the current file, whose objects begin at
-    /// `outer_depth`.
+    /// @return  false for an array copy, or an object of an including file (depth at most `outer_depth`).
     bool close_innermost(std::size_t outer_depth);
-    /// Closes the innermost copy with all objects in it.
+    /// Closes the innermost copy and all objects in it.
     void close_copy();
-    /// Closes all but `depth` objects and warns about unclosed ones.
+    /// Warns about unclosed objects.
     void close_down_to(std::size_t depth);
 
-    /// Returns the innermost object's index in Scene::objects.
+    /// @return  Index into Scene::objects.
     std::uint32_t current();
 
   private:
@@ -37,7 +36,7 @@ class MgfObjects {
         std::string dotted_name;
         Location opened;
         bool is_copy = false;
-        std::optional<std::uint32_t> scene_index;  // set by the first patch
+        std::optional<std::uint32_t> scene_index;  // set on first use
     };
 
     const ReadOptions& options_;

@@ -29,12 +29,11 @@ const std::unordered_map<std::string_view, MgfReader::Entity>& MgfReader::entiti
         {"ts", {&MgfReader::specular_transmittance, 2, 2, "ts transmittance roughness", Defines::material}},
         {"ed", {&MgfReader::exitance, 1, 1, "ed exitance", Defines::material}},
         {"ir", {&MgfReader::refraction, 2, 2, "ir real imaginary", Defines::material}},
-        {"texture",
-         {&MgfReader::texture, 2, 2, "texture rd|ed|ts image", Defines::material}},  // docs/mgf-extensions.md
+        {"texture", {&MgfReader::texture, 2, 2, "texture rd|ed|ts image", Defines::material}},  // extension
         {"v", {&MgfReader::vertex, 0, 3, "v [name [= [template]]]"}},
         {"p", {&MgfReader::point, 3, 3, "p x y z"}},
         {"n", {&MgfReader::normal, 3, 3, "n x y z"}},
-        {"uv", {&MgfReader::texture_coordinate, 2, 2, "uv u v"}},  // docs/mgf-extensions.md
+        {"uv", {&MgfReader::texture_coordinate, 2, 2, "uv u v"}},  // extension
         {"f", {&MgfReader::face, 3, any, "f vertex1 vertex2 vertex3 ..."}},
         {"fh", {&MgfReader::face_with_holes, 3, any, "fh vertex1 vertex2 vertex3 ... - hole1 hole2 hole3 ..."}},
         {"sph", {&MgfReader::sphere, 2, 2, "sph centre radius"}},
@@ -66,12 +65,12 @@ void MgfReader::read(const std::filesystem::path& path, std::string text) {
 }
 
 Scene MgfReader::finish() {
-    // A file without faces fails anyway; a deferred error is more specific.
+    // A deferred error is more specific than the lack of faces.
     if (scene_.patch_count() == 0) faults_.refuse_first();
     return scene_.finish();
 }
 
-/// @param transform  In force for the whole file, which is read once per copy of an array.
+/// Reads a file once per copy of the array in `transform`.
 void MgfReader::read_file(const SourceFile& source, MgfWords transform) {
     OpenMgfFile file{source, LineReader(source.text), 0, objects_.depth(), file_};
     const LineReader::Position start = file.lines.position();
@@ -149,7 +148,6 @@ void MgfReader::count_repeated(std::uint64_t words) {
     if (include_depth_ > 0 || repeating_arrays_ > 0) repeated_.add(words, scene_.patch_count());
 }
 
-/// Closes everything left open at the end of a file, with a warning.
 void MgfReader::close_all() {
     for (; transforms_.size() > file_->outer_transforms; transforms_.pop_back()) {
         const OpenMgfTransform& transform = transforms_.back();

@@ -25,7 +25,7 @@
 
 namespace interflect::detail {
 
-/// File being read. It cannot close transforms or objects opened outside it.
+/// Open file. It cannot close transforms or objects opened outside it.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
@@ -33,22 +33,21 @@ struct OpenMgfFile {
     const OpenMgfFile* includer;
 };
 
-/// Open `xf` or include, and the current copy of its array.
+/// Open `xf` or include, with the current copy of its array.
 struct OpenMgfTransform {
     TransformSequence sequence;
     Imath::M44d total;  // to the world
     Location opened;
-    std::vector<int> copy;  // indices; empty if not an array
+    std::vector<int> copy;  // empty if not an array
     LineReader::Position body;
-    double copies_together = 1;  // product of all enclosing array sizes, including this one
+    double copies_together = 1;  // product of the sizes of this and all outer arrays
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
 
-/// Reads an MGF file and its includes. Entity handlers are in mgf_*_entities.cpp.
+/// Entity handlers are in mgf_*_entities.cpp.
 class MgfReader {
   public:
-    /// @param origin  World position of the scene's origin.
     MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
     void read(const std::filesystem::path& path, std::string text);
     Imath::V3d suitable_origin() const { return scene_.suitable_origin(); }
@@ -56,7 +55,7 @@ class MgfReader {
 
   private:
     using Handler = void (MgfReader::*)(MgfWords);
-    /// Kind of context that bears an entity's errors, which are deferred until a face uses it.
+    /// Owner of an entity's errors, which are deferred until a face uses it.
     enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
@@ -111,7 +110,6 @@ class MgfReader {
     void sky(MgfWords words);
     void environment(MgfWords words);
 
-    // Helpers.
     MgfMaterial& changed_material();
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
@@ -145,10 +143,10 @@ class MgfReader {
     std::vector<OpenMgfTransform> transforms_;
     std::vector<std::vector<std::uint32_t>> loops_;  // of the current face
     std::vector<Imath::V3d> outline_;                // first loop, in the world
-    // Messages with the details of the first occurrence.
+    // Quote the first occurrence.
     std::string unknown_entity_, unused_fault_;
-    std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;   // by path
-    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;  // by path
+    std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;
+    std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;
     MgfSceneBuilder scene_;
     MgfObjects objects_;
 };

@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::size_t most_lights = 1 << 16;
 
-/// Equal for materials with the same name and properties.
 std::string identity(const Material& m) {
     std::string key = m.name;
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };

@@ -16,8 +16,9 @@
 
 namespace interflect::detail {
 
-/// Builds a Scene relative to an origin from MGF data in world coordinates: welds vertices, converts materials on first
-/// use, and counts omitted light transport. Throws std::invalid_argument for invalid requests.
+/// Builds a Scene from MGF data in world coordinates: welds vertices, converts materials on first use, and counts
+/// omitted reflection and transmission. Throws std::invalid_argument for invalid requests. SceneFaces documents
+/// forwarded calls.
 class MgfSceneBuilder {
   public:
     MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);
@@ -26,13 +27,11 @@ class MgfSceneBuilder {
     void add_file(const std::filesystem::path& file) { scene_.files.push_back(file.string()); }
 
     std::uint64_t patch_count() const { return scene_.patches.size(); }
-    /// @throws std::invalid_argument  beyond the patch limit. Omitted faces count.
     void require_room(double patches) const { faces_.require_room(patches); }
 
-    /// Converts a world position [m] to one relative to the scene's origin.
     V3f position(const Imath::V3d& world) const { return faces_.position(world); }
-    /// Index of the vertex at `world` [m] with these texture coordinates, if it has some.
-    /// @param normal  In the world, of any length; zero for none.
+    /// @param world  [m].
+    /// @param normal  World direction of any length, or 0.
     std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate,
                          const Imath::V3d& normal = Imath::V3d(0)) {
         return weld_.vertex(position(world),
@@ -40,34 +39,31 @@ class MgfSceneBuilder {
     }
     /// Returns linear Rec. 709 in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);
-    /// Returns the material's index, also stored in `material`.
+    /// Also stores the index in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     std::uint32_t object(const std::string& name);
     /// Names the luminaire "spot-3", by `name` and its number. @throws std::invalid_argument
     void add_light(Luminaire luminaire, const std::string& name);
     Warnings& warnings() { return scene_.warnings; }
-    /// Sets the unrounded world outline of the next face.
     void place_face(std::span<const Imath::V3d> outline) { faces_.place(outline); }
     void add_face(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
                   bool two_sided, const Location& where) {
         faces_.add(loops, material, object, two_sided, where);
     }
-    /// Counts an omitted face. @param message  Kind of face.
     void leave_out(const std::string& message, const Location& where) { faces_.leave_out(message, where); }
 
-    /// Computes an origin close to the faces. If it differs from the current one, read the file again.
+    /// If it differs from Scene::origin, read the file again.
     Imath::V3d suitable_origin() const { return faces_.suitable_origin(); }
 
-    /// Adds summary warnings and returns the scene.
-    /// @throws InputError  if no patch is left, or if rounding removed a large distant face.
+    /// Adds summary warnings. @throws InputError as SceneFaces::require_usable().
     Scene finish();
 
   private:
     /// @param largest  largest_reflectance, or the largest float for an exitance.
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
-    /// Returns the index of the image, reading it if new. Returns `none` for an empty path.
+    /// Reads an image on first use.
     std::uint32_t texture(const MgfTexture& texture);
-    /// Requires reflectance and exitance times textures to be within limits.
+    /// Checks the products of reflectance and exitance with their textures.
     void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 

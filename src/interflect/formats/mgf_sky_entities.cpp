@@ -1,4 +1,4 @@
-// `light sky NAME` and `light environment`, extensions of MGF: see docs/skies.md.
+// `light sky NAME` and `light environment`, extensions of MGF (docs/skies.md).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// @param words  Name of the sky and its arguments. @param most  The last word is optional if `fewest` is less.
+/// @param words  Name of the sky and its arguments.
 void require_arguments(MgfWords words, std::size_t fewest, std::size_t most, const char* usage) {
     if (words.size() >= fewest && words.size() <= most) return;
     throw MgfFault(
@@ -99,7 +99,6 @@ void MgfReader::environment(MgfWords words) {
     scene_.add_light({"", objects_.current(), std::move(map)}, "environment");
 }
 
-/// Files are relative to the including file and read once.
 std::shared_ptr<const Texture> MgfReader::environment_image(std::string_view name) {
     const std::filesystem::path path = file_->source.path.parent_path() / name;
     std::shared_ptr<const Texture>& image = environments_[path.string()];

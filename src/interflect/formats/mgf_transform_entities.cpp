@@ -19,7 +19,7 @@ void MgfReader::transform(MgfWords words) {
     close_transform();
 }
 
-/// @param body  Start of the text read for each further copy.
+/// @param body  Start of the text to read for each copy.
 void MgfReader::open_transform(MgfWords words, const LineReader::Position& body) {
     if (transforms_.size() >= static_cast<std::size_t>(options_.max_nesting))
         throw MgfFault(fmt::format("transforms are nested more than {} deep", options_.max_nesting));
@@ -39,7 +39,7 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
     place_copy(transforms_.back());
 }
 
-/// @return  true if it returned to the start of the body for the next copy.
+/// @return  Whether it returned to the start of the body for another copy.
 bool MgfReader::close_transform() {
     OpenMgfTransform& transform = transforms_.back();
     if (transform.sequence.is_array()) {
@@ -55,7 +55,6 @@ bool MgfReader::close_transform() {
     return false;
 }
 
-/// Sets the copy's transform and opens its object.
 void MgfReader::place_copy(OpenMgfTransform& transform) {
     const M44d& around = transforms_.size() > 1 ? transforms_[transforms_.size() - 2].total : file_to_world_;
     transform.total = transform.sequence.matrix(transform.copy) * around;
@@ -64,10 +63,10 @@ void MgfReader::place_copy(OpenMgfTransform& transform) {
     if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());
 }
 
-/// The last array runs fastest. @return  false after the last copy.
+/// @return  false after the last copy.
 bool MgfReader::next_copy(OpenMgfTransform& transform) {
     if (!transform.repeating) {
-        // The patch count of a copy is now known.
+        // The first copy is complete, so its patch count is known.
         double copies = 1;
         for (const int size : transform.sequence.array_sizes()) copies *= size;
         scene_.require_room(static_cast<double>(scene_.patch_count() - transform.first_patch) * (copies - 1));

@@ -21,7 +21,6 @@ std::size_t face_count(const Mesh& mesh) {
     return mesh.face_sizes.empty() ? mesh.indices.size() / 3 : mesh.face_sizes.size();
 }
 
-/// Calls `use` with each face's part of mesh.indices.
 void for_each_face(const Mesh& mesh, auto use) {
     std::size_t begin = 0;
     for (std::size_t face = 0; face < face_count(mesh); ++face) {
@@ -31,7 +30,7 @@ void for_each_face(const Mesh& mesh, auto use) {
     }
 }
 
-/// Returns the first error, or an empty string.
+/// Returns the first fault, or an empty string.
 std::string mesh_fault(const Mesh& mesh, const Model& model, const ReadOptions& options) {
     if (mesh.material >= model.materials.size()) return fmt::format("its material {} does not exist", mesh.material);
     if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
@@ -69,7 +68,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
             throw InputError(model.file, 0, "an instance shows a mesh or an object that does not exist");
         faces += static_cast<double>(face_count(model.meshes[instance.mesh]));
     }
-    // Each face makes at least one patch: two triangles may merge into one face with two sides.
+    // Two triangles may merge into one face with two sides.
     if (faces > static_cast<double>(options.max_patches))
         throw TooManyPatches(model.file, 0,
                              fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
@@ -77,7 +76,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
                                          faces, options.max_patches));
 }
 
-/// Returns per object whether its lightmap layout is usable. Instances with different transforms would overlap.
+/// Finds the objects with a usable layout. Instances with different transforms would overlap.
 std::vector<bool> objects_with_layouts(Model& model) {
     std::vector<const MeshInstance*> first(model.objects.size(), nullptr);
     std::vector<bool> has_layout(model.objects.size(), true);
@@ -95,7 +94,6 @@ std::vector<bool> objects_with_layouts(Model& model) {
 
 class InstanceAdder {
   public:
-    /// @param has_layout  Per object: whether lightmap coordinates are used.
     InstanceAdder(const Model& model, const std::vector<bool>& has_layout, Scene& scene, const ReadOptions& options)
         : model_(model), has_layout_(has_layout), scene_(scene), faces_(scene, options), weld_(scene) {}
 
@@ -129,7 +127,7 @@ class InstanceAdder {
         return result;
     }
 
-    /// Normals transform by the cofactors of the linear part, up to their length and sign.
+    /// Transforms by the cofactors of the linear part, up to length and sign.
     static V3f to_world_normal(const V3d& n, const MeshInstance& instance) {
         const Imath::M44d& m = instance.to_world;
         const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
@@ -178,7 +176,6 @@ class InstanceAdder {
         if (!mesh.back_emits) darken_backs(first);
     }
 
-    /// Adds the face in face_.
     void add_face(const Mesh& mesh, const MeshInstance& instance, const Location& where) {
         outline_.clear();
         for (const std::uint32_t v : face_) outline_.push_back(scene_.origin + V3d(scene_.vertices[v]));
@@ -186,7 +183,7 @@ class InstanceAdder {
         faces_.add({&face_, 1}, mesh.material, instance.object, true, where);
     }
 
-    /// Gives the backs of the patches from `first` on a material without emission.
+    /// Replaces the material of the backs, from patch `first` on, by a material that does not emit.
     void darken_backs(std::size_t first) {
         if (first == scene_.patches.size()) return;
         const Material& material = scene_.materials[scene_.patches[first].material];
@@ -208,8 +205,8 @@ class InstanceAdder {
     SceneFaces faces_;
     VertexWeld weld_;
     std::vector<std::uint32_t> dark_material_ = std::vector(model_.materials.size(), none);
-    std::vector<V3d> outline_;         // a member to keep its memory
-    std::vector<std::uint32_t> face_;  // a member to keep its memory
+    std::vector<V3d> outline_;         // reused memory
+    std::vector<std::uint32_t> face_;  // reused memory; input of add_face()
 };
 
 Luminaire placed(const PlacedLight& light, const V3d& origin) {

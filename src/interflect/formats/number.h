@@ -6,10 +6,10 @@
 namespace interflect::detail {
 
 /// Parses a decimal number that fills `text` and is finite in single precision; otherwise nullopt (nan, inf, 1e39,
-/// hexadecimal, trailing characters). Accepts '+'. Independent of the locale.
+/// hexadecimal). Accepts '+'. Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
-/// Parses an int, with the same rules.
+/// Same rules as parse_number().
 std::optional<int> parse_integer(std::string_view text);
 
 }  // namespace interflect::detail

@@ -8,12 +8,12 @@
 
 namespace interflect::detail {
 
-/// Reads a Wavefront OBJ file with its material libraries; see docs/formats.md.
-/// @throws InputError  with file and line for invalid input, limits of `options`, and files outside the scene's folder;
-///                     also as scene_of(). @throws TooManyPatches
+/// Reads a Wavefront OBJ file with its material libraries (docs/formats.md).
+/// @throws InputError for invalid input, limits of `options` and files outside the scene's folder; also as scene_of().
+/// @throws TooManyPatches
 Scene read_obj(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads from memory. @param path  Name for messages; other files are relative to its folder.
+/// @param path  Name for messages; its folder contains referenced files.
 Scene read_obj_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

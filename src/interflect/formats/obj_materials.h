@@ -14,38 +14,38 @@
 
 namespace interflect::detail {
 
-/// Materials from OBJ libraries (.mtl).
+/// Materials of OBJ libraries (.mtl).
 class ObjMaterials {
   public:
-    /// @param model  Receives the materials, the first being the default, and textures, files and warnings.
+    /// @param model  Receives the materials, with a default first.
     ObjMaterials(Model& model, const ReadOptions& options);
 
     /// @param where  Line that refers to the library. @throws InputError, std::invalid_argument
     void read(const std::filesystem::path& path, const Location& where);
-    /// Reads from memory. @param path  Name for messages; textures are relative to its folder.
+    /// @param path  Name for messages; its folder contains textures.
     void read_text(std::string_view text, const std::filesystem::path& path);
-    /// Returns the index in Model::materials; the default one, with a warning, for unknown names.
+    /// @return  Index into Model::materials; the default, with a warning, for unknown names.
     std::uint32_t find(const std::string& name, const Location& where);
 
   private:
     struct Definition {
         Rgb diffuse{0.5f, 0.5f, 0.5f}, emitted{0, 0, 0}, specular{0, 0, 0};
         float opacity = 1;
-        bool has_dissolve = false;      // d, which overrides Tr
+        bool has_dissolve = false;      // `d`, which overrides `Tr`
         std::filesystem::path texture;  // of the diffuse reflectance
         std::filesystem::path mask;     // of the opacity
         Location where;
-        std::uint32_t material = none;  // in Model::materials, once used
+        std::uint32_t material = none;  // index into Model::materials, once used
     };
     void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
-    /// Returns the index in Model::textures. Returns `none`, with a warning, if unreadable.
+    /// @return  Index into Model::textures. Warns about unreadable files.
     std::uint32_t texture(const Definition& definition);
-    /// Reads the texture anew; white if unreadable.
+    /// White if unreadable.
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
-    /// Checks file and format, with a warning. @param key  Key in the library.
+    /// Checks file and format; warns. @param key  For the warning.
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
     void cut_out(const Definition& definition, Material& material);
     std::uint32_t add_texture(Texture texture);
@@ -56,8 +56,8 @@ class ObjMaterials {
     Model& model_;
     const ReadOptions& options_;
     std::unordered_map<std::string, Definition> definitions_;
-    std::unordered_map<std::string, std::uint32_t> textures_;  // by path
-    std::list<std::filesystem::path> libraries_;               // referenced by locations
+    std::unordered_map<std::string, std::uint32_t> textures_;
+    std::list<std::filesystem::path> libraries_;  // referenced by locations
     std::uint64_t texels_ = 0;
 };
 

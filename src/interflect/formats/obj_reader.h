@@ -15,8 +15,7 @@
 
 namespace interflect::detail {
 
-/// Reads an OBJ file into one mesh per object and material. tinyobjloader is not used because it accepts invalid
-/// indices and reads invalid numbers as 0 and overflowing ones as infinite.
+/// Makes one mesh per object and material. tinyobjloader would accept invalid indices and numbers.
 class ObjReader {
   public:
     ObjReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -45,10 +44,10 @@ class ObjReader {
     std::vector<Imath::V3d> positions_;
     std::vector<V2f> coordinates_;
     std::vector<Imath::V3d> normals_;
-    std::vector<Use> uses_;  // of each position
+    std::vector<Use> uses_;  // per position
     std::string object_, group_;
     std::uint32_t material_ = 0;
-    std::uint32_t mesh_ = none;  // of the current object, group and material; `none`: not looked up yet
+    std::uint32_t mesh_ = none;  // mesh of the current object, group and material, once used
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };

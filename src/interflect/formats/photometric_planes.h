@@ -8,30 +8,29 @@ namespace interflect::detail {
 /// Half planes of a photometric file, completed by symmetry.
 class PhotometricPlanes {
   public:
-    /// @param angles       Azimuths [degrees], ascending.
+    /// @param angles  Azimuths [degrees], ascending.
     /// @param intensities  Plane by plane, one per polar angle.
     PhotometricPlanes(std::vector<float> angles, std::vector<float> intensities);
 
     std::size_t count() const { return angles_.size(); }
     float span() const { return angles_.back() - angles_.front(); }  ///< [degrees]
-    /// Appends the mirror image at the last or first plane.
+    /// Appends the mirror images.
     void mirror_at_last();
     void mirror_at_first();
     /// Repeats the first plane after a full turn.
     void close();
-    /// Reverses the azimuth.
     void reverse();
 
     const std::vector<float>& angles() const { return angles_; }
     const std::vector<float>& intensities() const { return intensities_; }
-    /// Returns the intensities with polar angle and azimuth swapped.
+    /// Returns the intensities by polar angle, then azimuth.
     std::vector<float> transposed() const;
 
   private:
     void append(std::size_t plane, float angle);
 
     std::vector<float> angles_, intensities_;
-    std::size_t height_;  // intensities per plane
+    std::size_t height_;  // per plane
 };
 
 }  // namespace interflect::detail

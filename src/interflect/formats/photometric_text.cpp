@@ -15,9 +15,8 @@ namespace {
 
 bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// Truncates a word for messages.
 std::string_view shown(std::string_view word) {
-    constexpr std::size_t most = 40;  // characters
+    constexpr std::size_t most = 40;  // [characters]
     return word.substr(0, most);
 }
 
@@ -37,7 +36,7 @@ bool PhotometricText::is_separator(char c) const {
     return is_white_space(c) || separators_.find(c) != separators_.npos;
 }
 
-/// Advances to `end`, counting line breaks.
+/// Counts line breaks.
 void PhotometricText::skip(std::size_t end) {
     for (; next_ < end; ++next_)
         if (text_[next_] == '\n' || (text_[next_] == '\r' && !text_.substr(next_ + 1).starts_with('\n'))) ++next_line_;

@@ -11,11 +11,11 @@
 
 namespace interflect::detail {
 
-/// Reads a file without byte order mark and MS-DOS end mark (0x1a).
-/// @throws InputError  as read_text_file(), and beyond options.max_photometric_bytes.
+/// Removes the byte order mark and the end mark of MS-DOS (0x1a).
+/// @throws InputError as read_text_file(), and beyond options.max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads text by line (LF, CR or both) or by word. Errors are InputErrors with file and line.
+/// Reads by line (LF, CR or both) or by word. Errors are InputErrors with file and line.
 class PhotometricText {
   public:
     /// @param separators  Besides white space.
@@ -27,7 +27,7 @@ class PhotometricText {
     /// Returns the next word, on any line; nullopt at the end.
     std::optional<std::string_view> word();
 
-    /// @param what  For errors: "the lamp's flux".
+    /// @param what  For messages: "the lamp's flux".
     double number(const std::string& what);
     /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);
@@ -37,7 +37,7 @@ class PhotometricText {
     /// Accepts a decimal comma, unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
-    std::string where() const;  ///< Last read position as "file:line".
+    std::string where() const;  ///< As "file:line".
     [[noreturn]] void refuse(const std::string& message) const;
 
   private:

@@ -54,7 +54,7 @@ class PlyReader {
     }
 
   private:
-    static constexpr std::uint64_t most_elements = std::uint64_t{1} << 40;  // products cannot overflow
+    static constexpr std::uint64_t most_elements = std::uint64_t{1} << 40;  // keeps products below 2^64
 
     static std::string too_short(const PlyElement& element) {
         return fmt::format("the file is too short for {} of '{}'", element.count, element.name.substr(0, 40));
@@ -152,7 +152,7 @@ class PlyReader {
         }
     }
 
-    /// Uses the colour shared by all vertices (sRGB bytes), otherwise grey.
+    /// Uses the colour of all vertices, if equal and in sRGB bytes.
     Material material() {
         Material result = default_material();
         if (!colour_) return result;

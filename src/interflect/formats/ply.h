@@ -8,13 +8,12 @@
 
 namespace interflect::detail {
 
-/// Reads the faces of a PLY file, ASCII or binary of either byte order. The reflectance is 0.5, or the colour shared by
-/// all vertices; see docs/formats.md.
-/// @throws InputError  for invalid or truncated input and limits of `options`; also as scene_of().
-///                     @throws TooManyPatches
+/// Reads the faces of a PLY file (docs/formats.md). The reflectance is the colour of all vertices, if equal, else 0.5.
+/// @throws InputError for invalid or truncated input and limits of `options`; also as scene_of().
+/// @throws TooManyPatches
 Scene read_ply(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads from memory. @param path  Name for messages.
+/// @param path  Name for messages.
 Scene read_ply_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -13,7 +13,7 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t most_ply_properties = 256;
-constexpr std::size_t most_shown = 40;  // characters of a name
+constexpr std::size_t most_shown = 40;  // [characters]
 
 PlyType ply_type(std::string_view name) {
     constexpr std::pair<std::string_view, PlyType> types[] = {

@@ -9,14 +9,12 @@
 
 namespace interflect::detail {
 
-/// Single value or list.
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> count_type;  ///< Type of a list's length.
+    std::optional<PlyType> count_type;  ///< Type of a list's length; nullopt for a single value.
 };
 
-/// Elements such as "vertex" or "face".
 struct PlyElement {
     std::string name;
     std::uint64_t count = 0;
@@ -31,7 +29,7 @@ struct PlyElement {
 struct PlyHeader {
     PlyValues::Form form = PlyValues::Form::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;  ///< In bytes.
+    std::size_t size = 0;  ///< [bytes]
 };
 
 /// @param line  Set to the line of the error or to the header's last line. @throws std::invalid_argument

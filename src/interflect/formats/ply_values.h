@@ -9,24 +9,22 @@ namespace interflect::detail {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// In binary form [bytes].
+/// [bytes], in binary form.
 std::size_t size_of(PlyType type);
 
-/// Reads the values after a PLY header.
 class PlyValues {
   public:
     enum class Form { ascii, little_endian, big_endian };
 
     PlyValues(std::string_view bytes, Form form) : bytes_(bytes), rest_(bytes), form_(form) {}
 
-    /// Returns the line breaks up to the last value read; nullopt for binary forms.
+    /// Counts line breaks up to the last value read; nullopt for binary forms.
     std::optional<std::int64_t> lines() const;
 
-    /// @throws std::invalid_argument  at the end and for invalid numbers. Binary values may be infinite or NaN.
+    /// Binary values may be infinite or NaN. @throws std::invalid_argument at the end and for invalid numbers.
     double next(PlyType type);
-    /// Returns whether only blanks remain.
     bool is_at_end() const;
-    /// Returns whether enough bytes remain. In text, each value but the last takes at least two characters.
+    /// Whether enough bytes remain. A value in text takes two characters, except the last one.
     bool may_hold(std::uint64_t values, std::uint64_t bytes) const {
         return form_ == Form::ascii ? values <= (rest_.size() + 1) / 2 : bytes <= rest_.size();
     }

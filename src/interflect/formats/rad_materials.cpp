@@ -13,10 +13,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// For modifiers that an ignored command may define; never valid in a file.
+/// Type of modifiers that an ignored command may define; invalid in files.
 constexpr std::string_view missing_type = "of a command";
 
-/// @throws std::invalid_argument  for negative values.
+/// @throws std::invalid_argument for negative values.
 Rgb colour_of(const RadPrimitive& p) {
     Rgb colour;
     for (int c = 0; c < 3; ++c) {
@@ -33,8 +33,8 @@ float share(const RadPrimitive& p, std::size_t i, const char* what) {
     return static_cast<float>(p.numbers[i]);
 }
 
-/// Roughness of plastic, metal and trans: the 5th number, or the larger one of anisotropic types. Types with their own
-/// reflectance distribution count as rough.
+/// Returns the 5th number of plastic, metal and trans, or the larger one of anisotropic types. Measured and procedural
+/// BRDFs count as rough.
 double roughness_of(const RadPrimitive& p) {
     if (p.type.ends_with("func") || p.type.ends_with("data")) return 1;
     return p.type.ends_with('2') ? std::max(p.numbers[4], p.numbers[5]) : p.numbers[4];
@@ -44,7 +44,7 @@ double roughness_of(const RadPrimitive& p) {
 
 GlassShares glass_shares(double transmissivity, double index) {
     const double root = (index - 1) / (index + 1);
-    const double r = root * root, t = transmissivity;  // of one surface; of the interior
+    const double r = root * root, t = transmissivity;  // reflectance of one surface, transmittance of the interior
     const double passed = (1 - r) * (1 - r) / (1 - r * r * t * t);
     return {passed * t, r + r * passed * t * t};
 }
@@ -191,7 +191,7 @@ std::uint32_t RadMaterials::convert(const Modifier& modifier, const Type& type) 
     return static_cast<std::uint32_t>(model_.materials.size() - 1);
 }
 
-/// Keeps mirror reflection; warns about any other.
+/// Keeps mirrors; warns about other specular reflection.
 void RadMaterials::reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result) {
     if (is_mirror(largest_channel(specular), roughness)) result.specular_reflectance = specular;
     if (largest_channel(specular) > 0)

@@ -23,10 +23,9 @@ struct GlassShares {
 };
 GlassShares glass_shares(double transmissivity, double index);
 
-/// Modifiers of a scene and their materials. Unused modifiers cause no errors or warnings.
+/// Unused modifiers cause no errors or warnings.
 class RadMaterials {
   public:
-    /// @param model  Receives materials and warnings.
     explicit RadMaterials(Model& model) : model_(model) {}
 
     static bool is_modifier(std::string_view type);
@@ -36,9 +35,9 @@ class RadMaterials {
     /// Makes undefined modifiers diffuse grey with a warning, since an ignored command may define them.
     void allow_missing() { may_miss_ = true; }
 
-    /// Returns `none` for "void". @throws std::invalid_argument  if undefined.
+    /// `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// Returns the index in Model::materials; `none` if invisible. @throws InputError  with the modifier's place.
+    /// @return  Index into Model::materials; `none` if invisible. @throws InputError with the modifier's place.
     std::uint32_t material(std::uint32_t modifier);
 
   private:
@@ -46,7 +45,7 @@ class RadMaterials {
         RadPrimitive primitive;
         Location where;
         std::uint32_t base = none;      // modified by this one
-        std::uint32_t material = none;  // in Model::materials, once used
+        std::uint32_t material = none;  // index, once used
     };
     enum class Role { material, pattern, mixture, nothing };
     struct Type {

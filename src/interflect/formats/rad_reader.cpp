@@ -97,9 +97,7 @@ void RadReader::read_statement(RadStatements& statements, RadStatements::Kind ki
     add_surface(primitive, file, where);
 }
 
-// ---- Commands
-
-/// Applies `xform`. Ignores other commands.
+/// Applies `xform`; ignores other commands.
 void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
     const std::optional<RadXform> xform = parse_xform(command);
     if (!xform) {
@@ -175,8 +173,6 @@ std::vector<RadReader::Copy> RadReader::copies_of(const RadXform& xform, const s
     return result;
 }
 
-// ---- Surfaces
-
 void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file, const Location& where) {
     const Surface& surface = surfaces().at(primitive.type);
     const std::string_view modifier = file.modifier.empty() ? primitive.modifier : std::string_view(file.modifier);
@@ -194,7 +190,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
         return;
     }
-    // The sphere has the most faces of all curved surfaces.
+    // Spheres have the most faces of all surfaces.
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
     add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);

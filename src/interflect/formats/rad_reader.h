@@ -17,8 +17,7 @@
 
 namespace interflect::detail {
 
-/// Reads a Radiance scene and its `!xform` files into a model. A file is read once for all copies of an array, which
-/// become instances.
+/// Reads a file once for all copies of an array, which become instances.
 class RadReader {
   public:
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -30,7 +29,7 @@ class RadReader {
         Imath::M44d to_world;
         std::string prefix;  // of surface names
     };
-    /// File being read, and changes to its surfaces.
+    /// Open file, and changes to its surfaces.
     struct OpenFile {
         const SourceFile& source;
         std::vector<Copy> copies;
@@ -71,7 +70,7 @@ class RadReader {
     ReadOptions options_;
     SourceFiles sources_;
     const SourceFile* main_ = nullptr;
-    std::map<std::pair<const SourceFile*, std::string>, const SourceFile*> included_;  // by includer and name
+    std::map<std::pair<const SourceFile*, std::string>, const SourceFile*> included_;
     Model model_;
     RadMaterials materials_;
     RepeatedWork repeated_;

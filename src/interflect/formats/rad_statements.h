@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// `modifier type name` with arguments, or `modifier alias name original`, as views of the text.
+/// `modifier type name` with arguments, or `modifier alias name original`; views of the text.
 struct RadPrimitive {
     std::string_view modifier, type, name;
     std::string_view original;  ///< Alias only.
@@ -15,8 +15,7 @@ struct RadPrimitive {
     std::vector<double> numbers;
 };
 
-/// Splits a Radiance scene into primitives and commands (`!`). Comments start with `#` between statements. Words may be
-/// quoted with ' or ".
+/// Comments (`#`) start between statements. Words may be quoted with ' or ".
 class RadStatements {
   public:
     enum class Kind { primitive, command, end };
@@ -24,11 +23,11 @@ class RadStatements {
     explicit RadStatements(std::string_view text) : text_(text) {}
 
     Kind next();
-    std::int64_t line() const { return line_; }  ///< First line, from 1.
+    std::int64_t line() const { return line_; }  ///< Start of the statement, from 1
 
-    /// Returns the command without `!`, continued lines joined.
+    /// Returns the text after `!`; joins continued lines.
     std::string command();
-    /// @throws std::invalid_argument  for a truncated or malformed primitive.
+    /// @throws std::invalid_argument for a truncated or malformed primitive.
     RadPrimitive primitive();
 
   private:

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Arguments of `xform [-n name] [-m modifier] [-I] [transform] file ...`, which is never run.
+/// `xform [-n name] [-m modifier] [-I] [transform] file ...`
 struct RadXform {
     std::string name;      ///< Prefix of surface names; may be empty.
     std::string modifier;  ///< Overrides the surfaces' own unless empty.
@@ -22,8 +22,8 @@ struct RadXform {
 };
 
 /// @param command  Without `!`.
-/// @return  nullopt for other commands and for shell syntax beyond quotes (pipes, variables).
-/// @throws std::invalid_argument  if xform would reject it.
+/// @return  nullopt for other commands and for shell syntax beyond quotes.
+/// @throws std::invalid_argument if xform would reject it.
 std::optional<RadXform> parse_xform(std::string_view command);
 
 }  // namespace interflect::detail

@@ -9,10 +9,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum of doubled area / size^2; thinner faces do not affect the scene's position.
+/// Minimum doubled area / size^2 of faces that affect the origin.
 constexpr double least_shape = 1e-6;
 
-/// Relative to the reach of the scene, 60 float steps. Real files often have narrower slivers, which may be lost.
+/// Relative to the reach of the scene: 60 float steps. Narrower slivers are common and may be lost.
 constexpr double largest_lost_width = 0x1p-16;
 
 }  // namespace
@@ -27,7 +27,7 @@ V3f SceneFaces::position(const Imath::V3d& world) const {
         throw std::invalid_argument(
             fmt::format("the transformed point ({}, {}, {}) is farther than {:g} m from the origin, which is too far",
                         world.x, world.y, world.z, farthest_coordinate));
-    return V3f(world - scene_.origin) + V3f(0);  // -0 + 0 = 0
+    return V3f(world - scene_.origin) + V3f(0);  // turns -0 into 0
 }
 
 void SceneFaces::place(std::span<const Imath::V3d> outline) {

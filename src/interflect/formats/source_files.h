@@ -10,16 +10,16 @@
 namespace interflect::detail {
 
 struct SourceFile {
-    std::filesystem::path path;  ///< Path used first.
+    std::filesystem::path path;  ///< First path used.
     std::string text;
 };
 
-/// Files of a scene, each read once. Addresses are stable, since contexts and locations refer to them.
+/// Reads each file once. Addresses are stable.
 class SourceFiles {
   public:
-    /// @return  The file, and whether it is new. A known file keeps its first path and text.
+    /// @return  The file, with its first path and text, and whether it is new.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);
-    /// @param name  Relative to `includer`. @throws std::invalid_argument  if unreadable.
+    /// @param name  Relative to `includer`. @throws std::invalid_argument if unreadable.
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
 
   private:

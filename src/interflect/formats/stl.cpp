@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t stl_header = 80, stl_triangle = 50;  // [bytes]
 
-/// Returns nullopt if the size does not match the count.
+/// Returns nullopt unless the size matches the count.
 std::optional<std::size_t> binary_triangles(std::string_view bytes) {
     if (bytes.size() < stl_header + 4) return std::nullopt;
     const std::size_t count = number_of<std::uint32_t>(bytes.substr(stl_header), std::endian::little);
@@ -67,7 +67,7 @@ void read_binary_stl(std::string_view bytes, std::size_t count, Model& model, co
     }
 }
 
-/// Reads `vertex x y z` lines, three per triangle. Ignores normals.
+/// Ignores normals.
 void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& options) {
     Mesh* solid = nullptr;
     std::size_t vertices = 0;

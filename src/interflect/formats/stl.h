@@ -8,11 +8,11 @@
 
 namespace interflect::detail {
 
-/// Reads the triangles of an STL file, ASCII or binary, with reflectance 0.5; see docs/formats.md.
-/// @throws InputError  for invalid input and limits of `options`; also as scene_of(). @throws TooManyPatches
+/// Reads an STL file, with reflectance 0.5 (docs/formats.md).
+/// @throws InputError for invalid input and limits of `options`; also as scene_of(). @throws TooManyPatches
 Scene read_stl(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads from memory. @param path  Name for messages.
+/// @param path  Name for messages.
 Scene read_stl_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -70,7 +70,7 @@ std::string read_bytes(const fs::path& path, std::uintmax_t most) {
 
 std::string read_text_file(const fs::path& path) {
     std::string text = read_bytes(path);
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // UTF-8
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     require_text(text, path);
     return text;

@@ -8,21 +8,20 @@
 
 namespace interflect::detail {
 
-/// @throws InputError  if the path is not a readable regular file, or with the line of a control character other than
-///                     white space (binary content).
+/// @throws InputError if the path is not a readable regular file, or with the line of a control character.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// @param most  Bytes. @throws InputError  if unreadable or larger.
+/// @param most  Limit [bytes]. @throws InputError if unreadable or larger.
 std::string read_bytes(const std::filesystem::path& path,
                        std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
 
-/// Checks only the path.
+/// @throws InputError
 void require_regular_file(const std::filesystem::path& path);
 
 /// Follows links; includes subfolders.
 bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-/// Checks only for control characters. @param path  Named in errors.
+/// @throws InputError for control characters other than white space.
 void require_text(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace interflect::detail

@@ -10,16 +10,16 @@
 namespace interflect::detail {
 
 /// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit.
-/// @throws InputError  as read_image(), and for an invalid texture.
+/// @throws InputError as read_image(), and for an invalid texture.
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most = most_texels);
 
-/// Reads radiances from .exr or .hdr. @throws InputError  also for other formats.
+/// Reads radiances from .exr or .hdr. @throws InputError also for other formats.
 std::shared_ptr<const Texture> read_environment(const std::filesystem::path& path);
 
-/// Returns a lossless format: ".png" if all texels are 8-bit sRGB values, else ".exr".
+/// Lossless: ".png" for 8-bit sRGB values, else ".exr".
 std::string texture_extension(const Texture& texture);
 
-/// @throws InputError, std::runtime_error  as write_image().
+/// @throws InputError, std::runtime_error as write_image().
 void write_texture(const std::filesystem::path& path, const Texture& texture);
 
 }  // namespace interflect::detail

@@ -10,11 +10,11 @@
 namespace interflect::detail {
 
 /// Arguments of MGF's `xf`: -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N, applied from left to
-/// right. -i repeats the following transforms, up to the next -i or -a, N times. -a makes N copies; copy k, from 0,
-/// repeats them k times. Several -a make a grid, the last fastest. For row vectors, x' = x M.
+/// right to row vectors. -i N repeats the transforms up to the next -i or -a N times. -a N makes N copies; copy k, from
+/// 0, repeats them k times. Several -a make a grid.
 class TransformSequence {
   public:
-    /// @throws std::invalid_argument  for unknown arguments, missing numbers, and scaling by 0.
+    /// @throws std::invalid_argument for unknown arguments, missing numbers, and scaling by 0.
     explicit TransformSequence(std::span<const std::string_view> arguments);
 
     bool is_array() const { return !array_sizes_.empty(); }
@@ -27,7 +27,7 @@ class TransformSequence {
     struct Segment {
         Imath::M44d step;  // up to the next -i or -a
         int repetitions = 1;
-        bool is_array = false;  // `repetitions` is the copy's index
+        bool is_array = false;  // the copy's index replaces `repetitions`
     };
     std::vector<Segment> segments_;
     std::vector<int> array_sizes_;

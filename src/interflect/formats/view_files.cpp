@@ -22,9 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-// ---- JSON
-
-/// Reads JSON members and rejects unknown ones.
+/// Rejects unknown members.
 class Members {
   public:
     Members(const json& object, std::string where, const fs::path& file)
@@ -82,11 +80,9 @@ View parse_view(const json& value, std::size_t index, const fs::path& path) {
     return view;
 }
 
-// ---- Radiance
-
 class RadianceView {
   public:
-    /// Consumes one option and returns the remaining words.
+    /// Returns the words after the first option.
     std::span<const std::string_view> take(std::span<const std::string_view> words);
     View view() const {
         View view;

@@ -12,20 +12,17 @@ namespace interflect::detail {
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 
 /// Reads {"views": [{"name": "desk", "eye": [x, y, z], "look_at": [x, y, z], "up": [x, y, z], "fov": 45}]}, in metres
-/// and degrees (vertical, full). `up` defaults to (0, 0, 1), `fov` to 45; other keys are required.
-/// @throws InputError  with file, view and key for invalid JSON, keys or values, duplicate names, and undefined
-///                     directions.
+/// and degrees (vertical, full). `up` defaults to (0, 0, 1) and `fov` to 45.
+/// @throws InputError for invalid or unknown members, and duplicate names.
 std::vector<View> read_view_list(const std::filesystem::path& path);
 
-/// Writes views for read_view_list(), exactly except for `extent`, which is dropped.
-/// @param views  With unique names. @throws std::runtime_error  if writing fails.
+/// Writes views for read_view_list(), exactly but without `extent`.
+/// @param views  With unique names. @throws std::runtime_error if writing fails.
 void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
 /// Reads a Radiance view such as `rvu -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 45`, named after the file. Defaults
-/// are Radiance's (eye at the origin, direction y, up z, 45 degrees); later lines override earlier ones. Only the
-/// vertical field of view (-vv) counts, since the picture's shape determines the other.
-/// @throws InputError  with file and line for views other than perspective (-vtv), shift, lift or clipping planes,
-///                     unknown options, and invalid values.
+/// are Radiance's; later lines override earlier ones. Ignores -vh, because the picture's shape determines it.
+/// @throws InputError for views other than perspective (-vtv), shift, lift or clipping planes, and invalid input.
 View read_radiance_view(const std::filesystem::path& path);
 
 }  // namespace interflect::detail

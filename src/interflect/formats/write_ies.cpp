@@ -22,7 +22,7 @@ Column column_of(const PhotometricWeb& web, std::size_t i) {
     return {web.at_azimuth(i), web.at_azimuth(i) + web.polar.size()};
 }
 
-/// By azimuth, 0 to 360.
+/// Adds planes at 0 and 360.
 PhotometricPlanes all_around(const PhotometricWeb& web) {
     constexpr auto turn = static_cast<float>(full_turn);
     std::map<float, Column> columns;
@@ -54,7 +54,7 @@ std::vector<float> shifted(std::vector<float> angles, float by) {
     return angles;
 }
 
-/// As in LM-63, negative across round sections.
+/// LM-63 has negative sizes across round sections.
 V3f dimensions(const LuminousOpening& opening) {
     V3f size = opening.size;
     for (int k = 0; k < 3; ++k)

@@ -23,7 +23,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t buffer_size = 1 << 16;  // characters
+constexpr std::size_t buffer_size = 1 << 16;  // [characters]
 
 std::string printable(std::string_view name) {
     std::string text(name);
@@ -39,7 +39,7 @@ std::string material_name(const Material& material) {
     return name;
 }
 
-/// Splits "room.desk.leg" at the dots; empty for "".
+/// Returns the parts of "room.desk.leg"; empty for "".
 std::vector<std::string> object_path(const std::string& dotted_name) {
     std::vector<std::string> path;
     if (dotted_name.empty()) return path;
@@ -52,7 +52,7 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
     }
 }
 
-/// Rotations about x, y and z, in this order [degrees].
+/// About x, y and z, in this order [degrees].
 struct Turns {
     double x, y, z;
 };
@@ -80,7 +80,6 @@ Turns turns_of(const Frame& frame) {
     return {degrees(std::atan2(y.z, z.z)), degrees(std::atan2(-x.z, cosine)), degrees(std::atan2(x.y, x.x))};
 }
 
-/// Writes patches, preceded by their new objects, materials and vertices.
 class MgfWriter {
   public:
     MgfWriter(const Scene& scene, std::ostream& out, std::span<const std::string> textures,
@@ -111,7 +110,7 @@ class MgfWriter {
   private:
     static constexpr int two_sides = 2;  // default of new materials
 
-    /// Latest definition of a material name.
+    /// Latest of a material name.
     struct Definition {
         std::uint32_t material = none;
         int sides = two_sides;
@@ -180,7 +179,6 @@ class MgfWriter {
         if (texture != none) put("\ttexture {} {}\n", entity, textures_[texture]);
     }
 
-    /// @param rest  Further arguments.
     void put_colour(std::string_view entity, const RgbD& rgb, std::string_view rest = "") {
         const auto [chromaticity, luminance] = from_rec709(rgb);
         put("\tc\n\t\tcxy {} {}\n\t{} {}{}\n", chromaticity.x, chromaticity.y, entity, luminance, rest);
@@ -249,7 +247,6 @@ class MgfWriter {
         });
     }
 
-    /// Writes a light inside a rotation.
     template <class Put>
     void add_turned(const Frame& frame, const Put& put_light) {
         const Turns turns = turns_of(frame);
@@ -281,7 +278,7 @@ class MgfWriter {
     std::ostream& out_;
     std::span<const std::string> textures_;                    // file names
     std::vector<std::string> names_;                           // of materials
-    std::unordered_map<std::string, Definition> definitions_;  // by name
+    std::unordered_map<std::string, Definition> definitions_;  // by material name
     std::unordered_map<const PhotometricWeb*, std::string> web_files_;
     std::unordered_map<const Texture*, std::string> map_files_;
     std::vector<bool> vertex_written_;

@@ -18,11 +18,10 @@ namespace {
 
 using namespace building;
 
-constexpr float cell = 1.2f;                                       // side of the floor square of one box [m]
+constexpr float cell = 1.2f;                                       // side of a box's square of floor [m]
 constexpr float luminaire_pitch = 3.6f;                            // [m]
 constexpr Interval half_side{.10f, .36f}, box_height{.10f, 1.4f};  // [m]
 
-/// Adds a box at a random position and rotation within a cell.
 void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const Palette& palette,
              RandomSequence& random) {
     const float x = random.between(half_side.low, half_side.high), y = random.between(half_side.low, half_side.high);
@@ -34,7 +33,6 @@ void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const P
              random.pick(std::span(palette.papers)));
 }
 
-/// Adds textures to the floor, the boxes and the luminaires.
 void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
     constexpr float tiles = 1.2f;  // side of the image on the floor [m]
     scene.materials[floor].reflectance_texture = add_texture(scene, make_tiles());

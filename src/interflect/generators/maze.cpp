@@ -20,9 +20,9 @@ namespace {
 
 using namespace building;
 
-constexpr float one_luminaire = 100;  // pitch beyond the size of any room [m]
+constexpr float one_luminaire = 100;  // pitch wider than any room [m]
 
-/// In order of placement: large pieces and those with many patches first.
+/// Large pieces first, because later ones may not fit.
 const std::array wall_furniture{&bookcase, &bookcase, &workstation, &workstation, &low_bookcase, &cabinet,
                                 &radiator, &picture,  &picture,     &cartons,     &waste_bin};
 
@@ -33,7 +33,7 @@ void require_valid(const MazeOptions& options) {
         throw InputError(fmt::format("the share of extra doors must be 0 to 1, not {}", options.extra_doors));
 }
 
-/// Each room has its own sequence, independent of other rooms.
+/// Rooms have independent sequences.
 RandomSequence sequence_of(const MazeOptions& options, std::uint32_t room) {
     return RandomSequence(mix(options.seed, std::uint64_t{room} + 1));
 }
@@ -79,7 +79,7 @@ Scene make_maze(const MazeOptions& options) {
 }
 
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options) {
-    constexpr std::uint32_t sample = 64;  // rooms for a sufficiently accurate mean
+    constexpr std::uint32_t sample = 64;  // enough for an accurate mean
     MazeOptions small = options;
     small.rooms = sample;
     const double patches_per_room = static_cast<double>(make_maze(small).patches.size()) / sample;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace building;
 
-constexpr float aisle = 1.5f;                         // between the desks and all walls [m]
+constexpr float aisle = 1.5f;                         // between desks and walls [m]
 constexpr float desk_pitch = 1.7f, row_pitch = 2.2f;  // [m]
 constexpr float office_luminaire_pitch = 2.6f;        // [m]
 constexpr float share_of_extra_doors = 0.3f;
@@ -41,7 +41,7 @@ FloorPlan plan_office(const OfficeOptions& options) {
                             .seed = options.seed});
 }
 
-/// Rows of desks within the aisles, for workers facing south.
+/// Chairs face south.
 void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnisher) {
     for (std::uint32_t row = 0; row < options.desk_rows; ++row)
         for (std::uint32_t desk = 0; desk < options.desks_per_row; ++desk)
@@ -51,7 +51,6 @@ void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnis
                                                     0));
 }
 
-/// Furniture along the walls for this number of rows.
 std::vector<const Furniture*> furniture_along_walls(std::uint32_t desk_rows) {
     std::vector<const Furniture*> pieces;
     for (std::uint32_t row = 0; row < desk_rows; ++row) {

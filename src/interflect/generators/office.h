@@ -15,11 +15,10 @@ struct OfficeOptions {
     std::uint64_t seed = 1;           ///< Equal options give equal scenes.
 };
 
-/// Creates an office building of one floor: equal rooms, connected by doorways, with parallel rows of desks below a
-/// grid of luminaires, and bookcases, cabinets, radiators and pictures along the walls. Other properties as in
-/// make_maze(). About 230 patches a desk and 650 a bookcase; one bookcase for every two rows.
-///
-/// Time and memory are linear in the desks. @throws InputError if an option is out of its range.
+/// Creates one floor of equal rooms, connected by doorways, with rows of desks below a grid of luminaires and furniture
+/// along the walls. Other properties as make_maze(). A desk has about 230 patches; two rows share a bookcase of 650.
+/// Linear in the desks.
+/// @throws InputError if an option is out of range.
 Scene make_office(const OfficeOptions& options);
 
 }  // namespace interflect::detail

@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// @param shade  sRGB at column x and row y from the top, each channel 0 to 255.
+/// @param shade  sRGB bytes at column x and row y from the top.
 template <class Shade>
 Texture draw(const char* name, std::uint32_t side, const Shade& shade) {
     Texture texture{name, side, side, {}};

@@ -12,9 +12,9 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr float width = 4, height = 3, thickness = 0.01f;  // of a room and of the partition wall [m]
+constexpr float width = 4, height = 3, thickness = 0.01f;  // of a room and of the partition [m]
 constexpr float length = 2 * width + thickness;            // of both rooms together [m]
-constexpr float largest_turn = 40;  // [degrees]; keeps the wall clear of the far ends of the rooms
+constexpr float largest_turn = 40;                         // [degrees]; keeps the partition clear of the far walls
 
 std::uint32_t add_material(Scene& scene, const char* name, const Rgb& reflectance, const Rgb& exitance = {0, 0, 0}) {
     scene.materials.push_back({name, reflectance, exitance});
@@ -26,7 +26,7 @@ std::uint32_t add_object(Scene& scene, const char* name) {
     return static_cast<std::uint32_t>(scene.objects.size() - 1);
 }
 
-/// Adds a rectangle, lit on the side of u x v.
+/// Adds a rectangle that faces u x v.
 void add_rectangle(Scene& scene, const V3f& corner, const V3f& u, const V3f& v, std::uint32_t material,
                    std::uint32_t object) {
     const auto first = static_cast<std::uint32_t>(scene.vertices.size());
@@ -60,7 +60,7 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
 
     const float radians = options.turn * std::numbers::pi_v<float> / 180;
     const auto wall = building::Placement::turned(V3f(length / 2, width / 2, 0), radians);
-    // A straight wall ends at the outer walls; the corners of a rotated wall are behind them.
+    // A straight partition ends at the outer walls; the corners of a rotated one lie behind them.
     const float half = options.turn == 0 ? width / 2 : width / 2 / std::cos(radians) + 0.1f;
     building::Solids(scene, wall, add_object(scene, "wall"))
         .box({-thickness / 2, -half, 0}, {thickness / 2, half, height}, white);

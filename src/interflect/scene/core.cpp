@@ -10,9 +10,9 @@ namespace {
 
 using Imath::V3d;
 
-/// Maximum distance of the middle from an unchanged origin, in reaches.
+/// Farthest middle of a scene that keeps its origin, in reaches.
 constexpr double near_in_reaches = 8;
-/// Maximum distance from the middle, in reaches, of faces that define the scene's size.
+/// Farthest faces that count for the scene's size, in reaches from the middle.
 constexpr double stray_in_reaches = 64;
 
 double weighted_median(std::span<const double> values, std::span<const double> weights) {
@@ -66,7 +66,9 @@ V3d origin_for(const Core& core) {
     const V3d& m = core.middle;
     if (std::max({std::abs(m.x), std::abs(m.y), std::abs(m.z)}) <= near_in_reaches * core.reach) return V3d(0);
     const double step = std::exp2(std::ceil(std::log2(core.reach)));
-    const auto rounded = [step](double coordinate) { return std::round(coordinate / step) * step + 0.0; };  // no -0
+    const auto rounded = [step](double coordinate) {
+        return std::round(coordinate / step) * step + 0.0;
+    };  // turns -0 into 0
     return {rounded(m.x), rounded(m.y), rounded(m.z)};
 }
 

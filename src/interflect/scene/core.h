@@ -10,18 +10,17 @@
 
 namespace interflect::detail {
 
-/// Bounding box of a face.
 struct FaceExtent {
     Imath::V3d centre{0, 0, 0};  ///< [m]
-    double size = 0;             ///< Diagonal [m]; > 0.
+    double size = 0;             ///< Diagonal of the bounding box [m]; > 0.
 };
 
-/// Keeps every k-th face, k being a power of two, so at most `capacity` are kept: enough for medians. Deterministic.
+/// Keeps every k-th face, with k a power of two: enough for medians. Deterministic.
 class FaceSample {
   public:
     static constexpr std::size_t capacity = 1 << 13;
 
-    /// Whether the next face will be kept. Call once per face.
+    /// Call once per face.
     bool wants_next() { return offered_++ % stride_ == 0; }
     void add(const FaceExtent& face);
     std::span<const FaceExtent> faces() const { return faces_; }
@@ -31,22 +30,22 @@ class FaceSample {
     std::size_t offered_ = 0, stride_ = 1;
 };
 
-/// Location of most of a scene, robust against distant faces.
+/// Location and extent of a scene, robust against distant faces.
 struct Core {
-    Imath::V3d middle{0, 0, 0};  ///< Per axis: median of the face centres, weighted by face size [m].
-    double reach = 0;            ///< Extent of the faces from the middle: weighted median [m].
+    Imath::V3d middle{0, 0, 0};  ///< Median of the face centres per axis, weighted by size [m].
+    double reach = 0;            ///< Weighted median of each face's distance from the middle plus half its size [m].
 };
 
-/// O(n log n). All zero without faces.
+/// All zero without faces. O(n log n).
 Core core_of(std::span<const FaceExtent> faces);
 
-/// Origin that preserves the precision of single-precision vertices. 0 if the middle is within 8 times the reach, which
-/// costs at most 3 bits. Otherwise the middle, rounded to a power of two near the reach, which keeps exact coordinates
-/// exact.
+/// Returns an origin that preserves the precision of float vertices. It is 0 if the middle is within 8 reaches, which
+/// costs at most 3 bits. Otherwise it is the middle, rounded to a multiple of the power of two above the reach, so
+/// exact coordinates stay exact.
 Imath::V3d origin_for(const Core& core);
 
-/// Bounding box that defines the scene's size, relative to its origin [m]. Excludes faces whose centre is farther from
-/// the middle than 64 times the reach. O(patches).
+/// Returns the bounding box, relative to the scene's origin [m], of faces whose centre is within 64 reaches of the
+/// middle. O(patches).
 Imath::Box3f core_bounds(const Scene& scene);
 
 }  // namespace interflect::detail

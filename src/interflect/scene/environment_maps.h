@@ -8,10 +8,10 @@
 
 namespace interflect::detail {
 
-/// Distinct images of a scene's environment maps, in the order of the luminaires.
+/// Returns each image once, in the order of the luminaires.
 std::vector<std::shared_ptr<const Texture>> environment_maps(const Scene& scene);
 
-/// Fault in the number of skies or of the maps' texels, in words without a subject; empty if valid.
+/// Describes a fault in the number of skies or texels ("has 9 skies ..."); empty if valid.
 std::string sky_count_fault(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -6,14 +6,12 @@
 
 namespace interflect::detail {
 
-/// 64-bit hash of a scene's origin, the corners of its patches, and which patches are sides of one face. Two scenes
-/// collide with probability 2^-64. Independent of materials, names, views and the number of threads. Cost: one pass
-/// over the patches.
-/// @throws InputError if a vertex index is out of range.
+/// Returns a 64-bit hash of a scene's origin, patch corners and pairs of sides. Materials, names and views do not
+/// matter. O(patches). @throws InputError if a vertex index is out of range.
 std::uint64_t geometry_fingerprint(const Scene& scene);
 
-/// @param fingerprint  geometry_fingerprint() of the scene of `what` ("the ray caster").
-/// @throws InputError if `scene` has another fingerprint.
+/// @param what  Object with this fingerprint, for the message.
+/// @throws InputError if `scene` has another one.
 void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char* what);
 
 }  // namespace interflect::detail

@@ -21,7 +21,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Whether a pattern matches an object or an enclosing object.
+/// Matches enclosing objects too.
 bool matches_object(std::string_view pattern, std::string_view name) {
     for (std::size_t end = name.find('.'); end != name.npos; end = name.find('.', end + 1))
         if (matches(pattern, name.substr(0, end))) return true;
@@ -30,12 +30,11 @@ bool matches_object(std::string_view pattern, std::string_view name) {
 
 std::string outermost(const std::string& object) { return object.substr(0, object.find('.')); }
 
-/// Finds groups by names, with a cache.
 class Matcher {
   public:
     explicit Matcher(const Scene& scene) : scene_(scene) {}
 
-    /// Index of the group, or the number of groups if none matches.
+    /// Returns the first matching group; the number of groups if none matches.
     std::size_t group_of(std::uint32_t object, const std::string& own_name) {
         const auto [entry, is_new] = known_.try_emplace({object, own_name}, scene_.light_groups.size());
         if (!is_new) return entry->second;
@@ -163,7 +162,7 @@ Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<f
         const bool emits = channel_sum(scene.materials[scene.patches[patch].material].exitance) > 0;
         return emits ? factors[groups.of_patch[patch]] : 1;
     };
-    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // material index per (material, factor)
+    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // new index of (material, factor)
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         scaled.try_emplace({scene.patches[i].material, factor_of(i)});
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
@@ -171,7 +170,7 @@ Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<f
         if (used == scaled.end() || used->first.first != m) scaled.try_emplace({m, 1.0f});
     }
     Scene result = scene;
-    // The order of the materials stays: exports have the same meshes for all factors.
+    // Keeps the order of the materials, so exports have the same meshes for all factors.
     result.materials.clear();
     for (auto& [key, index] : scaled) {
         index = static_cast<std::uint32_t>(result.materials.size());

@@ -6,11 +6,11 @@
 
 namespace interflect::detail {
 
-// Single precision ends at 3 * 10^38 and loses digits below 10^-38. Variances scale with the square of an element's
-// irradiance and the inverse square of its area. Real scenes are far from these limits.
+// Limits that keep results within single precision, 10^-38 to 3 * 10^38. Variances scale with the square of an
+// element's irradiance and the inverse square of its area.
 
-/// Farthest coordinate of a face or a view, in the world and from the scene's origin [m]. Double precision resolves 1/8
-/// m there.
+/// Farthest coordinate of a face or a view, in the world and from the scene's origin [m]; a double resolves 1/8 m
+/// there.
 inline constexpr double farthest_coordinate = 1e15;
 
 /// Widest face, the diagonal of its bounding box [m]: about the Earth.
@@ -20,42 +20,36 @@ inline constexpr double widest_face = 1e7;
 inline constexpr double narrowest_scene = 1e-6;
 inline constexpr float smallest_face_area = 1e-18f;
 
-/// Exitance of any channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2. The brightest source must have at least
-/// `weakest_exitance`, or 0.
+/// Range of the brightest source, unless it is 0, per channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2.
 inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
 
-/// Whether all coordinates are finite and at most farthest_coordinate.
 bool is_within_reach(const Imath::V3d& point);
 
-/// Diagonal of the bounding box of all patches with valid vertices [m]; 0 without patches.
+/// Returns the diagonal of the bounding box of all patches with valid vertices [m]; 0 without patches.
 double scene_width(const Scene& scene);
 
-// Functions *_fault() describe a fault in words without a subject ("is 2e9 m wide, ..."); empty if valid.
+// Functions *_fault() return a predicate ("is 2e9 m wide, ..."); empty if valid.
 
 /// @param patch  With valid vertices.
 std::string patch_fault(const Scene& scene, const Patch& patch);
-/// @param width  scene_width() [m].
 std::string scene_width_fault(double width);
 std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// The largest texel of every texture. O(texels).
+/// Returns the maximum of each texture and channel. O(texels).
 std::vector<Rgb> largest_texels(const Scene& scene);
 
-/// Value of a material times the largest texel of its texture, if any.
-/// @param texture  Index into Scene::textures, or none.
-/// @param largest  largest_texels().
+/// Returns `factor` times the largest texel. @param largest  largest_texels().
 inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<Rgb>& largest) {
     return texture == none ? factor : factor * largest[texture];
 }
 
-/// Largest sum of reflected, mirrored and transmitted light. Exact if the reflectance and transmittance textures have
-/// the same size; else an upper bound.
-/// @param largest  largest_texels() of `textures`.
+/// Returns the maximum of reflectance, specular reflectance and transmittance together. An upper bound if the textures
+/// differ in size. @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
 
-/// Largest channel of all textured emissions and luminaire ratings, each in its unit; 0 without sources. O(texels).
+/// Returns the largest channel of all textured exitances and luminaire ratings; 0 without sources. O(texels).
 /// @param scene  With valid texture indices.
 float brightest_source(const Scene& scene);
 

@@ -65,7 +65,7 @@ std::string placement_fault(const SpotLight& light) {
     return fault.empty() ? direction_fault(light.direction) : fault;
 }
 std::string placement_fault(const MeasuredLight& light) {
-    constexpr float least_sine = 1e-4f;  // of the angle between the nadir and the C0 direction
+    constexpr float least_sine = 1e-4f;  // of the angle between nadir and C0 direction
     for (const std::string& fault :
          {position_fault(light.position), direction_fault(light.direction), direction_fault(light.c0)})
         if (!fault.empty()) return fault;

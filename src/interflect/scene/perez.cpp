@@ -1,6 +1,6 @@
-// All-weather model: Perez, Seals and Michalsky, "All-weather model for sky luminance distribution - preliminary
-// configuration and validation", Solar Energy 50 (1993); efficacies: Perez, Ineichen, Seals, Michalsky and Stewart,
-// "Modeling daylight availability and irradiance components from direct and global irradiance", Solar Energy 44 (1990).
+// Sky: Perez, Seals and Michalsky, "All-weather model for sky luminance distribution", Solar Energy 50 (1993).
+// Efficacies: Perez, Ineichen, Seals, Michalsky and Stewart, "Modeling daylight availability and irradiance components
+// from direct and global irradiance", Solar Energy 44 (1990).
 
 #include <fmt/format.h>
 
@@ -23,11 +23,11 @@ constexpr double solar_constant = 1367;   // [W/m^2]
 constexpr double precipitable_water = 2;  // [cm]
 
 constexpr std::size_t bins = 8;
-/// Upper end of the clearness of each bin but the last.
+/// Upper clearness of each bin but the last.
 constexpr std::array<double, bins - 1> bin_ends = {1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
 
 using FourNumbers = std::array<double, 4>;
-/// Table 1 of the 1993 paper: each of a to e is x1 + x2 Z + Delta (x3 + x4 Z), except c and d of the first bin.
+/// Table 1 of 1993: a to e are x1 + x2 Z + Delta (x3 + x4 Z), except c and d of the first bin.
 struct LuminanceBin {
     FourNumbers a, b, c, d, e;
 };
@@ -74,8 +74,7 @@ constexpr std::array<LuminanceBin, bins> luminance_bins = {{
      {1.5000, -0.6426, 1.8564, 0.5636}},
 }};
 
-/// Table 4 of the 1990 paper [lm/W]: a + b W + c cos Z + d ln Delta; for direct light a + b W + c exp(5.73 Z - 5) + d
-/// Delta.
+/// Table 4 of 1990 [lm/W]: a + b W + c cos Z + d ln Delta; for direct light a + b W + c exp(5.73 Z - 5) + d Delta.
 constexpr std::array<FourNumbers, bins> diffuse_efficacies = {{{97.24, -0.46, 12.00, -8.91},
                                                                {107.22, 1.15, 0.59, -3.95},
                                                                {104.97, 2.96, -5.53, -8.77},

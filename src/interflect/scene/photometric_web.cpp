@@ -14,7 +14,7 @@ using namespace detail;
 
 namespace {
 
-/// Position of a number in a table: `index` + `share`.
+/// Position in a table: `index` + `share`.
 struct Place {
     std::size_t index;
     float share;

@@ -21,7 +21,6 @@ constexpr std::size_t listed_faults = 20;
 bool is_share(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0; }
 bool is_reflectance(const Rgb& c) { return is_share(c) && largest_channel(c) < 1; }
 
-/// Collects faults, up to the number that is listed.
 class Faults {
   public:
     template <class Describe>
@@ -70,7 +69,7 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
-    const bool are_added = m.transmittance_texture == none;  // else checked per texel by check_products()
+    const bool are_added = m.transmittance_texture == none;  // otherwise check_products() checks the texels
     faults.check(is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), [&] {
         return fmt::format(
             "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
@@ -152,7 +151,7 @@ void check_normals(const Scene& scene, Faults& faults) {
     }
 }
 
-/// @param patch  Has vertices of the scene.
+/// @param patch  With valid vertices.
 bool has_some_lightmap_coordinates_only(const Scene& scene, const Patch& patch) {
     if (scene.lightmap_coordinates.size() != scene.vertices.size()) return false;
     const auto count = std::count_if(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(),

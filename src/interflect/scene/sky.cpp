@@ -15,7 +15,7 @@ namespace interflect {
 namespace {
 
 double gradation(const SkyModel& m, double zenith_cosine) {
-    constexpr double least_cosine = 1e-6;  // exp(b / cos Z) is at its limit at the horizon
+    constexpr double least_cosine = 1e-6;  // exp(b / cos Z) has reached its limit
     return std::max(0.0, 1 + double{m.a} * std::exp(double{m.b} / std::max(zenith_cosine, least_cosine)) +
                              double{m.g} * zenith_cosine);
 }
@@ -34,7 +34,7 @@ double SkyModel::relative_luminance(double zenith_cosine, double sun_cosine) con
     return gradation(*this, zenith_cosine) * indicatrix(*this, sun_cosine);
 }
 
-/// Midpoint rule in both angles over half of the sky, since the two sides of the sun are symmetric.
+/// Midpoint rule over half of the sky, which is symmetric about the sun's meridian.
 double SkyModel::horizontal_integral(double sun_cosine) const {
     constexpr int rows = 512, columns = 256;
     const double sun_sine = std::sqrt(std::max(0.0, 1 - sun_cosine * sun_cosine));

@@ -4,16 +4,16 @@
 
 namespace interflect::detail {
 
-/// A direction as a position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of
-/// the angle from the zenith.
+/// Position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of the zenith
+/// angle.
 struct SkyPlace {
     float s, cosine;
 };
 
-/// Axes of a sky in the scene, of unit length.
+/// Axes of unit length.
 struct SkyFrame {
     V3f east, north, zenith;
-    /// North is towards the scene's y axis, or -z if y is close to the zenith.
+    /// North is the scene's y axis, or -z if y is close to the zenith.
     explicit SkyFrame(const V3f& up);
     SkyFrame(const V3f& up, const V3f& towards_north);
     V3f direction(const SkyPlace& place) const;

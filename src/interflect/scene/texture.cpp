@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-/// Linear interpolation along one axis: the two nearest texels, and the weight of the second.
+/// Two nearest texels of a coordinate, and the weight of the second.
 struct Between {
     std::uint32_t first, second;
     float share;
@@ -56,7 +56,7 @@ std::string texture_fault(const Texture& texture) {
 }
 
 std::string texture_coordinate_fault(const V2f& c) {
-    // False for NaN.
+    // NaN fails this test.
     if (std::abs(c.x) <= farthest_texture_coordinate && std::abs(c.y) <= farthest_texture_coordinate) return {};
     return fmt::format("has the texture coordinates ({}, {}); expected numbers up to {}", c.x, c.y,
                        farthest_texture_coordinate);

@@ -14,16 +14,16 @@ inline constexpr float right_angle = 90;                   // [degrees]
 inline double radians(double degrees) { return degrees * (std::numbers::pi / half_turn); }
 inline double degrees(double radians) { return radians * (half_turn / std::numbers::pi); }
 
-/// Axes of a web's angles in the luminaire's frame.
+/// Axes of the angles in the luminaire's frame.
 struct WebAxes {
-    V3f pole, zero, quarter;  ///< Pole; azimuths 0 and 90 at the equator.
+    V3f pole, zero, quarter;  ///< Azimuths 0 and 90 degrees are `zero` and `quarter`.
     explicit WebAxes(PhotometricWeb::Pole kind) : pole(0, 0, -1), zero(1, 0, 0), quarter(0, 1, 0) {
         if (kind == PhotometricWeb::Pole::c90) pole = {0, 1, 0}, zero = {0, 0, -1}, quarter = {1, 0, 0};
     }
 };
 
-/// Integrals over polar angles from a to b [radians] of sin t times the linear function that is 1 at one end and 0 at
-/// the other.
+/// Integrals over polar angles t in [a, b] [radians] of sin t times a linear function that is 1 at one end and 0 at the
+/// other.
 struct BandWeights {
     double at_a, at_b;
     BandWeights(double a, double b) {

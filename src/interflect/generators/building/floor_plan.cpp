@@ -19,12 +19,12 @@ struct SharedWall {
     Side side;  // of the first room
 };
 
-/// Sets of rooms connected by doorways (union-find with path halving).
+/// Union-find with path halving.
 class Connected {
   public:
     explicit Connected(std::size_t rooms) : parent_(rooms) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-    /// Joins the sets of two rooms. @return  false if they were already joined.
+    /// @return  false if the rooms were already connected.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -40,7 +40,7 @@ class Connected {
     std::vector<std::uint32_t> parent_;
 };
 
-/// `count` intervals separated by walls, centred at 0.
+/// Intervals are separated by walls and centred at 0.
 std::vector<Interval> draw_intervals(std::uint32_t count, const Interval& length, RandomSequence& random) {
     std::vector<Interval> intervals;
     float end = -wall_thickness;
@@ -63,7 +63,7 @@ std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns)
     return walls;
 }
 
-/// Chooses walls for doorways: a spanning tree (Kruskal's algorithm on random weights) and random others.
+/// Chooses a random spanning tree (Kruskal) and a random part of the other walls.
 std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanOptions& options,
                                RandomSequence& random) {
     std::vector<std::uint32_t> order(walls.size());
@@ -77,7 +77,7 @@ std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanO
     return chosen;
 }
 
-/// Chooses one of several evenly spaced places, so opposite doorways are aligned or apart.
+/// Opposite doorways are aligned or do not overlap, because places are evenly spaced.
 Interval draw_opening(const Interval& wall, RandomSequence& random) {
     const float places = std::floor((wall.length() - 2 * least_pier) / door_width);
     const float first = wall.middle() - places * door_width / 2;

@@ -18,30 +18,27 @@ struct Interval {
 enum Side : std::uint8_t { west, south, east, north };
 inline constexpr int side_count = 4;
 constexpr Side opposite(Side side) { return static_cast<Side>((side + 2) % side_count); }
-/// Whether a wall runs along x (south and north) or along y.
 constexpr bool along_x(Side side) { return side % 2 == 1; }
 
-/// A rectangular room; its extent is the floor between the wall faces.
+/// Floor between the wall faces.
 struct Room {
     Interval x, y;
-    std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< Index of the doorway in each wall.
+    std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< Index into FloorPlan::doorways.
 
     const Interval& along(Side side) const { return along_x(side) ? x : y; }
-    /// Coordinate of the wall's face, across the wall.
     float wall(Side side) const {
         const Interval& across = along_x(side) ? y : x;
         return side == west || side == south ? across.low : across.high;
     }
 };
 
-/// A floor-level opening in the wall shared by two rooms.
 struct Doorway {
-    std::array<std::uint32_t, 2> rooms{none, none};  ///< The western or southern one first.
+    std::array<std::uint32_t, 2> rooms{none, none};  ///< West or south room first.
     Side side = east;                                ///< Wall of the first room: east or north.
     Interval opening;                                ///< Along the wall.
 };
 
-/// Rooms on a grid about the origin, with floors at z = 0.
+/// Rooms about the origin, with floors at z = 0.
 struct FloorPlan {
     float room_height = 2.8f, door_height = 2.1f;  ///< [m]
     std::vector<Room> rooms;                       ///< Row by row from south to north, each from west to east.
@@ -50,14 +47,13 @@ struct FloorPlan {
 
 struct PlanOptions {
     std::uint32_t rooms = 1;
-    Interval width{5.2f, 6.8f}, depth{5.2f, 6.8f};  ///< Room sizes along x and y, drawn for each column and row [m].
-    float extra_doors = 0;  ///< Fraction of the walls outside the spanning tree that also get a doorway, 0 to 1.
+    Interval width{5.2f, 6.8f}, depth{5.2f, 6.8f};  ///< Drawn per column and row [m].
+    float extra_doors = 0;  ///< Fraction of walls outside the spanning tree that get a doorway, 0 to 1.
     std::uint64_t seed = 1;
 };
 
-/// Creates a nearly square grid of rooms. Doorways form a random spanning tree, plus `extra_doors`. Opposite doorways
-/// of a room are aligned or do not overlap, so the lines of their edges never cross. Time and memory are linear in the
-/// rooms.
+/// Creates a nearly square grid of rooms, connected by a random spanning tree of doorways and `extra_doors`. Opposite
+/// doorways of a room are aligned or do not overlap. Linear in the rooms.
 FloorPlan make_floor_plan(const PlanOptions& options);
 
 }  // namespace interflect::detail::building

@@ -12,17 +12,15 @@
 
 namespace interflect::detail::building {
 
-/// Free floor area of a room, for placing furniture.
 class FloorSpace {
   public:
-    /// Reserves only the ways through the doorways.
+    /// Reserves the floor before the doorways.
     FloorSpace(const FloorPlan& plan, const Room& room);
 
     void reserve(const Imath::Box2f& part) { taken_.push_back(part); }
 
-    /// Finds and reserves a place with the back to a wall; nullopt if none is free.
+    /// Reserves a place for a piece with its back to a wall; nullopt if none is found.
     std::optional<Placement> against_wall(const Furniture& piece, RandomSequence& random);
-    /// The same, away from the walls.
     std::optional<Placement> in_the_open(const Furniture& piece, RandomSequence& random);
 
   private:

@@ -10,7 +10,7 @@ namespace {
 // All lengths in metres.
 
 struct Books {
-    Interval thickness, height, depth;  // height as a fraction of the available height
+    Interval thickness, height, depth;  // height as a fraction of the space between boards
     float chance_of_space = 0;          // after a book
 };
 
@@ -21,7 +21,7 @@ std::uint32_t draw_paper(const Palette& palette, RandomSequence& random) {
     return random.pick(std::span(palette.papers));
 }
 
-/// A row of books between `low` and `high`, backs aligned at high.y, with some spaces.
+/// Aligns the backs at high.y.
 void add_books(const Solids& solids, const V3f& low, const V3f& high, const Books& kind, const Palette& palette,
                RandomSequence& random) {
     for (float x = low.x;;) {
@@ -35,7 +35,7 @@ void add_books(const Solids& solids, const V3f& low, const V3f& high, const Book
     }
 }
 
-/// A case of the given outer size with books on all boards but the uppermost.
+/// Fills all boards but the uppermost.
 void add_bookcase(const Solids& solids, const V3f& size, int rows, const Books& kind, const Palette& palette,
                   RandomSequence& random) {
     constexpr float board = .02f, back = .01f, plinth = .05f, set_back = .02f;
@@ -64,7 +64,6 @@ void build_low_bookcase(const Solids& solids, const Palette& palette, RandomSequ
     add_bookcase(solids, {low_bookcase.width, low_bookcase.depth, .82f}, 2, binders, palette, random);
 }
 
-/// Legs at the corners of a rectangle about the origin.
 void add_legs(const Solids& solids, float half_x, float half_y, float thickness, float height, std::uint32_t material) {
     for (const float x : {-half_x, half_x})
         for (const float y : {-half_y, half_y})
@@ -72,7 +71,7 @@ void add_legs(const Solids& solids, float half_x, float half_y, float thickness,
                        material);
 }
 
-/// Within 0.33 m of the origin, its front towards +y.
+/// Within 0.33 m of the origin, front towards +y.
 void add_office_chair(const Solids& solids, const Palette& palette, RandomSequence& random) {
     const std::uint32_t fabric = random.pick(std::span(palette.fabrics));
     add_legs(solids, .20f, .20f, .05f, .06f, palette.plastic);
@@ -87,7 +86,7 @@ void add_office_chair(const Solids& solids, const Palette& palette, RandomSequen
     }
 }
 
-/// Within 0.3 m of the origin, its front towards +y.
+/// Within 0.3 m of the origin, front towards +y.
 void add_chair(const Solids& solids, std::uint32_t wood, std::uint32_t fabric) {
     add_legs(solids, .19f, .18f, .035f, .43f, wood);
     solids.box({-.21f, -.20f, .43f + gap}, {.21f, .20f, .47f}, fabric);
@@ -95,7 +94,6 @@ void add_chair(const Solids& solids, std::uint32_t wood, std::uint32_t fabric) {
     for (const float z : {.56f, .68f, .80f}) solids.box({-.175f + gap, -.19f, z}, {.175f - gap, -.17f, z + .06f}, wood);
 }
 
-/// A stack of slightly rotated objects within 0.2 m of the origin.
 void add_pile(const Solids& solids, int count, float thickness, const Palette& palette, RandomSequence& random) {
     for (int i = 0; i < count; ++i) {
         const float z = gap + static_cast<float>(i) * (thickness + gap);
@@ -109,7 +107,6 @@ void add_mug(const Solids& solids, const Palette& palette, RandomSequence& rando
     solids.tapered_box({-.035f, -.035f, gap}, {.035f, .035f, .10f}, 1.15f, draw_paper(palette, random));
 }
 
-/// The display faces +y.
 void add_monitor(const Solids& solids, const Palette& palette) {
     solids.tapered_box({-.12f, -.08f, gap}, {.12f, .08f, .02f}, .8f, palette.plastic);
     solids.box({-.025f, -.03f, .02f + gap}, {.025f, -.01f, .25f}, palette.plastic);
@@ -123,7 +120,6 @@ void add_desk_lamp(const Solids& solids, const Palette& palette) {
     solids.tapered_box({-.09f, -.06f, .38f + gap}, {.09f, .12f, .45f}, .5f, palette.metal);
 }
 
-/// Drawers facing +y; origin at the back, on the floor.
 void add_drawers(const Solids& solids, std::uint32_t wood, const Palette& palette) {
     solids.box({-.20f, 0, .03f}, {.20f, .52f, .64f}, wood);
     for (int i = 0; i < 3; ++i) {
@@ -133,7 +129,6 @@ void add_drawers(const Solids& solids, std::uint32_t wood, const Palette& palett
     }
 }
 
-/// The desk is 0.8 m deep at the wall; its chair faces the wall.
 void build_workstation(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float half_width = .8f - gap, depth = .78f, under = .71f, top = .735f, side = .025f;
     const std::uint32_t wood = random.pick(std::span(palette.woods));

@@ -6,7 +6,7 @@ namespace interflect::detail::building {
 
 namespace {
 
-// Linear Rec. 709 reflectances.
+// Reflectances are linear Rec. 709.
 const Material walls[] = {{.name = "wall_white", .reflectance = {.78f, .77f, .74f}},
                           {.name = "wall_cream", .reflectance = {.76f, .69f, .54f}},
                           {.name = "wall_sage", .reflectance = {.50f, .61f, .47f}},
@@ -30,7 +30,6 @@ const Material fabrics[] = {{.name = "cloth_charcoal", .reflectance = {.06f, .06
                             {.name = "cloth_mustard", .reflectance = {.55f, .36f, .06f}},
                             {.name = "cloth_plum", .reflectance = {.25f, .08f, .20f}},
                             {.name = "cloth_green", .reflectance = {.12f, .33f, .12f}}};
-// Covers of books and binders, prints, sheets.
 const Material papers[] = {{.name = "paper_white", .reflectance = {.80f, .80f, .78f}},
                            {.name = "paper_cream", .reflectance = {.72f, .64f, .48f}},
                            {.name = "paper_red", .reflectance = {.52f, .07f, .06f}},

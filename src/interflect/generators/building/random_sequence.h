@@ -8,7 +8,7 @@
 
 namespace interflect::detail::building {
 
-/// A sequence of random choices that depends on the key alone.
+/// Random numbers that depend on the key alone.
 class RandomSequence {
   public:
     explicit RandomSequence(std::uint64_t key) : key_(key) {}
@@ -23,7 +23,7 @@ class RandomSequence {
     }
     float between(float low, float high) { return low + (high - low) * uniform(); }
     bool chance(float probability) { return uniform() < probability; }
-    /// Uniform in 0 ... n - 1; n > 0 and far below 2^23.
+    /// Uniform in 0 ... n - 1; 0 < n << 2^23.
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(uniform() * static_cast<float>(n)); }
     template <class T>
     const T& pick(std::span<const T> choices) {

@@ -16,17 +16,17 @@ using Imath::V2f;
 constexpr float eye_height = 1.6f;     // [m]
 constexpr float eye_to_wall = 0.45f;   // [m]
 constexpr float wide = 55;             // vertical field of view [degrees]
-constexpr float aim_height = 1.0f;     // of the point at the centre of the picture [m]
+constexpr float aim_height = 1.0f;     // of the look-at point [m]
 constexpr float bird_fov = 45;         // [degrees]
-constexpr float bird_distance = 1.1f;  // from the plan's middle, relative to its diagonal
+constexpr float bird_distance = 1.1f;  // from the middle, relative to the plan's diagonal
 
-/// Directions of the walls of a corner along x and y (-1 or 1), seen from inside.
+/// Direction of a room's corner along x and y, -1 or 1.
 struct Corner {
     float x, y;
 };
 constexpr std::array<Corner, 4> room_corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-/// Rounds to short decimals for compact files.
+/// Keeps the decimals in files short.
 Imath::V3d to_micrometres(const V3f& x) {
     const auto rounded = [](float coordinate) { return std::round(static_cast<double>(coordinate) * 1e6) / 1e6; };
     return {rounded(x.x), rounded(x.y), rounded(x.z)};
@@ -46,7 +46,7 @@ V2f middle_of_doorway(const FloorPlan& plan, const Room& room, Side side) {
     return along_x(side) ? V2f(along, room.wall(side)) : V2f(room.wall(side), along);
 }
 
-/// Cosine of the angle between the centre of a corner's picture and the nearest doorway; -1 without doorways.
+/// Returns the cosine of the angle from the view direction to the nearest doorway; -1 without doorways.
 float doorway_in_sight(const FloorPlan& plan, const Room& room, const Corner& corner) {
     const V2f eye = eye_in(room, corner), direction = (opposite_corner(room, corner) - eye).normalized();
     float best = -1;

@@ -10,10 +10,10 @@ namespace interflect::detail::building {
 
 namespace {
 
-/// Corners of an opening in a wall, in order: low and high end at the floor, high and low end at the top.
+/// Corners of an opening: low and high end at the floor, then high and low end at the top.
 using DoorFrame = std::array<std::uint32_t, 4>;
 
-/// Coordinates that divide the walls of a room along one axis: its ends and doorway edges.
+/// Returns the ends and doorway edges of two opposite walls, ascending.
 std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side side) {
     const Interval& extent = room.along(side);
     std::vector<float> lines{extent.low, extent.high};
@@ -27,7 +27,7 @@ std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side 
     return lines;
 }
 
-/// A room as a box with equal dividing lines on opposite faces.
+/// A box whose opposite faces are divided alike, so the surface has no T-vertices.
 class RoomShell {
   public:
     RoomShell(Scene& scene, const FloorPlan& plan, const Room& room, const Finish& finish, std::uint32_t object)
@@ -46,11 +46,11 @@ class RoomShell {
             for (const bool high : {false, true}) add_face(axis, high);
     }
 
-    /// Corners of the opening in each wall with a doorway; valid after add_faces().
+    /// Valid after add_faces().
     const std::array<DoorFrame, side_count>& frames() const { return frames_; }
 
   private:
-    using GridPoint = std::array<std::size_t, 3>;  // indices
+    using GridPoint = std::array<std::size_t, 3>;
 
     /// Adds the floor (axis z, low), a wall or the ceiling.
     void add_face(int axis, bool high) {
@@ -70,9 +70,9 @@ class RoomShell {
         };
         // Counter-clockwise about +axis.
         std::array<std::uint32_t, 4> corners{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
-        const auto side = static_cast<Side>(axis + (high ? 2 : 0));  // of a wall
+        const auto side = static_cast<Side>(axis + (high ? 2 : 0));
         if (axis < 2 && is_opening(side, cell)) {
-            // A frame starts along the wall: u for walls along y, v for walls along x.
+            // DoorFrame starts along the wall: u for walls along y, v for walls along x.
             frames_[side] = along_x(side) ? DoorFrame{corners[0], corners[3], corners[2], corners[1]} : corners;
             return;
         }
@@ -101,12 +101,12 @@ class RoomShell {
     const Room& room_;
     const Finish& finish_;
     std::uint32_t object_;
-    std::array<std::vector<float>, 3> lines_;  // in x, y and z
-    std::vector<std::uint32_t> vertices_;      // of the grid, made on demand
+    std::array<std::vector<float>, 3> lines_;  // along x, y and z
+    std::vector<std::uint32_t> vertices_;
     std::array<DoorFrame, side_count> frames_{};
 };
 
-/// Adds threshold, jambs and soffit between the openings in the two faces of a wall.
+/// Adds threshold, jambs and soffit of a doorway.
 void add_passage(Scene& scene, const Doorway& doorway, const std::array<DoorFrame, 2>& frames, const Finish& finish,
                  std::uint32_t object) {
     const auto& [near, far] = frames;

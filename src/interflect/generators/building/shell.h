@@ -11,11 +11,9 @@ struct Finish {
     std::uint32_t wall = 0, floor = 0, ceiling = 0;
 };
 
-/// Adds floors, walls, ceilings and the insides of doorways: one closed surface of one-sided faces lit from inside,
-/// without T-vertices. Every edge belongs to exactly two patches, in opposite directions. Faces are divided only at the
-/// edges of doorways. Objects are named "room-0.shell" and so on; a doorway belongs to its first room, with that room's
-/// materials.
-/// @param finishes  One for each room.
+/// Adds floors, walls, ceilings and the insides of doorways as one closed surface of inward faces, without T-vertices,
+/// divided only at doorway edges. Objects are named "room-0.shell" and so on; a doorway belongs to its first room.
+/// @param finishes  One per room.
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
 
 }  // namespace interflect::detail::building

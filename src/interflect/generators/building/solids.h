@@ -6,16 +6,14 @@
 
 namespace interflect::detail::building {
 
-/// Distance between solids, and between solids and walls [m]; prevents coincident faces. Exceeds
-/// RayCaster::ray_offset() in the largest generated scenes (2.5 mm at 330 m from the origin), so rays from an underside
-/// start above the surface below.
+/// Distance between solids, and from solids to walls [m]. Exceeds RayCaster::ray_offset() in the largest generated
+/// scenes (2.5 mm at 330 m from the origin), so rays from an underside start above the surface below.
 inline constexpr float gap = 0.004f;
 
-/// An origin on the floor and a rotation about the vertical.
 class Placement {
   public:
     Placement() = default;
-    /// @param quarter_turns  Counter-clockwise seen from above; exact.
+    /// @param quarter_turns  Counter-clockwise from above; exact.
     static Placement quarter_turned(const V3f& origin, int quarter_turns);
     static Placement turned(const V3f& origin, float radians);
 
@@ -29,23 +27,22 @@ class Placement {
     float cosine_ = 1, sine_ = 0;
 };
 
-/// Adds closed solids of six one-sided faces, which face outwards and have their own eight vertices.
+/// Adds solids of six one-sided outward faces with their own eight vertices.
 class Solids {
   public:
     Solids(Scene& scene, const Placement& placement, std::uint32_t object)
         : scene_(&scene), placement_(placement), object_(object) {}
 
-    /// Solids at a placement relative to this one.
     Solids at(const V3f& local, float radians = 0) const {
         return Solids(*scene_, placement_.at(local, radians), object_);
     }
 
-    /// @param low, high  Opposite corners, low < high in each coordinate.
+    /// @param low, high  Opposite corners; low < high per coordinate.
     /// @param underside  Material of the lower face, if different.
     void box(const V3f& low, const V3f& high, std::uint32_t material,
              std::optional<std::uint32_t> underside = std::nullopt) const;
 
-    /// A box with its top scaled by `top_scale` > 0 about the vertical axis.
+    /// @param top_scale  Scale of the top about the vertical axis, > 0.
     void tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) const;
 
   private:
