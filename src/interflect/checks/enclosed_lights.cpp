@@ -21,13 +21,13 @@ constexpr std::uint64_t segments_per_path = 16;
 constexpr std::uint64_t seed_of_reflections = 51, seed_of_faces = 52, seed_of_volume = 53, seed_of_starts = 54,
                         seed_of_choices = 55;
 
-/// Points just before the surfaces that a path meets, and whether the path stays in the scene.
+/// Points just before the hit surfaces, and whether the path stays in the scene.
 struct Path {
     std::vector<V3f> points;
     bool stays = true;
 };
 
-/// Paths that all surfaces reflect, and panes transmit. Their connections show which points share a space.
+/// All surfaces reflect and panes transmit: paths connect points of one space.
 class Paths {
   public:
     Paths(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines)
@@ -50,7 +50,7 @@ class Paths {
         return path;
     }
 
-    /// Whether a path from x sees one of the lit points, or leaves a scene under a sky.
+    /// Whether a path from x sees a lit point, or leaves a scene with a sky.
     bool is_lit(const V3f& x, std::span<const V3f> lit, bool has_sky) const {
         constexpr std::uint64_t paths = 16, segments = 8;
         for (std::uint64_t i = 0; i < paths; ++i) {
@@ -71,7 +71,6 @@ class Paths {
     const SightLines& lines_;
 };
 
-/// Space that light of a luminaire reaches.
 struct LitSpace {
     std::vector<V3f> points;
     Imath::Box3f box;
@@ -94,7 +93,7 @@ std::vector<LitSpace> lit_spaces(const LocalLights& lights, const Paths& paths) 
     return spaces;
 }
 
-/// Points that light of surfaces reaches, from at most 256 of them.
+/// From at most 256 emitting patches.
 std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray_caster, const Paths& paths) {
     constexpr std::size_t most = 256, all_paths = 256;
     std::vector<std::uint32_t> emitting;
@@ -116,7 +115,7 @@ std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray
     return points;
 }
 
-/// Whether a space is too narrow for a room, in a scene that is not.
+/// Whether a space is too narrow for a room, unlike the scene.
 bool is_narrow(const Imath::Box3f& space, const V3f& scene) {
     constexpr float narrow = 0.5f, least_room = 2;  // [m]
     const V3f size = space.size();
@@ -134,7 +133,6 @@ std::vector<V3f> views_inside(const Scene& scene, const SightLines& lines) {
     return eyes;
 }
 
-/// Random points in enclosed spaces.
 std::vector<V3f> enclosed_points(const Scene& scene, const SightLines& lines) {
     constexpr std::uint64_t count = 256;
     const Imath::Box3f box = core_bounds(scene);

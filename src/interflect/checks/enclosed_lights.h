@@ -9,16 +9,9 @@
 
 namespace interflect::detail {
 
-/// Finds "enclosed-luminaire" among point lights, spots and measured lights: no light of 8 to 64 paths of 16 segments,
-/// reflected independently of reflectance, leaves the scene, and no view lies in the space that the paths reach. That
-/// space is also too narrow for a room, or the rest of the scene is dark:
-/// - It is at most 0.5 m across and a tenth of the scene, or less than 0.5 m in one direction in a scene of at least 2
-/// m
-///   in each direction, such as the plenum above a ceiling.
-/// - No light of any source reaches a view inside the scene. Without such views, it reaches less than an eighth of the
-///   enclosed volume.
-/// Closed rooms with lamps of their own are sound. Traces at most 2^17 rays for the luminaires, and 2^17 for views or
-/// points in the volume.
+/// Finds "enclosed-luminaire" among point lights, spots and measured lights: their light stays in a space without
+/// views. The space is too narrow for a room, or all views inside the scene are dark. Without such views, seven eighths
+/// of the enclosed volume are dark. Traces at most 2^18 rays.
 std::vector<Finding> find_enclosed_lights(const Scene& scene, const RayCaster& ray_caster, const LocalLights& lights,
                                           const SightLines& lines, std::size_t places);
 

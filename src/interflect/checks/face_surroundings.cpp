@@ -32,7 +32,6 @@ Hit first_hit(const RayCaster& ray_caster, const Ray& ray) {
 FaceSurroundings::FaceSurroundings(const Scene& scene, const RayCaster& ray_caster)
     : scene_(scene), ray_caster_(ray_caster), scene_size_(core_bounds(scene).size().length()) {}
 
-/// Cosine-distributed about the normal.
 V3f FaceSurroundings::direction(const V3f& normal, std::uint64_t index) const {
     const auto words = random_words(seed_of_surroundings, index);
     const float radius = std::sqrt(unit_float(words[0])), angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);

@@ -11,20 +11,19 @@ enum class Side { front, back };
 
 /// Fractions of the rays that leave a side of a face.
 struct Surroundings {
-    float blocked = 0;  ///< Hit an object closer than a tenth of the face's size.
+    float blocked = 0;  ///< Hit an object within a tenth of the face's size.
     float escaped = 0;  ///< Left the scene.
-    float one_way = 0;  ///< Hit an object from which no light returns along them (is_one_way()).
+    float one_way = 0;  ///< Hit an object from which no light returns (is_one_way()).
 };
 
-/// Samples surroundings of faces and lamps with cosine-distributed rays.
 class FaceSurroundings {
   public:
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
 
-    /// Traces 64 rays and back.
+    /// Traces 64 rays and their reversed rays.
     Surroundings look(std::uint32_t patch, Side side) const;
-    /// Whether light from this face, reflected eight times independent of reflectance, stays within a tenth of the
-    /// scene's size and within five times the lamp's size or 0.5 m. Traces 64 paths through glass.
+    /// Whether light stays close for eight reflections: within a tenth of the scene, and five times the lamp's size or
+    /// 0.5 m. Traces 64 paths through glass, regardless of reflectance.
     bool is_enclosed(std::uint32_t patch) const;
 
   private:

@@ -11,10 +11,9 @@
 
 namespace interflect::detail {
 
-/// Counts findings of one kind and keeps the first places.
+/// Counts findings; keeps the first places.
 class Finder {
   public:
-    /// @param places  Maximum number of places to keep.
     Finder(const Scene& scene, std::size_t places, Finding finding)
         : scene_(scene), places_(places), finding_(std::move(finding)) {}
 

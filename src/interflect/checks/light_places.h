@@ -11,8 +11,7 @@
 namespace interflect::detail {
 
 /// Finds "close-luminaire", "outside-luminaire", "wide-opening" and "mixed-photometry" among point lights, spots and
-/// measured lights. Traces 256 rays per luminaire, and at most 64 x 66 for the opening of a luminaire.
-/// @param shell  Of the scene.
+/// measured lights. Traces at most 256 rays per luminaire, and 64 x 66 for its opening.
 std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights& lights, const SightLines& lines,
                                            const Shell& shell, std::size_t places);
 

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t most_lights = 1024;
 constexpr std::uint64_t seed_of_light = 31;
 
-/// Measured light starts this fraction of the scene's largest coordinate before its opening (Emission), where it may
-/// miss a ceiling just below. The checks start at an eighth: 16 roundings.
+/// Offsets relative to the largest coordinate. Measured light starts outside its opening (Emission), perhaps beyond a
+/// close ceiling. Checks start closer: 16 roundings.
 constexpr float start_offset = 0x1p-17f, checked_offset = 0x1p-20f;
 
 bool is_local(const Luminaire& luminaire) {
@@ -37,7 +37,7 @@ Pose pose_of(const Luminaire& luminaire) {
     return {measured.position, measured.direction.normalized()};
 }
 
-/// At most `most_lights` luminaires, and a triangle with the bounding box of the scene.
+/// Includes a triangle with the scene's bounding box.
 Scene sample_of_lights(const Scene& scene) {
     Imath::Box3f box;
     for (const Patch& patch : scene.patches)

@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// Point lights, spots and measured lights of a scene that emit, at most 1024 of them, and 256 rays of each,
-/// distributed by its intensities. The scene must have patches.
+/// Emitting point lights, spots and measured lights of a non-empty scene, at most 1024, with rays distributed by
+/// intensity.
 class LocalLights {
   public:
     explicit LocalLights(const Scene& scene);
@@ -20,10 +20,9 @@ class LocalLights {
     std::size_t size() const { return luminaires_.size(); }
     const Luminaire& luminaire(std::size_t i) const { return luminaires_[i]; }
     V3f position(std::size_t i) const;
-    /// A point just before the surface that contains the luminaire.
+    /// Returns a point just before the surface that contains the luminaire.
     V3f before(std::size_t i) const;
-    /// Rays of measured light start in its opening, each further along its direction by an eighth of the offset that
-    /// Emission uses. Consecutive groups of equal size belong to parts of equal power.
+    /// Rays of measured light start in its opening (checked_offset). Consecutive groups of equal size have equal power.
     std::span<const Ray> rays(std::size_t i) const { return {rays_.data() + i * rays_per_light, rays_per_light}; }
 
   private:

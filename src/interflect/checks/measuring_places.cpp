@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t most_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
 
-/// Distance of rays from a surface on which the point lies.
 float offset_of_points(const Scene& scene) {
     constexpr float relative_offset = 0x1p-17f;  // as in measure_irradiance()
     float reach = 0;

@@ -9,28 +9,26 @@ namespace interflect::detail {
 
 /// Peak memory of a run [bytes].
 struct MemoryNeed {
-    std::size_t scene = 0;       ///< Vertices, patches, materials, textures and names.
-    std::size_t ray_tracer = 0;  ///< Embree's structures, and the list of coincident faces.
-    std::size_t patches = 0;     ///< Data per patch, without elements.
+    std::size_t scene = 0;
+    std::size_t ray_tracer = 0;  ///< Includes coincident faces.
+    std::size_t patches = 0;     ///< Without elements.
     std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
-    /// Bytes per element: tree 11, H 12, importance 8, history and noise 8, consumed points 8, result of the pass 16,
-    /// unshot radiosity and its importance 16, contributions 40 or received values 16, points that reflect 5; measured
-    /// 127 to 129.
+    /// Bytes: tree 11, H 12, importance 8, history and noise 8, consumed points 8, pass result 16, unshot radiosity and
+    /// importance 16, contributions 40 or received values 16, reflecting points 5. Measured: 127 to 129.
     std::size_t per_element = 132;
-    /// Additional bytes with textures: three colours, and an index for four siblings.
+    /// Bytes of three colours, and of an index for four siblings.
     static constexpr std::size_t per_textured_element = 37;
-    /// Bytes for H, unshot light and result of the pass, 12 each, and contributions 24 or received light 12.
+    /// Bytes: H, unshot light and pass result, 12 each, and contributions 24 or received light 12.
     static constexpr std::size_t per_element_and_group = 60;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
 };
 
-/// Excludes the links of hr, 24 bytes each.
+/// Excludes links of method hr, 24 bytes each.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
 
-/// @return Number of elements that fit.
 /// @throws InputError with the required memory if the patches do not fit.
 std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
 

@@ -5,9 +5,7 @@
 
 namespace interflect::detail {
 
-/// Whether light does not return along a ray: the ray has passed the back of a one-sided face, which blocks the
-/// reversed ray.
-/// @param hit  First hit of the ray.
+/// Whether a ray passes the back of a one-sided face, which blocks the reversed ray. @param hit  First hit.
 bool is_one_way(const Scene& scene, const RayCaster& ray_caster, const Ray& ray, const Hit& hit);
 
 }  // namespace interflect::detail

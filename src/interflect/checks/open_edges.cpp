@@ -8,7 +8,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// For each vertex the first one at its position.
 std::vector<std::uint32_t> first_at_position(const Scene& scene) {
     const auto position = [&](std::uint32_t i) {
         const V3f& x = scene.vertices[i];

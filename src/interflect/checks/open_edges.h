@@ -13,7 +13,7 @@ struct OpenEdge {
     std::uint32_t patch = none;
 };
 
-/// In order of the patches. Merges vertices at one position, regardless of texture coordinates. O(n log n).
+/// Sorts by patch. Merges vertices at equal positions. O(n log n).
 std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace interflect::detail

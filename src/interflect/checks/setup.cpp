@@ -47,14 +47,14 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
     findings.push_back(std::move(found.front()));
 }
 
-/// Formats without units and up axis.
+/// These formats specify neither unit nor up axis.
 bool is_bare_mesh(const Scene& scene) {
     const std::string extension = std::filesystem::path(scene.name).extension().string();
     constexpr std::string_view bare[] = {".obj", ".ply", ".stl", ".OBJ", ".PLY", ".STL"};
     return std::find(std::begin(bare), std::end(bare), extension) != std::end(bare);
 }
 
-/// Whether 99 of 100 coordinates of at least 8 vertices are integers. Meshes in metres have fractions.
+/// Meshes in metres have fractional coordinates.
 bool has_integer_coordinates(const Scene& scene) {
     constexpr std::size_t least_vertices = 8;
     if (scene.vertices.size() < least_vertices) return false;

@@ -32,7 +32,7 @@ bool SightLines::is_clear(const V3f& a, const V3f& b) const {
         const Hit hit = first_surface({from, (to - from) / length});
         return hit.patch == none || hit.distance > (1 - rounding) * length;
     };
-    // A surface within the rounding before one end is found from that end.
+    // Rounding hides surfaces close to the target; the reverse ray finds them.
     return !(length > 0) || (reaches(a, b) && reaches(b, a));
 }
 

@@ -6,28 +6,27 @@
 
 namespace interflect::detail {
 
-/// Straight lines through a scene that pass through panes. Random directions depend on key and index alone.
+/// Rays that pass panes. Random directions depend on key and index alone.
 class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// First hit that is not a pane, with its distance from the start.
+    /// Returns the first hit that is not a pane, with its distance from the start.
     Hit first_surface(const Ray& ray) const;
 
-    /// Whether nothing but panes lies between two points, in either direction.
+    /// Whether only panes separate two points, in either direction.
     bool is_clear(const V3f& a, const V3f& b) const;
 
     struct Outlook {
-        int escaped = 0, met = 0;  ///< Rays that left the scene; rays that hit a surface.
-        float distance = 0;        ///< Sum over the rays that hit a surface [m].
+        int escaped = 0, met = 0;  ///< Rays that left the scene, and rays that hit a surface.
+        float distance = 0;        ///< Sum over hits [m].
     };
     static constexpr int rays_per_point = 32;
-    /// Traces cosine-distributed rays from a point just before a surface, until more than `most_escaped` have escaped.
+    /// Traces rays from a point just before a surface until more than `most_escaped` escape.
     Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
-    /// Whether at least a quarter of all directions escape. True outside a closed scene (Shell), false inside.
+    /// Whether a quarter of all directions escape: true outside a closed scene, false inside.
     bool is_open(const V3f& x) const;
 
-    /// Uniform over the sphere; cosine-distributed about a normal.
     static V3f uniform_direction(std::uint64_t key, std::uint64_t index);
     static V3f cosine_direction(const V3f& normal, std::uint64_t key, std::uint64_t index);
 

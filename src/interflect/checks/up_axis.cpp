@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum cosine between a direction and its axis; minimum fraction of evidence for an axis.
+/// Minimum cosine to an axis, and minimum share of evidence.
 constexpr double least_cosine = 0.9, least_agreement = 0.5;
 
 constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
@@ -47,7 +47,7 @@ const char* axis_of_light(const Scene& scene) {
     return axis_of(sum, total);
 }
 
-/// Bounding boxes of patches with equal part_of(patch), below `parts`.
+/// Groups patches by part_of(patch) < parts.
 template <class PartOf>
 std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, const PartOf& part_of) {
     std::vector<Imath::Box3f> boxes(parts);
@@ -60,7 +60,7 @@ std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, 
 
 constexpr std::size_t least_objects = 4;
 
-/// Bounding boxes of the objects. Fewer than four objects are divided into connected faces.
+/// Divides fewer than four objects into connected faces.
 std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
     std::vector<Imath::Box3f> boxes =
         boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
@@ -72,15 +72,13 @@ std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
                           [&](const Patch& patch) { return connected.find(patch.vertices[0]); });
 }
 
-/// Whether a box is thin along an axis, such as a picture along the normal of its wall.
 bool is_thin(const Imath::Box3f& box, int axis) {
     constexpr float thin = 0.25f;  // pictures and radiators; tables and beds are higher
     const V3f size = box.size();
     return size[axis] < thin * std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }
 
-/// Per axis and direction: fraction of objects that start within a hundredth of the scene's size of its lower end and
-/// are not thin along the axis, as things on a wall are. All 0 for fewer than four objects.
+/// Per axis and direction: share of objects on the scene's lower end that are not thin.
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};
@@ -100,8 +98,7 @@ std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     return shares;
 }
 
-/// Whether a scene is lower along an axis than along the others. Corridors may be narrower than high, so that elongated
-/// scenes must be half as low.
+/// Corridors may be narrower than high, so elongated scenes must be flatter.
 bool is_flat(const V3f& extent, int axis) {
     constexpr float flat = 0.8f, elongated_flat = 0.5f;  // rooms of 4 x 5 x 3 m; corridors of 30 x 2.2 x 3 m
     constexpr float elongated = 4;

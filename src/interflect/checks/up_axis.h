@@ -12,13 +12,11 @@ struct UpAxis {
     const char* evidence;  ///< "views": nearly certain; "light": a guess.
 };
 
-/// Common up axis of the views, or the direction opposite to most emitted light, since most lamps hang.
+/// Returns the common up axis of the views, or the direction opposite to most emitted light: most lamps hang.
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 
-/// An axis other than z that is probably up, or null if z may be right. No view may contradict it, and two of three
-/// criteria must hold: the light (find_up_axis); half of the objects stand on one floor (and fewer along z) and are not
-/// thin along the axis, as pictures on a wall are; extent of at most 0.8 of the others, or 0.5 in elongated scenes.
-/// Fewer than four objects are divided into connected faces.
+/// Returns a probable up axis other than z, or null, also if the views agree on one. Two of three criteria must hold:
+/// light (find_up_axis()), many objects on one floor, low extent.
 const char* find_other_up_axis(const Scene& scene);
 
 }  // namespace interflect::detail

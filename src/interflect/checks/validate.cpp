@@ -97,8 +97,8 @@ class Validator {
         return result;
     }
 
-    /// One-sided faces whose front sees only the void and whose back sees only the scene, from which light reaches it.
-    /// Light does not reach the back of the bottom of a solid, or of the outer face of a thick wall.
+    /// Finds faces with the void in front, and with the scene and its light behind. Excludes bottoms of solids and
+    /// outer faces of thick walls.
     void add_inverted_faces() {
         Finder inverted = finder("inverted-face", "one-sided faces have the scene behind them and nothing before them",
                                  "turn them round: reverse the order of their vertices");

@@ -21,17 +21,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view signature = "interflect checksums\n";
-/// Range name of all other bytes.
+/// Range name of unnamed bytes.
 constexpr const char* structure = "structure";
 /// Eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
 
-/// Returns the block's last line: the checksum of the rest.
 std::string own_checksum(std::string_view block) {
     return text_of_crc32(crc32(block.substr(0, checked_length))) + "\n";
 }
 
-/// Returns nullopt if the file ends before the range.
 std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& range) {
     std::array<char, 1 << 18> buffer;
     std::uint32_t checksum = 0;
@@ -53,8 +51,7 @@ std::string_view checked_name(std::string_view name) {
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Merges neighbouring numbered arrays of one group into one range, since the block may not have room for all.
-/// @param ranges  In file order.
+/// Joins numbered arrays of one group, since the block has limited room. @param ranges  In file order.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {
@@ -67,7 +64,7 @@ std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges
     return joined;
 }
 
-/// Fills the gaps between the ranges. The result covers [checksum_block_size, size) once, in file order.
+/// Fills the gaps: the result covers [checksum_block_size, size) in file order.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
     ranges = with_numbered_joined(ranges);

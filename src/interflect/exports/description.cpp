@@ -14,9 +14,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// First version with escaped names, options, result, files and version of Interflect.
+/// First version with escaped names, options and result.
 constexpr int first_with_options = 4;
-/// First version with checksums of the input files and all iterations.
+/// First version with checksums of input files and all iterations.
 constexpr int first_with_history = 5;
 
 Json json_of_files(const Scene& scene) {
@@ -69,7 +69,7 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
     }
     if (json.contains("textures")) scene.textures = textures_of(json.at("textures"));
     const auto webs = webs_of(json.value("photometric_webs", Json::array()));
-    MapImages maps;  // texels are not stored
+    MapImages maps;
     for (Texture& image : textures_of(json.value("environment_maps", Json::array())))
         maps.push_back(std::make_shared<Texture>(std::move(image)));
     if (json.contains("luminaires"))
@@ -81,7 +81,7 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
     if (json.contains("files")) read_files(json.at("files"), format_version, scene);
 }
 
-/// Reads the result; old files contain only the number of rays.
+/// Old files contain only the number of rays.
 void read_result(const Json& json, int format_version, Solution& solution) {
     IterationReport& last = solution.iterations.emplace_back();
     if (format_version >= first_with_history && json.at("history").get<std::vector<std::string>>() != report_columns())

@@ -7,12 +7,12 @@
 
 namespace interflect::detail {
 
-/// Returns all content of a solution file except long arrays, as JSON (docs/solution-file.md).
+/// Returns a solution file's content except long arrays, as JSON (docs/solution-file.md).
 /// @throws std::runtime_error if a number is not finite.
 std::string describe(const Scene& scene, const Solution& solution, int format_version);
 
-/// Parses describe() into `solved`. @return  Whether the file contains importance.
-/// @throws std::exception for missing or unknown values and for other versions.
+/// Parses describe(); returns whether the file contains importance.
+/// @throws std::exception for missing or unknown values and other versions.
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version, SolvedScene& solved);
 
 }  // namespace interflect::detail

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Divides a colour by its largest channel if that exceeds 1; clamping would shift its chromaticity.
+/// Scales a colour to a largest channel of at most 1. Clamping would shift its chromaticity.
 inline Rgb within_display_range(const Rgb& colour) { return colour / std::max(1.0f, largest_channel(colour)); }
 
 }  // namespace interflect::detail

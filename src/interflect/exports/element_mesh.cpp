@@ -23,7 +23,7 @@ struct PositionHash {
     }
 };
 
-/// Merging distance [m], the same as for smooth surfaces.
+/// Merging distance [m], as for smooth surfaces.
 float joining_distance(const Scene& scene) {
     constexpr float relative = 0x1p-20f;
     float largest = 0;

@@ -49,8 +49,7 @@ class Surroundings {
         return hit.patch == none || !is_dark_[hit.patch] ||
                scene_.materials[scene_.patches[hit.patch].material].transmittance != Rgb(0);
     }
-    /// Traces the reverse of a ray from its hit point. Only fronts of one-sided faces stop it.
-    /// @return  Distance from the ray's origin to the end of the reverse [m]; about 0 if nothing stopped it.
+    /// Traces the reversed ray. @return  Distance from the patch to its obstacle [m]; about 0 without obstacle.
     float distance_from_patch(const Ray& ray, const Hit& hit, float distance) const {
         const float start = hit.patch == none ? distance : distance - ray_caster_.ray_offset(hit.patch);
         const Ray back{ray.origin + start * ray.direction, -ray.direction};

@@ -20,7 +20,6 @@ struct FlatPatch {
     std::array<Imath::V2d, 4> corners{};  ///< In the patch's vertex order.
 
     std::span<const Imath::V2d> outline() const { return {corners.data(), static_cast<std::size_t>(count)}; }
-    /// Returns the position of a point of the patch.
     Imath::V2d point(Parameters p) const;
     Imath::V2d centre() const { return point(count == 3 ? Parameters{1.0f / 3, 1.0f / 3} : Parameters{0.5f, 0.5f}); }
     double signed_area() const;  ///< Positive if counter-clockwise.
@@ -32,8 +31,8 @@ using FlatPatches = std::vector<FlatPatch>;
 /// Projects coplanar patches to their plane [m], counter-clockwise seen from the lit side.
 FlatPatches projected(const Scene& scene, std::span<const std::uint32_t> patches);
 
-/// Returns the largest gap between two convex outlines along an edge normal: a lower bound of their distance, negative
-/// if they overlap.
+/// Returns a lower bound of the distance between convex outlines: the largest gap along an edge normal, negative if
+/// they overlap.
 double separation(const FlatPatch& a, const FlatPatch& b);
 
 }  // namespace interflect::detail

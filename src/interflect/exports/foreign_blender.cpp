@@ -237,7 +237,6 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, cons
     return "";
 }
 
-/// Returns the direction of a point of an equirectangular image in Cycles.
 V3f equirectangular_direction(float x, float y) {
     const float azimuth = (0.5f - x) * 2 * pi, polar = pi * y;
     return {std::cos(azimuth) * std::sin(polar), std::sin(azimuth) * std::sin(polar), std::cos(polar)};

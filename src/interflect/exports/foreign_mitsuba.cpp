@@ -113,7 +113,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
     return "";
 }
 
-/// Returns the direction of a point of an 'envmap': left edge -z, +x a quarter to the right, upper edge +y.
+/// Mapping of 'envmap': left edge -z, +x a quarter to the right, upper edge +y.
 V3f envmap_direction(float x, float y) {
     const float azimuth = 2 * pi * x, polar = pi * y;
     return {std::sin(azimuth) * std::sin(polar), std::cos(polar), -std::cos(azimuth) * std::sin(polar)};

@@ -1,4 +1,4 @@
-// Radiance (Ward 1994) uses W/(m^2 sr); photometric values are 179 lm/W times the radiometric ones.
+// Radiance (Ward 1994) uses W/(m^2 sr): photometric values divided by 179 lm/W.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace for_radiance {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-constexpr float efficacy = 179;        // by definition of Radiance [lm/W]
-constexpr float lamp_radius = 0.005f;  // of spheres that replace point lights [m]
+constexpr float efficacy = 179;        // [lm/W]
+constexpr float lamp_radius = 0.005f;  // of spheres for point lights [m]
 
 std::string numbers(const V3f& v) { return "3 " + triple(v); }
 
@@ -53,7 +53,7 @@ std::string polygon(const ForeignMesh& mesh, std::size_t face, bool is_reversed,
 }
 
 std::string mesh_text(ForeignScene& scene, const ForeignMesh& mesh) {
-    constexpr float offset = 1e-4f;  // between the sides of a face that both emit [m]
+    constexpr float offset = 1e-4f;  // between two emitting sides [m]
     std::string text = surface_text(scene, mesh);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         text += polygon(mesh, face, false, 0);

@@ -64,7 +64,7 @@ class Meshes {
     const Scene& scene_;
     const std::vector<std::string> names_;
     std::map<std::pair<std::uint32_t, Backs>, std::size_t> numbers_;
-    std::vector<Vertices> vertices_;  // per mesh, by vertex of the scene
+    std::vector<Vertices> vertices_;
 };
 
 std::vector<View> local_views(const Scene& scene) {

@@ -12,32 +12,30 @@
 
 namespace interflect::detail {
 
-/// Behaviour of the backs of faces.
 enum class Backs {
-    pass,     ///< One-sided: light passes.
-    reflect,  ///< Reflect like the fronts, but do not emit.
-    emit,     ///< Reflect and emit like the fronts.
+    pass,  ///< Transmit light: one-sided faces.
+    reflect,
+    emit,  ///< Reflect and emit like the fronts.
 };
 
-/// Faces of one material with equal behaviour of their backs.
 struct ForeignMesh {
     std::string name;
     std::uint32_t material = 0;
     Backs backs = Backs::pass;
     std::vector<V3f> positions;                       ///< Relative to Scene::origin [m].
     std::vector<V2f> texture_coordinates;             ///< One per position, or empty.
-    std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; `none` fills the fourth of triangles.
+    std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; triangles end with `none`.
 
     std::vector<std::array<std::uint32_t, 3>> triangles() const;
 };
 
-/// A scene prepared for another renderer, with the files to which its description refers.
+/// A scene prepared for another renderer.
 struct ForeignScene {
     const Scene& scene;
-    std::filesystem::path path;  ///< Path of the description.
+    std::filesystem::path path;
     SceneExportOptions options;
-    std::string (*escape)(std::string_view file_name);  ///< Escapes file names for the description.
-    std::vector<std::string> materials;                 ///< Unique names of materials.
+    std::string (*escape)(std::string_view file_name);
+    std::vector<std::string> materials;
     std::vector<std::string> luminaires;
     std::vector<ForeignMesh> meshes;
     std::vector<View> views;  ///< At least one, relative to Scene::origin.
@@ -49,38 +47,36 @@ struct ForeignScene {
 
     /// Adds a file "STEM-name" beside the description. @return  Its escaped name.
     std::string add_file(const std::string& name, std::string bytes);
-    /// Add a linear image of reflectance, radiance M / pi or transmittance. @return  Its escaped name.
+    /// Add a linear image; radiance is M / pi. @return  Its escaped name.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
     std::string add_transmittance_image(std::uint32_t material);
-    /// The same for opacity and the reflectance of the opaque part (opacity.h).
+    /// See opacity.h.
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
-    /// Adds one radiance image of all skies. @return  Its escaped name; empty without skies.
-    /// @param direction  Direction of an image point, x from the left and y from the top, in [0, 1].
+    /// Adds a radiance image of all skies. @return  Its escaped name; empty without skies.
+    /// @param direction  Maps image coordinates in [0, 1], y downwards.
     std::string add_sky_image(int width, int height, const std::function<V3f(float x, float y)>& direction);
 
     const Material& material(const ForeignMesh& mesh) const { return scene.materials[mesh.material]; }
     bool emits(const ForeignMesh& mesh) const { return material(mesh).exitance != Rgb(0); }
-    /// Returns M / pi, without texture.
     Rgb radiance(const ForeignMesh& mesh) const;
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// Warns about material properties that the renderer lacks, such as mirrors.
-    /// @param has_glass  Supports panes and one-sided faces.
-    /// @param has_holes  Supports textures of transmittance.
+    /// @param has_glass  The renderer supports panes and one-sided faces.
+    /// @param has_holes  The renderer supports transmittance textures.
     void warn_of_materials(bool has_glass, bool has_holes);
 };
 
 Rgb mean_texel(const Texture& texture);
 
-/// Encodes binary PLY with triangles and texture coordinates "u" and "v".
+/// Encodes binary PLY with texture coordinates "u" and "v".
 std::string ply_of(const ForeignMesh& mesh);
 
 /// Formats "0.5 0.25 1".
 std::string triple(const V3f& v, const char* between = " ");
 
-// Each returns the description and adds the files to which it refers.
+// Return the description and add its files to the scene.
 std::string radiance_description(ForeignScene& scene);
 std::string mitsuba_description(ForeignScene& scene);
 std::string pbrt_description(ForeignScene& scene);

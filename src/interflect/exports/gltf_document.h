@@ -17,25 +17,25 @@ class GltfDocument {
   public:
     GltfDocument();
 
-    /// Everything except the buffer; callers may add to it.
+    /// Excludes the buffer; callers may extend it.
     Json json;
 
     /// Appends an object to an array such as "materials". @return  Its index.
     int add(const char* array, Json object);
     void use_extension(const char* name);
 
-    /// Add an accessor of vertex attributes or indices. @return  Its index.
+    /// Add an accessor. @return  Its index.
     int add_positions(std::span<const V3f> values);  ///< Adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
 
-    /// Adds a texture and its image: 8-bit sRGB PNG, clamped to [0, 1]. @return  Index of the texture.
-    /// @param opacity  Alpha per pixel, in [0, 1]; no alpha channel if empty.
-    /// @param repeats  Repeats beyond [0, 1], with mipmaps; otherwise edge texels extend.
+    /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]. @return  Its index.
+    /// @param opacity  Alpha in [0, 1]; no alpha channel if empty.
+    /// @param repeats  Repeats, with mipmaps; otherwise extends edge texels.
     int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 
-    /// Return the file as GLB, or as JSON with embedded buffer. glb() throws InputError beyond 4 GiB.
+    /// Return GLB, or JSON with embedded buffer. glb() throws InputError beyond 4 GiB.
     std::string glb() const;
     std::string gltf() const;
 

@@ -29,18 +29,17 @@ struct MappedVertex {
 using MappedPrimitive = WeldedVertices<MappedVertex>;
 using MappedPrimitives = std::map<std::tuple<std::uint32_t, std::uint32_t, int>, MappedPrimitive>;
 
-/// A texel of 1 in the file stands for `scale`, in the unit of `content`.
+/// A texel of 1 in the file represents `scale`, in the unit of `content`.
 struct Encoding {
     LightmapContent content;
     float exposure;
     float scale = 1;
 
-    /// Factor from texels to display values.
     float intensity() const { return scale * std::exp2(exposure); }
 };
 
-/// Covers all texels, but at most eight times the irradiance at which white surfaces appear white, so the steps of 8
-/// bits remain invisible in the dark.
+/// Covers all texels, but at most eight times the irradiance at which white surfaces appear white, to hide 8-bit steps
+/// in dark areas.
 float scale_of(const std::vector<Image>& images, LightmapContent content, float exposure) {
     if (content == LightmapContent::radiance) return std::exp2(-exposure);
     constexpr float headroom = 8;
@@ -55,7 +54,7 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page) {
     return fmt::format("{}.lightmap-{}", path.stem().string(), page);
 }
 
-/// Uses numbers: group names may be invalid in file names.
+/// Uses numbers, since group names may be invalid in file names.
 std::string name_of_image(const std::filesystem::path& path, std::size_t page, std::size_t group) {
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
@@ -92,7 +91,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, Ele
     return primitives;
 }
 
-/// Uses TEXCOORD_0 for lightmaps of radiance, since their materials have no other texture.
+/// Lightmaps of radiance use TEXCOORD_0, since their materials have no other texture.
 Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, const std::vector<V3f>& points,
                      bool is_textured, LightmapContent content) {
     Json attributes;
@@ -107,7 +106,6 @@ Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, c
     return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
 }
 
-/// Adds emission as a factor of at most 1 and a strength.
 void add_emission(GltfDocument& document, Json& json, GltfTextures& textures, const Material& material,
                   float exposure) {
     const Rgb emitted = material.exitance * (std::exp2(exposure) / std::numbers::pi_v<float>);
@@ -131,7 +129,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
     } else {
         json["pbrMetallicRoughness"] = textures.diffuse(material);
         if (material.transmittance_texture != none) textures.cut_out(json, material);
-        // The default specular layer takes light from the diffuse one.
+        // The default specular layer would reduce diffuse light.
         json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
         document.use_extension("KHR_materials_specular");
         json["extensions"]["MOZ_lightmap"] = {
@@ -157,7 +155,7 @@ Json description_of(const Lightmap& lightmap, const Encoding& encoding, const st
               {"covered", lightmap.covered}}}};
 }
 
-/// Adds the unclamped images of each light group. @return  Their names, for the description.
+/// Adds unclamped images. @return  Description of the groups.
 Json add_groups(const std::filesystem::path& path, const Lightmap& lightmap, const std::vector<std::string>& names,
                 const std::string& extension, const std::string& quantity, std::vector<ExportedFile>& files) {
     Json groups = Json::array();

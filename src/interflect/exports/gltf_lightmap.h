@@ -8,9 +8,8 @@
 
 namespace interflect::detail {
 
-/// Adds a solved scene with lightmaps: irradiance as MOZ_lightmap of diffuse materials, at TEXCOORD_1, or radiance as
-/// base colour of unlit materials.
-/// @param path  Path of the glTF file. @return  The unclamped images beside it.
+/// Adds a solved scene with lightmaps: irradiance as MOZ_lightmap at TEXCOORD_1, or radiance of unlit materials.
+/// @return  Unclamped images beside the glTF file.
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesystem::path& path, const Scene& scene,
                                        const Solution& solution, const ExportOptions& options);
 

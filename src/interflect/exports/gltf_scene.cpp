@@ -16,7 +16,7 @@ namespace interflect::detail {
 namespace {
 
 Json json_of(const Imath::V3d& v) { return {v.x, v.y, v.z}; }
-/// Uses glTF's order: (x, y, z, w).
+/// In glTF's order (x, y, z, w).
 Json json_of(const Imath::Quatd& q) { return {q.v.x, q.v.y, q.v.z, q.r}; }
 
 double size_of(const Scene& scene) {
@@ -26,7 +26,7 @@ double size_of(const Scene& scene) {
     return bounds.size().length();
 }
 
-/// Rotates from glTF's camera, which looks along -z with y up and x right.
+/// Rotates from glTF's camera: view along -z, y up, x right.
 Imath::Quatd rotation_of(const View& view) {
     const Imath::V3d back = (view.eye - view.look_at).normalized();
     const Imath::V3d right = Imath::V3d(view.up).cross(back).normalized(), up = back.cross(right);

@@ -10,10 +10,10 @@
 
 namespace interflect::detail {
 
-/// Primitives by object of the scene.
+/// Primitives by object.
 using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
 
-/// Adds a root node, which rotates `up` to +y and restores the scene's origin, with the objects and views as children.
+/// Adds objects and views to a root node, which rotates `up` to +y and restores Scene::origin.
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up);
 
 /// Adds each texture once.
@@ -21,22 +21,20 @@ class GltfTextures {
   public:
     GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
 
-    /// Returns pbrMetallicRoughness with the reflectance and its image, if any.
     Json diffuse(const Material& material);
-    /// Stores transmittance as alpha of the base colour's texture, which it adds.
-    /// @param json  Material to complete. @param material  Has a texture of transmittance.
+    /// Adds a texture of reflectance and opacity. @param material  Has a transmittance texture.
     /// @param peak  Divisor of the reflectance.
     void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
-    /// Returns a reference to the texture divided by `peak`.
+    /// @param peak  Divisor of the texels.
     Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
 
   private:
     GltfDocument& document_;
     const Scene& scene_;
-    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // by texture and whether divided
+    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // keys: texture, whether divided
 };
 
-/// Moves the origin to the upper left corner, as in glTF.
+/// glTF's origin is the upper left corner.
 inline V2f gltf_coordinate(const V2f& coordinate) { return {coordinate.x, 1 - coordinate.y}; }
 
 }  // namespace interflect::detail

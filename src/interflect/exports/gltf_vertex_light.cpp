@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns whether the file keeps the material's image; its vertices then store the factor of the image.
+/// Whether the file keeps the material's texture; vertices then store its factor.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }
@@ -28,8 +28,7 @@ struct LitVertex {
     V2f coordinate;
 };
 
-/// Returns the largest value per channel of a material's image, 1 for black channels. The image in the file is divided
-/// by it, so vertex colours, at most 1, use their full range.
+/// Returns the largest texel per channel, 1 for black channels. Division by it gives vertex colours their full range.
 Rgb peak_of(const Scene& scene, const Material& material) {
     Rgb peak = material.transmittance_texture == none
                    ? largest_texel(scene.textures[material.reflectance_texture])
@@ -61,10 +60,9 @@ class VertexLight {
   private:
     const Scene& scene_;
     float scale_;
-    std::vector<Rgb> brightest_;  // per material that keeps its texture: reflectance of the brightest texel
+    std::vector<Rgb> brightest_;  // per textured material: reflectance of the brightest texel
 };
 
-/// Triangles of one object and material.
 using LitPrimitive = WeldedVertices<LitVertex>;
 
 Json write_primitive(GltfDocument& document, const LitPrimitive& primitive, const std::vector<V3f>& points,

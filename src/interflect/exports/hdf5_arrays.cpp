@@ -12,20 +12,19 @@ namespace interflect::detail {
 
 namespace {
 
-/// Maximum number of entries.
+/// [entries]
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
 constexpr const char* no_properties = "cannot make properties";
 
-/// Must be called first. Converts errors to exceptions and disables the exit handler, which crashes after a failed
-/// write.
+/// Must precede other HDF5 calls. Disables error output and the exit handler, which crashes after a failed write.
 void prepare_hdf5() {
     [[maybe_unused]] static const herr_t first_of_all = H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     errno = 0;
 }
 
-/// Returns the message for a full or failing disk; empty for other errors.
+/// Returns an empty text unless a disk is full or fails.
 std::string reason_of_disk() {
     const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
     return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
@@ -66,7 +65,7 @@ hid_t native_type<std::byte>() {
     return H5T_NATIVE_UCHAR;
 }
 
-/// Divides arrays into chunks of about 1 MB, which limits the memory of compression.
+/// Chunks of about 1 MB limit the memory of compression.
 void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     constexpr hsize_t most_rows = hsize_t{1} << 16;
     constexpr unsigned deflate_level = 4;  // 9 takes seven times as long for 2% less
@@ -77,7 +76,7 @@ void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     require(H5Pset_deflate(properties, deflate_level), "cannot compress an array");
 }
 
-/// @param compressed_size  Dimensions; empty for an uncompressed array.
+/// @param compressed_size  Empty for an uncompressed array.
 Hdf5Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                        std::span<const hsize_t> compressed_size = {}) {
     const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, no_properties);
@@ -119,7 +118,7 @@ void write_attribute_of_type(hid_t file, const std::string& group, const char* n
 
 herr_t refuse_other_files(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) { return -1; }
 
-/// Refuses external and virtual storage, which could refer to any file of the machine.
+/// External and virtual storage could refer to any file.
 void require_stored_here(hid_t set, const std::string& name) {
     const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose, "an array has no properties");
     if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
@@ -157,7 +156,6 @@ std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) co
     const int rank = H5Sget_simple_extent_ndims(space);
     if (rank != (columns == 1 ? 1 : 2)) throw std::runtime_error("array '" + name + "' has the wrong rank");
     H5Sget_simple_extent_dims(space, size.data(), nullptr);
-    // A damaged file may claim any size: allocate at most the stored size.
     hsize_t file_size = 0;
     require(H5Fget_filesize(file_, &file_size), "cannot tell the file's size");
     if (size[1] != columns || size[0] > largest_array / columns ||
@@ -202,7 +200,7 @@ template FileRange Hdf5Writer::write(const std::string&, std::span<const char>, 
 
 template <class T>
 void Hdf5Writer::write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns) {
-    if (numbers.empty()) {  // an empty array has no chunks
+    if (numbers.empty()) {
         write(name, numbers, columns);
         return;
     }

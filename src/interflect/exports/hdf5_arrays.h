@@ -15,10 +15,9 @@
 
 namespace interflect::detail {
 
-/// Owner of an HDF5 identifier.
 class Hdf5Handle {
   public:
-    /// @param what  Failed operation, for the std::runtime_error of an invalid `id`.
+    /// @throws std::runtime_error with the failed operation `what` for an invalid `id`.
     Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what);
     ~Hdf5Handle() { close_(id_); }
     Hdf5Handle(const Hdf5Handle&) = delete;
@@ -41,14 +40,13 @@ class Hdf5Lock {
 };
 
 /// Reads arrays of float, double, std::uint32_t, char or std::byte. Throws std::runtime_error, allocates at most the
-/// size of the file, and refuses arrays in other files (links, external or virtual storage).
+/// size of the file, and refuses data in other files.
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);
 
-    /// Returns whether a group or an array of this name exists.
     bool has(const std::string& name) const;
-    /// Reads rows; one-dimensional if `columns` is 1, otherwise two-dimensional.
+    /// The array is one-dimensional if `columns` is 1, otherwise two-dimensional.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
@@ -57,29 +55,26 @@ class Hdf5Reader {
     Hdf5Handle file_, links_;
 };
 
-/// Writes a new HDF5 file without time stamps: equal contents give equal bytes. Throws std::runtime_error. T is float,
-/// double, std::int64_t, std::uint32_t, std::uint8_t or, uncompressed, char.
+/// Writes a new HDF5 file; equal contents give equal bytes. Throws std::runtime_error. T is float, double,
+/// std::int64_t, std::uint32_t, std::uint8_t or, uncompressed, char.
 class Hdf5Writer {
   public:
-    /// @param user_block  Unused bytes at the beginning.
+    /// @param user_block  Unused initial bytes.
     Hdf5Writer(const std::filesystem::path& path, std::uint64_t user_block);
     /// Writes to memory, for image().
     Hdf5Writer();
 
-    /// Writes rows of `columns` numbers. @return  Position in the file.
+    /// @return  Position in the file.
     template <class T>
     FileRange write(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
-    /// Compresses chunks without loss (shuffle and deflate).
     template <class T>
     void write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
-    /// Add integers, or ASCII text of fixed length, to a group.
     void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
     void write_attribute(const std::string& group, const char* name, std::string_view text);
-    /// Writes the parts as one array.
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
     /// Must be the last call.
     void flush();
-    /// Returns the bytes of a file in memory. Must be the last call.
+    /// Returns the file in memory. Must be the last call.
     std::string image();
 
   private:

@@ -8,19 +8,16 @@ namespace interflect::detail {
 
 using Json = nlohmann::ordered_json;
 
-/// Serialises JSON with escaped() strings, since names are bytes of unknown encoding. JSON has no NaN or infinity; null
-/// means a missing value.
-/// @param indent  Spaces per level; -1 for a single line.
+/// Encodes strings by escaped(), since names are bytes of unknown encoding. @param indent  -1 for a single line.
 /// @throws std::runtime_error naming a number that is not finite.
 std::string json_text(Json json, int indent = -1);
 
 /// Inverse of json_text(). @throws nlohmann::json::exception
 Json parse_json_text(std::string_view text);
 
-/// Returns a double with the fewest digits that identify `value`: 0.1f is 0.1, not 0.10000000149011612.
+/// Returns the double with the fewest digits that identify `value`: 0.1f becomes 0.1.
 double shortest_number(float value);
 
-/// Uses shortest_number() for floats.
 template <class Vector>
 Json json_of(const Vector& v) {
     if constexpr (std::is_same_v<decltype(Vector::x), float>)

@@ -31,10 +31,10 @@ namespace {
 struct TexelPlace {
     std::uint32_t patch = none;
     Parameters at;
-    bool is_inside = false;  // the texel's centre is on the patch
+    bool is_inside = false;
 };
 
-/// Finder of the nearest points on a chart's patches, in its plane.
+/// Finds nearest points in the chart's plane.
 class NearestPatch {
   public:
     explicit NearestPatch(const LightmapChart& chart) : patches_(chart.patches) {
@@ -94,7 +94,6 @@ V3f nearest_on_segment(const V3f& a, const V3f& b, const V3f& x) {
     return a + along * std::clamp((x - a).dot(along) / along.length2(), 0.0f, 1.0f);
 }
 
-/// Finds the nearest point of a patch. @param x  In the patch's plane.
 Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const V3f& x) {
     const std::array<Parameters, 4> corners = geometry.is_triangle()
                                                   ? std::array<Parameters, 4>{{{0, 0}, {1, 0}, {0, 1}, {0, 1}}}
@@ -115,7 +114,7 @@ Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const
     return geometry.parameters_of(is_inside ? x : nearest);
 }
 
-/// Moves a point inwards, to at least `distance` from the border or less for narrow patches.
+/// Moves a point to at least `distance` from the border, or less for narrow patches.
 Parameters inset(const PatchGeometry& geometry, Parameters p, float distance) {
     const auto& shape = geometry.shape();
     const auto share = [&](const V3f& edge) { return std::min(distance / edge.length(), 0.25f); };
@@ -151,7 +150,7 @@ class IrradianceSource {
         return values;
     }
 
-    /// Gathers slightly inside the patches: rays from the foot of a wall would start in its plane.
+    /// Starts rays inside the patches: at the foot of a wall, they would start in its plane.
     std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
         constexpr float distance = 0.05f;  // [texels]
         std::vector<MeasuringPoint> points;
@@ -193,7 +192,6 @@ Rgb content_of(const Scene& scene, const TexelPlace& place, const Rgb& irradianc
     return radiosity / std::numbers::pi_v<float>;
 }
 
-/// Lists the texels row by row, with gutters.
 std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     const NearestPatch nearest(chart);
     const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
@@ -254,7 +252,7 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-/// Converts the progress of a part to that of `whole`, to which it refers.
+/// Keeps a reference to `whole`.
 Monitor part_of(const Monitor& whole, std::size_t part, std::size_t count) {
     Monitor monitor = whole;
     if (whole.on_progress)
@@ -265,7 +263,7 @@ Monitor part_of(const Monitor& whole, std::size_t part, std::size_t count) {
     return monitor;
 }
 
-/// Evaluates each light group with all other sources dark. Gathered lightmaps and their sum agree including noise.
+/// Evaluates each light group alone. The lightmap is their sum, including noise.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
     SourceGroups groups = source_groups(scene);
@@ -279,7 +277,7 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         share.groups.clear();
         ExportOptions of_group = options;
         of_group.monitor = part_of(options.monitor, g, groups.size());
-        lightmap.groups.push_back(lightmap.images);  // black
+        lightmap.groups.push_back(lightmap.images);
         texels.evaluate(alone, IrradianceSource(alone, share, of_group), lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
@@ -289,13 +287,11 @@ double texels_of(const LightmapChart& chart, int gutter) {
     return static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
 }
 
-/// @param texels            All images.
-/// @param texels_of_charts  All charts with their gutters.
-/// @param groups            Light groups of the solution.
+/// @param texels  Of all images. @param texels_of_charts  With gutters.
 void require_memory(double texels, double texels_of_charts, const LightmapOptions& options, std::size_t groups) {
-    // Per texel of an image: the image, a copy to encode, the encoded bytes.
+    // Per image texel: image, copy to encode, encoded bytes.
     constexpr double image_bytes = sizeof(Rgb) + sizeof(Rgb) + 16, group_bytes = sizeof(Rgb) + sizeof(Rgb);
-    // Per texel of a chart: its place and its light.
+    // Per chart texel: place, target, light.
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + 16 + sizeof(Rgb),
                      gathered_bytes =
                          path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);

@@ -53,7 +53,7 @@ Packing pack(std::vector<stbrp_rect> rectangles, int width, int height) {
     return packing;
 }
 
-/// Returns charts with gutters, their longer sides horizontal (`lying`) or vertical.
+/// @param lying  Makes the longer sides horizontal.
 std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen,
                                       int gutter, bool lying) {
     std::vector<stbrp_rect> rectangles;
@@ -65,7 +65,7 @@ std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, 
     return rectangles;
 }
 
-/// Finds the smallest packing over many widths. If all are incomplete, fills an image of full size.
+/// Returns the smallest packing over many widths, or fills an image of full size if none is complete.
 Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
                      int max_size) {
     constexpr std::size_t many_charts = 2000;
@@ -93,7 +93,6 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
     return lying.packed_area >= standing.packed_area ? lying : standing;
 }
 
-/// Rotates a chart by 90 degrees; charts are never mirrored.
 void turn(LightmapChart& chart) {
     for (FlatPatch& flat : chart.patches)
         for (Imath::V2d& corner : flat.corners) corner = {corner.y, chart.size.x - corner.x};

@@ -18,17 +18,17 @@ namespace interflect::detail {
 
 namespace {
 
-/// Gaps narrower than this separate charts [texels].
+/// Width of gaps that separate charts [texels].
 constexpr double narrow_gap = 2;
 
-/// An edge, or part of it, that no other patch continues.
+/// Edge, or part of an edge, without adjacent patch.
 struct BorderEdge {
     std::uint32_t patch;
     V3f a, b;
     V3f inwards;  // unit vector in the plane
 };
 
-/// Returns the joints within objects; each edge is paired with the first of its group.
+/// Keeps joints within objects; pairs each edge with the first of its group.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<std::uint32_t> first(smooth.edges.count, none);
@@ -46,7 +46,7 @@ Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     return joints;
 }
 
-/// Adjacency of patches on each side of flat surfaces, and their border edges.
+/// Adjacency of patches on each side of flat surfaces, and their border.
 class Neighbourhood {
   public:
     Neighbourhood(const Scene& scene, const Joints& joints)
@@ -63,7 +63,6 @@ class Neighbourhood {
             if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
     }
 
-    /// Identifies a side of a flat surface.
     std::uint64_t side(std::uint32_t p) const {
         const bool is_back = scene_.patches[p].other_side < p;
         return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
@@ -74,7 +73,7 @@ class Neighbourhood {
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
-    /// @param inner  Continued parts of the edge, in parameters along it.
+    /// @param inner  Parts of the edge with adjacent patches.
     void add_border(std::uint32_t edge, Intervals inner) {
         constexpr float rounding = 1e-5f;
         const Patch& patch = scene_.patches[edge / 4];
@@ -84,7 +83,7 @@ class Neighbourhood {
         const V3f inwards = PatchGeometry(scene_, patch).normal().cross(along).normalized();
         std::sort(inner.begin(), inner.end());
         inner.emplace_back(1.0f, 1.0f);
-        float end = 0;  // of the processed part
+        float end = 0;
         for (const auto& [low, high] : inner) {
             if (low > end + rounding) border_.push_back({edge / 4, start + end * along, start + low * along, inwards});
             end = std::max(end, high);
@@ -103,7 +102,6 @@ float distance(const V3f& x, const BorderEdge& edge) {
     return (x - edge.a - t * along).length();
 }
 
-/// Returns whether a gap of at most `width` separates two edges and their patches.
 bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     constexpr float opposite = -0.5f;
     if (!(e.inwards.dot(f.inwards) < opposite)) return false;
@@ -118,7 +116,6 @@ bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
     return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
 }
 
-/// @param border  All border edges on one side of a flat surface.
 void add_conflicts(std::span<const BorderEdge> border, float gap, ChartConflicts& conflicts) {
     const auto box_of = [](const BorderEdge& edge, float margin) {
         Imath::Box3f box(edge.a);
@@ -152,7 +149,6 @@ ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbour
     return conflicts;
 }
 
-/// Grows pieces of charts across neighbours without conflicts.
 std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>& shown,
                                      const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
     std::vector<std::uint32_t> chart(scene.patches.size(), none);
@@ -178,7 +174,7 @@ std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>
 
 using Points = std::vector<Imath::V2d>;
 
-/// Computes the hull counter-clockwise (Andrew's monotone chain, 1979).
+/// Andrew's monotone chain (1979); counter-clockwise.
 Points convex_hull(Points points) {
     std::sort(points.begin(), points.end(),
               [](const auto& a, const auto& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
@@ -198,11 +194,11 @@ Points convex_hull(Points points) {
 }
 
 struct Rectangle {
-    Imath::V2d corner, across;  // across is a unit vector; the other axis is at 90 degrees to it
+    Imath::V2d corner, across;  // unit vector along size.x
     Imath::V2d size;
 };
 
-/// Finds the smallest rectangle, which shares a side with an edge (Freeman and Shapira 1975).
+/// The smallest rectangle shares a side with an edge (Freeman and Shapira 1975).
 Rectangle smallest_rectangle(const Points& hull) {
     Rectangle best;
     double least = std::numeric_limits<double>::max();
@@ -232,7 +228,7 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
-/// @param patches  Their smallest coordinates must be 0.
+/// The smallest coordinates must be 0.
 LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     LightmapChart chart{std::move(patches), {0, 0}};
     for (const FlatPatch& flat : chart.patches)
@@ -244,7 +240,6 @@ LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     return chart;
 }
 
-/// Converts to the rectangle's frame: along it and down from its corner.
 FlatPatches moved_into(const Rectangle& rectangle, FlatPatches patches) {
     for (FlatPatch& flat : patches)
         for (Imath::V2d& corner : flat.corners) {

@@ -9,23 +9,20 @@
 
 namespace interflect::detail {
 
-/// Patches laid out in a plane, and their rectangle in a lightmap. Outermost texel centres lie on the rectangle's
-/// border, so interpolation is exact there.
+/// Patches in a plane, and their rectangle in a lightmap. The outermost texel centres lie on its border, where
+/// interpolation is exact.
 struct LightmapChart {
-    FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
-    Imath::V2d size;      ///< Size of the rectangle [m].
+    FlatPatches patches;  ///< From texel (0, 0) along columns and rows [m].
+    Imath::V2d size;      ///< [m]
     int columns = 2, rows = 2;
     int page = 0, left = 0, top = 0;  ///< Position of texel (0, 0).
 
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
 };
 
-/// Makes charts from an object's own layout (Scene::lightmap_coordinates) if usable. Otherwise unfolds smooth surfaces
-/// (unfolded()) and splits them at discontinuities of light. It separates the sides of gaps and contacts narrower than
-/// two texels, so no texel mixes them.
-/// @param shown  Patches that get a chart.
-/// @param warnings  Receives the objects with unusable layouts; may be null.
-/// Cost: O(n log n) for n patches.
+/// Makes charts from the objects' own layouts (kept_layouts()). Unfolds other smooth surfaces (unfolded()), split at
+/// discontinuities of light and at gaps narrower than two texels. Cost: O(n log n) for n patches.
+/// @param warnings  Receives objects with unusable layouts; may be null.
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Tolerance in the unit square: above the rounding of 16-bit coordinates.
+/// In the unit square; above the rounding of 16-bit coordinates.
 constexpr double layout_rounding = 0x1p-15;
 
 /// Returns the layout in the unit square, v downwards.
@@ -27,7 +27,7 @@ FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     return flat;
 }
 
-/// Minimum share of a layout's rectangle in use. Emptier layouts waste texels, as where many objects share a map.
+/// Minimum share of the rectangle in use; low for objects that share a map.
 constexpr double least_filled = 0.1;
 
 bool is_mostly_empty(const FlatPatches& layout) {
@@ -61,7 +61,6 @@ bool overlaps_itself(const FlatPatches& layout) {
     });
 }
 
-/// Returns null for a usable layout.
 const char* fault_of(const FlatPatches& layout) {
     const auto has_no_area = [](const FlatPatch& flat) {
         return std::abs(flat.signed_area()) < layout_rounding * layout_rounding;
@@ -72,7 +71,6 @@ const char* fault_of(const FlatPatches& layout) {
     return nullptr;
 }
 
-/// Scales a layout to the total area of its patches in space.
 void scale(const Scene& scene, FlatPatches& layout) {
     double flat_area = 0, area = 0;
     for (const FlatPatch& flat : layout) {
@@ -90,7 +88,7 @@ std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool
     std::map<std::uint32_t, FlatPatches> layout_of_object;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
-        const bool is_second_side = patch.other_side < p && shown[patch.other_side];  // the first side is in the layout
+        const bool is_second_side = patch.other_side < p && shown[patch.other_side];
         if (shown[p] && !is_second_side && !std::isnan(scene.lightmap_coordinates[patch.vertices[0]].x))
             layout_of_object[patch.object].push_back(given_layout(scene, p));
     }

@@ -7,8 +7,7 @@
 
 namespace interflect::detail {
 
-/// Exports binary glTF 2.0 (docs/export.md): one mesh per object, light at vertices or in lightmaps, views as cameras,
-/// y up.
+/// Exports binary glTF 2.0 (docs/export.md), y up, with light at vertices or in lightmaps.
 std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
 /// Exports JSON with embedded binary data.

@@ -12,8 +12,7 @@
 
 namespace interflect::detail {
 
-/// Leaves as convex polygons without T-junctions (ElementMesh), with their corner light as in shading 'smooth'. Corners
-/// with equal point, irradiance and radiosity share a vertex.
+/// Leaves as convex polygons without T-junctions (ElementMesh); equal corners share a vertex.
 struct LitPolygons {
     struct Vertex {
         std::uint32_t point;  ///< Index into `points`.
@@ -24,10 +23,10 @@ struct LitPolygons {
 
     std::vector<V3f> points;  ///< Relative to Scene::origin [m].
     std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> leaves;   ///< Element per polygon.
+    std::vector<std::uint32_t> leaves;
     std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
     std::vector<std::uint32_t> corners;  ///< Indices into `vertices`, counter-clockwise seen from the lit side.
-    std::vector<Parameters> parameters;  ///< Position per corner, on its patch.
+    std::vector<Parameters> parameters;  ///< Per corner.
 
     std::size_t size() const { return leaves.size(); }
     std::uint32_t begin(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
@@ -36,14 +35,12 @@ struct LitPolygons {
 /// Omits leaves without area. Cost: as ElementMesh.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
-/// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB.
-/// @param radiosity  [lm/m^2 or W/m^2] @param exposure  [stops]
+/// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB. @param radiosity  [lm/m^2 or W/m^2]
 std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure);
 
-/// Formats world coordinates [m] with the fewest digits that identify them.
+/// Formats world coordinates [m] with the fewest identifying digits.
 std::string position_text(const Scene& scene, const V3f& point);
 
-/// Appends the least significant byte first.
 template <class Number>
 void append_bytes(std::string& bytes, Number number) {
     static_assert(std::endian::native == std::endian::little);

@@ -33,7 +33,6 @@ Json record_of(const DirectionalLight& light) {
 
 Json record_of(const UniformSky& sky) { return {{"radiance", json_of(sky.radiance)}}; }
 
-/// Omits the web.
 Json record_of(const MeasuredLight& light) {
     return {{"position", json_of(light.position)},
             {"direction", json_of(light.direction)},
@@ -62,7 +61,6 @@ Json record_of(const SkyDome& sky) {
             {"ground", shortest_number(sky.ground)}};
 }
 
-/// Omits the image.
 Json record_of(const EnvironmentMap& map) {
     return {{"zenith", json_of(map.zenith)}, {"north", json_of(map.north)}, {"factor", json_of(map.factor)}};
 }

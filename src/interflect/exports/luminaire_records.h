@@ -8,23 +8,22 @@
 
 namespace interflect::detail {
 
-/// Webs shared by luminaires, in order of first use.
+/// Webs in order of first use.
 class WebTable {
   public:
     std::size_t index_of(const std::shared_ptr<const PhotometricWeb>& web);
-    Json json() const;  ///< Returns `photometric_webs` of a solution file.
+    Json json() const;  ///< `photometric_webs` of a solution file.
 
   private:
     std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
 };
-/// Parses WebTable::json(). @throws Json::exception, std::runtime_error
+/// Inverse of WebTable::json(). @throws Json::exception, std::runtime_error
 std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
 
 /// Images in the order of environment_maps().
 using MapImages = std::vector<std::shared_ptr<const Texture>>;
 
-/// Describes a luminaire for a solution file. @param webs  Receives its web.
-/// @param maps  Must contain its image.
+/// @param webs  Receives the luminaire's web. @param maps  Must contain its image.
 Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps = {});
 /// Inverse of json_of(). @throws Json::exception, std::runtime_error
 Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,

@@ -7,18 +7,17 @@
 
 namespace interflect::detail {
 
-// Solved scenes as meshes of leaves in world coordinates (docs/exported-scenes.md).
+// Meshes of leaves in world coordinates (docs/exported-scenes.md).
 
-/// Binary PLY: polygons with colours and irradiance at vertices.
+/// Binary PLY with colours and irradiance at vertices.
 std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
-/// VTK unstructured grid for ParaView: all quantities of elements, and light at vertices.
+/// VTK unstructured grid with all quantities of elements, and light at vertices.
 std::vector<ExportedFile> make_vtu(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
-/// The same grid as compressed VTKHDF.
 std::vector<ExportedFile> make_vtkhdf(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                       const ExportOptions& options);
-/// Wavefront OBJ with vertex colours; materials and textures beside it.
+/// Wavefront OBJ with vertex colours, materials and textures.
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
 

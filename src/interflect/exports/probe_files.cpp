@@ -13,7 +13,6 @@ ProbeGrid measured(const Scene& scene, const Solution& solution, const ExportOpt
     return irradiance_probes(scene, solution, RayCaster(scene), options.probes, options.monitor);
 }
 
-/// Describes a grid without its coefficients.
 Json description(const Scene& scene, const ProbeGrid& grid, const ExportOptions& options) {
     Json inside = Json::array();
     for (const IrradianceProbe& probe : grid.probes) inside.push_back(probe.is_inside ? 1 : 0);

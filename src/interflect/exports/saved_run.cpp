@@ -1,4 +1,4 @@
-// Solver::save() and Solver::open(), here because the solver is independent of file formats.
+// Solver::save() and Solver::open() are here because the solver is independent of file formats.
 
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ void Solver::save(const std::filesystem::path& path) const {
     StateArchive state;
     SolveOptions saved = options();
     archive_options(state, saved);
-    run_->archive(state);  // reads the run
+    run_->archive(state);
     write_solution(file.temporary_path(), *run_->undimmed_scene, result, &state);
     file.commit();
 }

@@ -11,11 +11,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Light of dark sides. Black beside lit rooms, but not below the light of the night.
+/// Limits of dark sides: black beside lit rooms, about the light of a moonless night.
 constexpr double most_dark = 1e-3;          // [lm/m^2]
-constexpr double most_dark_of_mean = 1e-4;  // relative to the mean over the area
-/// Light of dark patches inside solids, relative to the mean: invisible, and more than stray rays at seams bring (2e-4
-/// in a room of 5 million rays).
+constexpr double most_dark_of_mean = 1e-4;  // relative to the mean
+/// Limit inside solids: invisible, but above stray rays at seams (2e-4 in a room with 5 million rays).
 constexpr double most_stray_of_mean = 1e-3;
 
 double mean_of(const Scene& scene, const std::vector<float>& light) {
@@ -49,8 +48,7 @@ std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
         if (other != none && dark[p]) shown[p] = dark[other] && p < other;
         if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
     }
-    if (std::find(dark.begin(), dark.end(), false) == dark.end())
-        return shown;  // a scene without light keeps its faces
+    if (std::find(dark.begin(), dark.end(), false) == dark.end()) return shown;  // an unlit scene keeps its faces
     const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, most_stray_of_mean * mean));
     for (std::uint32_t p = 0; p < shown.size(); ++p)
         if (encased[p]) shown[p] = false;

@@ -28,8 +28,7 @@ using namespace detail;
 
 namespace {
 
-/// Version 5 adds all iterations and checksums of input files; 4 checksums, options and result; 3 an origin (before:
-/// 0), contacts and surfaces of patches.
+/// Version 3 adds origin, contacts and surfaces of patches; 4 checksums, options and result; 5 all iterations.
 constexpr int format_version = 5, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
@@ -62,7 +61,6 @@ std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     return numbers;
 }
 
-/// @param each  Numbers per patch, with or without the surface.
 std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
     std::vector<Patch> patches(numbers.size() / each);
     for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -76,7 +74,6 @@ std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::si
     return patches;
 }
 
-/// Returns two points per contact.
 std::vector<V3f> contact_ends(const Scene& scene) {
     std::vector<V3f> ends;
     for (const Contact& c : scene.contacts) ends.insert(ends.end(), {c.a, c.b});
@@ -98,7 +95,6 @@ std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<s
     return forest;
 }
 
-/// A quantity with one number per element.
 struct ElementNumbers {
     const char* dataset;
     const char* name;
@@ -113,7 +109,7 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-/// Requires `per_element` finite, non-negative numbers per element; returns the fault or an empty string.
+/// Requires finite, non-negative numbers. @return  The fault, or an empty string.
 std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
                      const char* what) {
     if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);
@@ -129,13 +125,10 @@ void require_none(const std::string& fault) {
     if (!fault.empty()) throw std::runtime_error(fault);
 }
 
-// Invariants of files.
-
 void require_valid(const Scene& scene) {
     for (const std::string& fault : scene_faults(scene)) require_none(fault);
 }
 
-/// @param solution  Of a valid scene.
 void require_valid(const Solution& solution) {
     const ElementForest& forest = *solution.forest;
     const auto* irradiance = reinterpret_cast<const float*>(solution.irradiance.data());
@@ -177,7 +170,7 @@ std::vector<double> history_numbers(const Solution& solution) {
     return numbers;
 }
 
-/// @param solution  Its single iteration is replaced by a non-empty history.
+/// A non-empty history replaces the last iteration.
 void read_history(const Hdf5Reader& file, Solution& solution) {
     const std::size_t columns = report_columns().size();
     const std::vector<double> numbers = file.read<double>(history_dataset, columns);
@@ -191,7 +184,7 @@ std::string group_dataset(std::size_t group) { return fmt::format("/solution/gro
 
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
     Solution& solution = solved.solution;
-    const std::size_t named = solved.scene.light_groups.size();  // perhaps also a group of other sources
+    const std::size_t named = solved.scene.light_groups.size();  // other sources may form one more group
     const bool has_names =
         solution.group_names.size() == named || (named > 0 && solution.group_names.size() == named + 1);
     if (!has_names || solution.dimming.size() != solution.group_names.size())
@@ -201,7 +194,6 @@ void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
         solution.groups.push_back(grouped<Rgb>(file.read<float>(group_dataset(g), 3)));
 }
 
-/// Applies the dimming to the scene's sources and resets it to 1.
 void apply_dimming(SolvedScene& solved) {
     std::vector<float>& dimming = solved.solution.dimming;
     if (std::all_of(dimming.begin(), dimming.end(), [](float factor) { return factor == 1; })) return;
@@ -227,14 +219,13 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
 }
 
-/// A file whose checksums, if any, are verified.
 struct VerifiedFile {
     bool has_checksums;
     Hdf5Reader arrays;
 };
 
 VerifiedFile verified(const std::filesystem::path& path) {
-    // HDF5 also searches for its signature further on; a file without checksums begins with it.
+    // HDF5 also searches for its signature further on. Files without checksums begin with it.
     const bool has_checksums = !has_hdf5_signature(path, 0);
     if (has_checksums) verify_checksums(path);
     return {has_checksums, Hdf5Reader(path)};
@@ -254,7 +245,6 @@ SolvedScene read_solved_scene(const VerifiedFile& file) {
     return solved;
 }
 
-/// @return  Positions of the arrays in the file.
 std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& description, const Scene& scene,
                                     const Solution& solution) {
     const auto write = [&]<class T>(const char* name, const std::vector<T>& numbers, std::size_t columns) {
@@ -277,10 +267,9 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 }
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
-/// Increase it whenever an array of the state changes.
+/// Increase whenever an array of the state changes.
 constexpr int state_version = 3;
 
-/// Writes a state as one array and an index. @return  Their positions in the file.
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();
     std::vector<std::span<const std::byte>> parts;
@@ -315,7 +304,6 @@ StateArchive read_state(const VerifiedFile& file) {
     return StateArchive(std::move(arrays));
 }
 
-/// Writes a file that begins with an empty block for checksums.
 std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
                                   const Solution& solution, const StateArchive* state) {
     Hdf5Writer file(path, checksum_block_size);
@@ -332,7 +320,7 @@ void require_solution_file(const std::filesystem::path& path) {
     if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
 }
 
-/// Calls `read` and converts its exceptions to an InputError with the file's name and `fault`.
+/// Converts exceptions of `read` to an InputError with `fault`.
 template <class Read>
 auto read_or_refuse(const std::filesystem::path& path, const char* fault, const Read& read) {
     try {

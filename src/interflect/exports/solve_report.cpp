@@ -110,8 +110,7 @@ struct RowReader {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Visits all options with their names; ambiguous names begin with their group's.
-/// @param access  Writer or Reader.
+/// Ambiguous names begin with their group's. @param access  Writer or Reader.
 template <class Options, class Access>
 void for_each_option(Options& options, const Access& access) {
     auto& limits = options.limits;
@@ -157,7 +156,7 @@ Json with_present_names(Json json) {
     return json;
 }
 
-/// Visits all numbers of an iteration. @param access  Writer, Reader, RowWriter or RowReader.
+/// @param access  Writer, Reader, RowWriter or RowReader.
 template <class Report, class Access>
 void for_each_number(Report& r, const Access& access) {
     access.field("iteration", r.iteration);

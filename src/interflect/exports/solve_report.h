@@ -9,28 +9,25 @@
 
 namespace interflect::detail {
 
-/// Returns the options of a run under the names of the command line, for solution files and `solve --stats`. Limits
-/// that were not set are null. Omits the seed and the method's name, stored beside it, and max_elements, which depends
-/// on the machine's memory.
+/// Uses the names of the command line. Unset limits are null. Omits seed and method, stored beside the options, and
+/// max_elements, which depends on the machine.
 Json json_of(const SolveOptions& options);
 
 /// Inverse of json_of(). @throws nlohmann::json::exception, InputError for missing or unknown values.
 void read_options(const Json& stored, SolveOptions& options);
 
-/// Returns the state of a run after an iteration, without its duration: equal input gives equal text. Unknown errors
-/// are null.
+/// Omits the duration, so equal input gives equal text. Unknown errors are null.
 Json json_of(const IterationReport& report);
 
 /// Inverse of json_of(). @throws nlohmann::json::exception
 IterationReport report_of(const Json& json);
 
-/// Return all iterations as a table of numbers, for plots. Unknown errors are infinite.
+/// Return unknown errors as infinity.
 std::vector<std::string> report_columns();
 std::vector<double> report_row(const IterationReport& report);
-/// Inverse of report_row(). @throws std::runtime_error for impossible numbers. @param row  One number per column.
+/// Inverse of report_row(). @throws std::runtime_error for impossible numbers.
 IterationReport report_of_row(std::span<const double> row);
 
-/// Keeps world coordinates in double precision.
 Json json_of(const View& view);
 View view_of(const Json& json);
 

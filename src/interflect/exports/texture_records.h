@@ -8,22 +8,20 @@
 
 namespace interflect::detail {
 
-// Textures in a solution file: indices, names and sizes as JSON, texels and coordinates as arrays.
+// Textures in a solution file: metadata as JSON, texels and coordinates as arrays.
 
-/// Return name and size.
 Json json_of(const Texture& texture);
 Json json_of(const std::vector<Texture>& textures);
-/// Parses textures without texels. @throws Json::exception
+/// Omits texels. @throws Json::exception
 std::vector<Texture> textures_of(const Json& json);
 
-/// Adds texture indices to a material's JSON.
 void add_textures(const Material& material, Json& json);
 /// @throws Json::exception
 void read_textures(const Json& json, Material& material);
 
-/// Writes textures, environment maps and any coordinates. @return  Positions in the file.
+/// @return  Positions in the file.
 std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
-/// @param scene  Has textures and maps without texels. @throws std::runtime_error
+/// @param scene  Receives texels. @throws std::runtime_error
 void read_textures(const Hdf5Reader& file, Scene& scene);
 
 }  // namespace interflect::detail

@@ -10,18 +10,18 @@ namespace interflect::detail {
 
 namespace {
 
-/// Limit of patches per layout: each new piece is compared with all of them.
+/// Limit per layout: each new piece is compared with all its patches.
 constexpr std::size_t most_patches_unfolded = 4096;
 
 /// Maximum relative change of edge lengths.
 constexpr double most_stretch = 0.1;
-/// Maximum relative change of the area between two edges at a corner.
+/// Maximum relative change of areas at corners.
 constexpr double most_shear = 0.2;
 
-/// Relative tolerance for rounding.
+/// Relative rounding.
 constexpr double flat_rounding = 1e-4;
 
-/// Motion of the plane without mirroring.
+/// Rotation and translation of the plane.
 struct RigidMotion {
     Imath::V2d from, to, cos_sin;
 
@@ -31,10 +31,9 @@ struct RigidMotion {
     }
 };
 
-/// A point and its target.
 using PointPair = std::pair<Imath::V2d, Imath::V2d>;
 
-/// Finds the least-squares motion (Kabsch 1976); nullopt if all points coincide.
+/// Least-squares motion (Kabsch 1976); nullopt if all points coincide.
 std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     RigidMotion motion{{0, 0}, {0, 0}, {0, 0}};
     for (const auto& [from, to] : pairs) {
@@ -50,7 +49,6 @@ std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     return motion;
 }
 
-/// Returns whether edges change by at most `stretch` and areas at corners by at most `shear`.
 bool is_alike(const FlatPatch& a, const FlatPatch& b, double stretch, double shear) {
     const std::size_t count = a.outline().size();
     const auto is_within = [](double x, double y, double share) { return std::abs(x - y) <= share * std::abs(x); };
@@ -91,7 +89,6 @@ class Unfolding {
     }
 
   private:
-    /// Adds neighbouring pieces while any fits.
     FlatPatches grow(std::uint32_t seed, std::uint32_t number) {
         layout_.clear();
         boxes_.clear();
@@ -122,7 +119,6 @@ class Unfolding {
         }
     }
 
-    /// Returns nullopt if the piece does not fit.
     std::optional<FlatPatches> place(std::uint32_t piece, std::uint32_t number) const {
         if (has_conflict(piece, number)) return std::nullopt;
         bool has_seams = false;
@@ -154,7 +150,7 @@ class Unfolding {
         });
     }
 
-    /// Returns the points of a piece that the layout already contains.
+    /// Pairs points of the piece with their positions in the layout.
     std::vector<PointPair> common_points(std::uint32_t piece, std::uint32_t number, bool& has_seams) const {
         std::vector<PointPair> pairs;
         for (const FlatPatch& flat : pieces_[piece])
@@ -182,7 +178,7 @@ class Unfolding {
         return flat.corners[start] * (1 - share) + flat.corners[end] * share;
     }
 
-    /// Returns whether a patch overlaps no other and is near only to patches near in space.
+    /// Whether a patch overlaps no other and is close only to patches close in space.
     bool has_room(const FlatPatch& flat) const {
         const Imath::Box2d box = flat.box();
         const double rounding = flat_rounding * box.size().length();
@@ -195,7 +191,7 @@ class Unfolding {
         return true;
     }
 
-    /// If points are further apart in space than in the layout, part of the line between them is outside the layout.
+    /// If the distance in space is larger, the straight line leaves the layout.
     bool is_apart_in_space(const FlatPatch& a, const FlatPatch& b) const {
         const double in_space = (centre(a.patch) - centre(b.patch)).length(), flat = (a.centre() - b.centre()).length();
         return in_space > (1 + most_stretch) * flat;

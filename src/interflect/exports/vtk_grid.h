@@ -20,8 +20,7 @@ struct VtkArray {
         numbers;
 };
 
-/// A solved scene as VTK unstructured grid: cells are leaves; corners of leaves share points. Creates one array at a
-/// time, on request.
+/// A solved scene as VTK grid with leaves as cells. Creates one array at a time, on request.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;
@@ -32,15 +31,14 @@ class VtkGrid {
 
     std::size_t point_count() const { return polygons_.vertices.size(); }
     std::size_t cell_count() const { return polygons_.size(); }
-    /// Returns world coordinates [m]; double if the scene's origin is not 0.
+    /// World coordinates [m]; double if the scene's origin is not 0.
     VtkArray points() const;
-    /// Returns the points of all cells in order.
     std::vector<std::int64_t> connectivity() const;
-    /// Returns the first index of each cell in `connectivity`, then the end of the last.
+    /// Returns cell_count() + 1 bounds of the cells in connectivity().
     std::vector<std::int64_t> offsets() const;
     std::vector<std::uint8_t> types() const;
 
-    /// Pass all arrays of points or cells to `sink`; the first is the default for display.
+    /// The first array is the default for display.
     void visit_point_data(const Sink& sink) const;
     void visit_cell_data(const Sink& sink) const;
 

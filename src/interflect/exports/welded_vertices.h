@@ -11,11 +11,10 @@
 
 namespace interflect::detail {
 
-/// Triangle list with unique vertices. @tparam Vertex  32-bit members only.
+/// Triangles with unique vertices. @tparam Vertex  32-bit members only.
 template <class Vertex>
 class WeldedVertices {
   public:
-    /// Appends a corner of a triangle.
     void add(const Vertex& vertex) {
         const auto number = static_cast<std::uint32_t>(vertices_.size());
         Words words;

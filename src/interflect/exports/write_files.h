@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Writes files, and renames them from temporary names when all are complete. @return  Their names.
+/// Renames temporary files when all are complete. @return  Final paths.
 /// @throws InputError for an invalid path; std::runtime_error if writing fails.
 std::vector<std::filesystem::path> write_files(const std::vector<ExportedFile>& files);
 

@@ -27,7 +27,7 @@ std::string opacity_png(const Texture& opacity) {
     return codecs::encode_png(image);
 }
 
-/// @param images  Images of textures; those for cut-outs are appended.
+/// @param images  Receives images of cut-outs.
 std::string materials_text(const std::filesystem::path& path, const Scene& scene, std::vector<ExportedFile>& images) {
     const std::vector<std::string> names = material_names(scene);
     std::string text = fmt::format("# Interflect {}\n", INTERFLECT_VERSION);
@@ -58,7 +58,6 @@ std::string materials_text(const std::filesystem::path& path, const Scene& scene
     return text;
 }
 
-/// Sorts by object, material and leaf.
 std::vector<std::uint32_t> by_object_and_material(const Scene& scene, const ElementForest& forest,
                                                   const LitPolygons& polygons) {
     std::vector<std::uint32_t> order(polygons.size());
@@ -79,7 +78,6 @@ void append_vertices(std::string& text, const Scene& scene, const LitPolygons& p
     }
 }
 
-/// Appends faces, each after the texture coordinates of its corners, if any.
 void append_faces(std::string& text, const Scene& scene, const ElementForest& forest, const LitPolygons& polygons) {
     const std::vector<std::string> materials = material_names(scene), objects = object_names(scene);
     std::uint32_t object = none, material = none, coordinates = 0;

@@ -14,7 +14,6 @@ std::size_t most_corners(const LitPolygons& polygons) {
     return most;
 }
 
-/// Appends doubles if the scene's origin is not 0.
 void append_position(std::string& bytes, const Scene& scene, const V3f& point) {
     for (int k = 0; k < 3; ++k)
         if (scene.origin == Imath::V3d(0))

@@ -51,7 +51,7 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     text("interflect.version", metadata.version);
 }
 
-/// File in memory. OpenEXR seeks back to complete earlier parts.
+/// OpenEXR seeks back to complete earlier parts.
 class ByteSink : public Imf::OStream {
   public:
     ByteSink() : OStream("memory") {}
@@ -115,7 +115,7 @@ void require_channels(const Imf::ChannelList& channels) {
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
-    Imf::addChromaticities(header, Imf::Chromaticities());  // default: Rec. 709 primaries, D65
+    Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709 primaries, D65
     insert_metadata(metadata, header);
     for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     Imf::FrameBuffer buffer = frame_buffer(image, header.dataWindow());

@@ -24,7 +24,7 @@ Rgb rgb_of_oklab(const V3f& lab) {
 }  // namespace
 
 Rgb false_colour(float position) {
-    // Parabola in Oklab, found by search: the longest one in the gamut of Rec. 709 whose speed varies by at most a
+    // Parabola in Oklab, found by search: longest in the gamut of Rec. 709 with a speed that varies by at most a
     // quarter.
     constexpr V3f violet(0.27f, 0.101f, -0.078f), teal(0.595f, -0.212f, -0.097f), yellow(0.92f, -0.075f, 0.189f);
     const float t = std::clamp(position, 0.0f, 1.0f), u = 1 - t;

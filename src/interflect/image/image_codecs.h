@@ -9,20 +9,19 @@
 
 #include "interflect/image.h"
 
-/// Encoder and decoder per file format, for image_files.cpp. Decoders throw std::runtime_error with the reason; the
-/// caller adds the file name.
+/// Decoders throw std::runtime_error without the file name.
 namespace interflect::detail::codecs {
 
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
 
-/// Bytes of a PNG's rows before compression, and their limit: stb counts them as int and doubles its arrays.
+/// Bytes before compression, and their limit: stb counts them as int and doubles its arrays.
 constexpr std::int64_t png_bytes(int width, int height, int channels = 3) {
     return (std::int64_t{channels} * width + 1) * height;
 }
 inline constexpr std::int64_t most_png_bytes = std::int64_t{1} << 30;
 
-/// @param opacity  Per pixel, in [0, 1]; empty: the file has no alpha.
+/// @param opacity  Per pixel, in [0, 1]; empty for no alpha.
 std::string encode_png(const Image& image, std::span<const float> opacity = {});
 std::string encode_jpeg(const Image& image);
 Image decode_png(std::string_view bytes, std::int64_t most_pixels);
@@ -31,7 +30,7 @@ Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels);
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes, std::int64_t most_pixels);
 
-/// @throws InputError if the number of values in a layer does not match the image.
+/// @throws InputError if a layer and the image differ in size.
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers);
 Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);

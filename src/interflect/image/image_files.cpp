@@ -41,7 +41,6 @@ std::string read_bytes(const fs::path& path) {
     return bytes;
 }
 
-/// @param name  Name of the file in error messages.
 void write_bytes(const fs::path& path, const std::string& bytes, const fs::path& name) {
     errno = 0;
     std::ofstream file(path, std::ios::binary);
@@ -81,7 +80,7 @@ Image read_as(ImageFormat format, const fs::path& path, std::int64_t most_pixels
     return codecs::read_exr(path, most_pixels);
 }
 
-/// Returns the result of `read(format, path)`. Errors name the file.
+/// Errors name the file.
 template <class Read>
 auto read_with(const fs::path& path, const Read& read) {
     const ImageFormat format = require_image_format(path);
@@ -90,7 +89,7 @@ auto read_with(const fs::path& path, const Read& read) {
     try {
         return read(format, path);
     } catch (const std::bad_alloc&) {
-        throw;  // the file is not at fault
+        throw;  // not a fault of the file
     } catch (const std::exception& fault) {
         throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
     }

@@ -22,7 +22,7 @@ using V2f = Imath::V2f;
 // [dots of the font]
 constexpr float line_width = 1, shortest_line = 16, label_spacing = 160;
 constexpr int label_margin = 2;
-/// Difference of neighbouring pixels, relative to a level, above which they show different surfaces or lighting.
+/// Relative difference of neighbouring pixels on different surfaces or across shadow edges.
 constexpr float jump = 0.15f;
 
 struct Field {
@@ -35,7 +35,6 @@ struct Field {
     float at(int x, int y) const { return values[index(std::clamp(x, 0, width - 1), std::clamp(y, 0, height - 1))]; }
 };
 
-/// Applies the binomial filter of five pixels along rows or columns.
 Field smoothed(const Field& field, int dx, int dy) {
     constexpr std::array<float, 5> weights = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
     Field result = field;
@@ -56,10 +55,10 @@ Field field_of(const Image& image) {
     return smoothed(smoothed(field, 1, 0), 0, 1);
 }
 
-/// Part of a line within the square between four pixel centres [pixels].
+/// Part of a line between four pixel centres [pixels].
 struct Segment {
     V2f a, b;
-    std::uint32_t line = 0;  // one of the square edges that the line crosses, by Contour::edge_id()
+    std::uint32_t line = 0;  // an edge_id() of the line
 };
 
 /// Lines of one level by marching squares.
@@ -73,7 +72,7 @@ class Contour {
     }
 
     const std::vector<Segment>& segments() const { return segments_; }
-    /// Returns the length of the whole line that contains a segment [pixels].
+    /// Returns the length of the segment's whole line [pixels].
     float length(const Segment& segment) const { return lengths_.at(segment.line); }
 
   private:
@@ -83,7 +82,7 @@ class Contour {
         return static_cast<std::uint32_t>(2 * field_.index(x, y) + (is_vertical ? 1 : 0));
     }
 
-    /// Returns the crossing of the level between the centres of a pixel and its right or lower neighbour.
+    /// Returns the crossing between a pixel's centre and its right or lower neighbour's.
     V2f crossing(int x, int y, bool is_vertical) const {
         const float a = field_.at(x, y), b = is_vertical ? field_.at(x, y + 1) : field_.at(x + 1, y);
         const float t = (level_ - a) / (b - a);
@@ -114,7 +113,7 @@ class Contour {
         if (highest - lowest > jump * std::abs(level_)) return;
         if (count == 2) join(crossed[0], crossed[1]);
         if (count < 4) return;
-        // Saddle: the value at the centre selects the pair of corners that are connected.
+        // Saddle: the centre's value selects the connected corners.
         const float middle =
             (field_.at(x, y) + field_.at(x + 1, y) + field_.at(x, y + 1) + field_.at(x + 1, y + 1)) / 4;
         const bool with_top_left = (middle >= level_) == top_left;
@@ -159,7 +158,7 @@ void draw_lines(Image& image, const Contour& contour, int dot, const Rgb& colour
         image.pixels[i] += coverage.values[i] * (colour - image.pixels[i]);
 }
 
-/// Number on a line [pixels].
+/// [pixels]
 struct Label {
     int left = 0, top = 0, width = 0, height = 0;
     std::string text;
@@ -174,8 +173,7 @@ struct Label {
     }
 };
 
-/// Adds labels of one level, from the middle of the picture outwards. Requires a long line and a place inside the
-/// picture, without overlap and far from labels with the same number.
+/// Labels long lines from the middle row outwards, without overlap and far from equal labels.
 void place_labels(const Contour& contour, float level, int dot, const Image& image, std::vector<Label>& labels) {
     Label label{.text = fmt::format("{:.4g}", level)};
     label.width = text_width(label.text, dot) + 2 * label_margin * dot;

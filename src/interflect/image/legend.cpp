@@ -13,12 +13,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Positions of the parts from the legend's top [dots of the font].
+/// Offsets from the legend's top [dots].
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               legend_bottom = 43;
-/// Minimum number of round values on a scale.
 constexpr int least_values = 3;
-/// Width for a number and the space after it, and the minimum space [dots of the font].
+/// Width per number, and minimum space between numbers [dots].
 constexpr int number_width = 64, number_gap = 8;
 
 void require_valid(const ColourScale& scale) {
@@ -33,7 +32,7 @@ void require_printable(const std::string& title) {
         throw InputError("the title of a legend '" + title + "': expected printable ASCII");
 }
 
-/// Returns the largest of 1, 2 and 5 times a power of ten that is <= x.
+/// Returns the largest of 1, 2 and 5 times a power of ten <= x.
 double round_below(double x) {
     const double power = std::pow(10, std::floor(std::log10(x)));
     for (const double factor : {5.0, 2.0})
@@ -41,7 +40,7 @@ double round_below(double x) {
     return power;
 }
 
-constexpr double rounding = 1e-5;  // of ends and steps, relative
+constexpr double rounding = 1e-5;  // relative, of ends and steps
 
 std::vector<float> multiples(const ColourScale& scale, double step) {
     std::vector<float> values;
@@ -50,7 +49,6 @@ std::vector<float> multiples(const ColourScale& scale, double step) {
     return values;
 }
 
-/// Returns these multiples of every `stride`-th power of ten.
 std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vector<double>& factors, int stride) {
     std::vector<float> values;
     const double low = scale.low * (1 - rounding), high = scale.high * (1 + rounding);
@@ -62,7 +60,7 @@ std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vect
     return values;
 }
 
-/// Returns the length of the strip [pixels]. Its left end is one margin from the picture's edge.
+/// Length between the margins [pixels].
 int strip_length(const Image& image, int dot) { return std::max(1, image.width - 2 * margin * dot); }
 
 void draw_strip(Image& image, int top, int dot) {
@@ -72,7 +70,7 @@ void draw_strip(Image& image, int top, int dot) {
              false_colour((static_cast<float>(x) + 0.5f) / static_cast<float>(length)));
 }
 
-/// Draws a tick at each round value. Omits numbers that would overlap the previous one.
+/// Omits numbers that would overlap the previous one.
 void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
     const int left = margin * dot, length = strip_length(image, dot);
     int free_from = left;
@@ -99,7 +97,7 @@ std::vector<float> round_values(const ColourScale& scale, int most) {
         for (int stride = 1; !fits(values); ++stride) values = multiples_of_powers(scale, {1}, stride);
         return values;
     }
-    constexpr double finer = 0.6;  // from 5 to 2, from 2 to 1, from 1 to 0.5 times a power of ten
+    constexpr double finer = 0.6;  // steps from 5 to 2, 2 to 1, and 1 to 0.5
     double step = round_below(scale.high - scale.low);
     while (fits(multiples(scale, round_below(finer * step)))) step = round_below(finer * step);
     return multiples(scale, step);

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Like read_image(), but also reads JPEG: textures may have lost detail, measurements may not.
+/// As read_image(), but also JPEG, which is too lossy for measurements.
 Image read_photograph(const std::filesystem::path& path, std::int64_t most_pixels);
 
 }  // namespace interflect::detail

@@ -1,5 +1,5 @@
-// Radiance picture format (Ward 1991, 'Real pixels', Graphics Gems II): a text header, then scanlines of 8 bit
-// mantissas of R, G, B with one exponent. Own code, because stb's reader does not terminate on truncated files.
+// Radiance pictures (Ward 1991): text header, then scanlines of RGB mantissas with a common exponent. stb's reader does
+// not terminate on truncated files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,15 +18,15 @@ namespace {
 using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr int exponent_bias = 128, mantissa_bits = 8;
-/// Range of widths for run-length encoding; other scanlines are written flat.
+/// Widths for run-length encoding; other scanlines are flat.
 constexpr int least_encoded_width = 8, most_encoded_width = 0x7fff;
-/// A length byte above longest_literal repeats the next byte (length - longest_literal) times.
+/// Larger length bytes repeat the next byte (length - longest_literal) times.
 constexpr int longest_literal = 128, longest_run = 127;
 constexpr int least_run = 4;  // shorter runs save no space
 
 constexpr float largest_value = 0x1p126f;
 
-/// Clamps a colour to the range of the format; magenta if it is not finite.
+/// Clamps to the format's range; magenta if not finite.
 Rgb representable(const Rgb& colour) {
     if (!is_finite(colour)) return Rgb(largest_value, 0, largest_value);
     Rgb c;
@@ -34,7 +34,6 @@ Rgb representable(const Rgb& colour) {
     return c;
 }
 
-/// Rounds to the nearest representable colour.
 Rgbe to_rgbe(const Rgb& colour) {
     const Rgb c = representable(colour);
     int exponent = 0;
@@ -61,7 +60,6 @@ int run_length(const std::vector<Rgbe>& line, int component, int x) {
     return length;
 }
 
-/// Appends one component of a scanline as runs and literal stretches.
 void append_encoded(const std::vector<Rgbe>& line, int component, std::string& file) {
     const int width = static_cast<int>(line.size());
     for (int x = 0; x < width;) {
@@ -116,13 +114,13 @@ struct Size {
     int width, height;
 };
 
-/// Quotes a resolution of any layout. Other lines may be content of arbitrary files and are not quoted.
+/// Quotes resolutions only: other lines may be content of arbitrary files.
 std::string shown(std::string_view resolution) {
     const bool is_one = resolution.find_first_not_of("+-XY 0123456789") == resolution.npos;
     return is_one ? fmt::format("'{}'", resolution) : "none";
 }
 
-/// Parses "-Y height +X width": rows from the top, pixels from the left. No other order is supported.
+/// Parses '-Y height +X width' alone: rows from the top, pixels from the left.
 Size parse_resolution(std::string_view line) {
     Size size{0, 0};
     const char* end = line.data() + line.size();
@@ -137,7 +135,6 @@ Size parse_resolution(std::string_view line) {
     return size;
 }
 
-/// Whether this is a finite factor > 0.
 bool is_exposure(std::string_view text) {
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
     if (text.starts_with('+')) text.remove_prefix(1);
@@ -146,7 +143,7 @@ bool is_exposure(std::string_view text) {
     return error == std::errc() && factor > 0 && std::isfinite(factor);
 }
 
-/// Reads the header up to the empty line. The exposure has been applied to the pixels and is not undone.
+/// The pixels already contain the exposure.
 void read_header(RadianceReader& reader) {
     constexpr std::string_view format = "FORMAT=", exposure = "EXPOSURE=";
     if (!reader.line().starts_with("#?")) throw std::runtime_error("it does not begin with '#?RADIANCE'");
@@ -197,7 +194,7 @@ Image decode_radiance(std::string_view bytes, std::int64_t most_pixels) {
     read_header(reader);
     const Size size = parse_resolution(reader.line());
     require_allowed_size(size.width, size.height, most_pixels);
-    // The densest encoding takes four times two bytes for 127 pixels. Check this before allocating the image.
+    // The densest encoding uses eight bytes for 127 pixels; checked before allocation.
     const std::int64_t least_bytes = std::int64_t{size.width} * size.height / 16;
     if (static_cast<std::int64_t>(reader.bytes_left()) < least_bytes) throw std::runtime_error("it ends too early");
 

@@ -1,4 +1,4 @@
-// Writes PNG and JPEG with stb. stored_image.cpp reads them.
+// Encodes with stb; stored_image.cpp decodes.
 #include <fmt/format.h>
 
 #include <cmath>

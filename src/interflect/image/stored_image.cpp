@@ -1,4 +1,4 @@
-// PNG with libspng, JPEG with libjpeg-turbo: unlike stb's readers, both are robust against hostile files.
+// Unlike stb, libspng and libjpeg-turbo are robust against hostile files.
 #include "interflect/image/stored_image.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ StoredImage decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
                                 &colour_space));
     codecs::require_allowed_size(image.width, image.height, most_pixels);
     std::vector<std::uint8_t> narrow(image.pixel_count() * StoredImage::channels);
-    // The limit of scans rejects progressive files that would take hours.
+    // Rejects progressive files that would take hours.
     require(tjDecompress2(decoder.get(), data, bytes.size(), narrow.data(), image.width, 0, image.height, TJPF_RGBA,
                           TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
     image.values.reserve(narrow.size());

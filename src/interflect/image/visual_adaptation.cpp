@@ -7,16 +7,15 @@ namespace interflect::detail {
 
 namespace {
 
-/// Ratio of the display's largest and smallest luminance, C_max of Tumblin et al. 1999, who give 30 to 100.
+/// C_max of Tumblin et al. 1999, who give 30 to 100.
 constexpr float display_contrast = 100;
 
-/// Returns the exponent of brightness, gamma of Stevens and Stevens as in Tumblin et al. 1999.
+/// gamma of Tumblin et al. 1999, after Stevens and Stevens.
 float brightness_exponent(float adapted) {
     return adapted > 100 ? 2.655f : 1.855f + 0.4f * std::log10(adapted + 2.3e-5f);
 }
 
-/// Returns the weight of the rods, k of Ferwerda et al., by the parabola of Durand and Dorsey 2000: 1 below the mesopic
-/// range, 0 above it.
+/// Weight k of the rods in Ferwerda et al., by the parabola of Durand and Dorsey 2000.
 float rod_share(float adapted) {
     constexpr float darkest = 0.01f, brightest = 10;  // of the mesopic range [cd/m^2]
     const float k = std::clamp(1 - (adapted / 2 - darkest) / (brightest - darkest), 0.0f, 1.0f);
@@ -33,7 +32,7 @@ float ward_factor(float adapted, float white) {
 TumblinOperator::TumblinOperator(float adapted, float white) : adapted_(adapted) {
     const float middle = white / std::sqrt(display_contrast);
     exponent_ = brightness_exponent(adapted) / brightness_exponent(middle);
-    // m of Tumblin et al. prevents a dim scene from appearing in the middle of the display's range.
+    // m of Tumblin et al. keeps dim scenes below the middle of the display's range.
     scale_ = std::pow(std::sqrt(display_contrast), exponent_ - 1) * middle / white;
 }
 

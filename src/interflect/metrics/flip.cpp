@@ -1,4 +1,4 @@
-// Formulas and constants are those of Andersson et al. 2020, 'FLIP: A Difference Evaluator for Alternating Images'.
+// Formulas and constants of Andersson et al. 2020 (docs/metrics.md).
 #include "interflect/metrics/flip.h"
 
 #include <ImathMatrix.h>
@@ -26,14 +26,14 @@ constexpr double most_pixels_per_degree = 1000;  // eight times the resolution o
 
 // --- Colour spaces
 
-/// Linear Rec. 709 to CIE XYZ relative to white (D65), exact for the standard's primaries. Imath multiplies a row by a
-/// matrix, so each column contains the weights of one coordinate, which sum to 1.
+/// Linear Rec. 709 to XYZ relative to white (D65), exact. Columns contain the weights of one coordinate, since Imath
+/// multiplies rows by matrices.
 const M33d xyz_of_rgb(10135552.0 / 23359437, 2613072.0 / 12288897, 1425312.0 / 80288307,  //
                       8788810.0 / 23359437, 8788810.0 / 12288897, 8788810.0 / 80288307,   //
                       4435075.0 / 23359437, 887015.0 / 12288897, 70074185.0 / 80288307);
 const M33d rgb_of_xyz = xyz_of_rgb.inverse();
 
-/// Converts to YCxCz, which is CIE L*a*b* without cube roots. Blurring in it preserves sums of light.
+/// YCxCz: CIE L*a*b* without cube roots. Blurring preserves sums of light.
 V3d opponent_of_xyz(const V3d& xyz) { return {116 * xyz.y - 16, 500 * (xyz.x - xyz.y), 200 * (xyz.y - xyz.z)}; }
 
 V3d xyz_of_opponent(const V3d& opponent) {
@@ -53,17 +53,17 @@ V3d clamped(const V3d& rgb) {
     return {std::clamp(rgb.x, 0.0, 1.0), std::clamp(rgb.y, 0.0, 1.0), std::clamp(rgb.z, 0.0, 1.0)};
 }
 
-/// Returns L*a*b* in which dark colours are less saturated: the Hunt effect.
+/// L*a*b* with less saturated dark colours (Hunt effect).
 V3d perceived_colour(const V3d& rgb) {
     const V3d lab = lab_of_xyz(rgb * xyz_of_rgb);
     return {lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z};
 }
 
-// --- Filters, all of them sums of products of a function of x and a function of y
+// --- Separable filters
 
 struct Channel {
     int width = 0, height = 0;
-    std::vector<float> values;  // row by row
+    std::vector<float> values;
 
     Channel(int plane_width, int plane_height)
         : width(plane_width),
@@ -84,7 +84,7 @@ using Kernel = std::vector<float>;
 
 int radius_of(const Kernel& kernel) { return static_cast<int>(kernel.size() / 2); }
 
-/// Samples `function` at -radius ... radius. Scales the positive and the negative weights to absolute sums of 1.
+/// Scales positive and negative weights to absolute sums of 1.
 template <class Function>
 Kernel normalised_kernel(int radius, const Function& function) {
     double above = 0, below = 0;
@@ -139,7 +139,7 @@ Channel filter(const Channel& plane, const Kernel& along_x, const Kernel& along_
 
 // --- The colour pipeline
 
-/// Term of a contrast sensitivity function as a spatial filter: a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees.
+/// Term of a contrast sensitivity function: a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees.
 struct Gaussian {
     double a, b;
 };
@@ -159,7 +159,7 @@ Opponent opponent_colours(const Image& image) {
     return planes;
 }
 
-/// Filters a channel by the contrast sensitivity. The filter's weights over the square of pixels sum to 1.
+/// Filters with weights that sum to 1.
 Channel seen(const Channel& plane, std::span<const Gaussian> sensitivity, double pixels_per_degree) {
     using std::numbers::pi;
     const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
@@ -192,13 +192,13 @@ V3d perceived_colour(const Opponent& planes, std::size_t pixel) {
     return perceived_colour(clamped(xyz_of_opponent(opponent) * rgb_of_xyz));
 }
 
-/// Distance HyAB of Abasi et al. 2020, which is also valid for large differences, compressed by a power.
+/// HyAB distance of Abasi et al. 2020, valid for large differences, compressed by a power.
 double compressed_distance(const V3d& a, const V3d& b) {
     constexpr double colour_exponent = 0.7;
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), colour_exponent);
 }
 
-/// Returns a value in [0, 1]. Distances up to 0.4 of the largest, between green and blue, use 0.95 of the range.
+/// In [0, 1]. Distances up to 0.4 of the largest, green to blue, use 0.95 of the range.
 double colour_difference(const V3d& a, const V3d& b) {
     constexpr double knee_share = 0.4, knee_value = 0.95;
     static const double largest = compressed_distance(perceived_colour(V3d(0, 1, 0)), perceived_colour(V3d(0, 0, 1)));
@@ -209,7 +209,6 @@ double colour_difference(const V3d& a, const V3d& b) {
 
 // --- The feature pipeline
 
-/// Returns the magnitude of a feature detector's response, independent of direction.
 Channel response(const Channel& lightness, const Kernel& detector, const Kernel& blur) {
     const Channel across = filter(lightness, detector, blur), down = filter(lightness, blur, detector);
     Channel length = across;
@@ -222,7 +221,7 @@ struct Features {
     Channel edges, points;
 };
 
-/// Applies the first and second derivative of a Gaussian with the width of edge detectors in the eye.
+/// First and second derivatives of a Gaussian with the width of edge detectors in the eye.
 Features find_features(const Channel& achromatic_channel, double pixels_per_degree) {
     constexpr double width = 0.082;  // from peak to trough [degrees]
     const double deviation = 0.5 * width * pixels_per_degree;

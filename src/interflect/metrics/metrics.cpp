@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of the reference's mean luminance that is added to denominators, to limit differences in nearly black areas.
+/// Limits relative differences in dark areas.
 constexpr double dark_share = 0.01;
 constexpr double trimmed_share = 0.99;  // of the blocks, without the worst ones
 
@@ -46,7 +46,6 @@ double mean(std::span<const double> values) {
     return sum / static_cast<double>(values.size());
 }
 
-/// Returns the means of complete blocks of block x block pixels, row by row.
 std::vector<double> block_means(const std::vector<double>& values, int width, int height, int block) {
     std::vector<double> means;
     for (int top = 0; top + block <= height; top += block)

@@ -27,7 +27,7 @@ double mean_luminance(const Image& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-/// Returns d of each pixel. `mean` > 0 is the adaptation luminance.
+/// @param mean  Adaptation luminance, > 0.
 std::vector<Complex> response_differences(const Image& image, const Image& reference, double mean) {
     const auto response = [&](const Rgb& pixel) { return std::pow(lit_luminance(pixel) / mean, response_exponent); };
     std::vector<Complex> differences;
@@ -37,7 +37,7 @@ std::vector<Complex> response_differences(const Image& image, const Image& refer
     return differences;
 }
 
-/// Returns the cycles per pixel of the k-th of n frequencies. The upper half contains the negative frequencies.
+/// The upper half contains negative frequencies.
 double cycles_per_pixel(std::size_t k, std::size_t n) {
     return static_cast<double>(std::min(k, n - k)) / static_cast<double>(n);
 }
@@ -51,7 +51,7 @@ void transform_rows(std::vector<Complex>& values, std::size_t width) {
     }
 }
 
-/// Returns the sum of A^2 |D|^2 over all frequencies, column by column. The rows are already transformed.
+/// Returns the sum of A^2 |D|^2. @param rows  Transformed rows.
 double weighted_power(const std::vector<Complex>& rows, std::size_t width, double pixels_per_degree) {
     const std::size_t height = rows.size() / width;
     const kissfft<double> fourier(height, false);

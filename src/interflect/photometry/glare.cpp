@@ -20,11 +20,11 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Point of a source that represents a part of its solid angle.
+/// Sample of a source.
 struct Place {
     V3f towards;
     float distance = 0;          // [m]
-    std::uint32_t patch = none;  // the ray must hit it; default: hits nothing before `distance`
+    std::uint32_t patch = none;  // required hit of the ray; default: free up to `distance`
     Rgb radiance{0, 0, 0};       // [cd/m^2]
     double solid_angle = 0;      // [sr]
     double position_index = 1;
@@ -47,7 +47,6 @@ struct Sums {
     }
 };
 
-/// Points of all sources for one observer.
 class SourcePlaces {
   public:
     SourcePlaces(const Scene& scene, const Observer& observer)
@@ -63,8 +62,7 @@ class SourcePlaces {
     std::vector<Sums>& sums() { return sums_; }
 
   private:
-    /// Divides a patch into cells of at most an eighth of the distance, but 2 to 16 per side. Direction and distance
-    /// are nearly constant in a cell.
+    /// Divides a patch into cells with nearly constant directions.
     void add_patch(std::uint32_t index) {
         constexpr float cells_per_distance = 8;
         constexpr int fewest = 2, most = 16;
@@ -88,7 +86,7 @@ class SourcePlaces {
         }
     }
 
-    /// Each point has an equal part of the solid angle of the opening, which is its irradiance / L.
+    /// Samples have equal solid angles; the opening's is irradiance / L.
     void add_luminaire(const Luminaire& luminaire, const MeasuredLight& light) {
         constexpr int per_side = 8, count = per_side * per_side;
         if (light.web->opening.is_point()) return;
@@ -128,7 +126,7 @@ class SourcePlaces {
     std::map<std::string, std::size_t> by_name_;
 };
 
-/// Returns the part of a point's light that reaches the eye: 0, 1, or the transmittance of panes.
+/// Returns 0, 1, or the transmittance of panes.
 Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, const RayCaster& ray_caster) {
     Rgb transmittance(1);
     float left = place.distance;

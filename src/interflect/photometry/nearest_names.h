@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Returns the number of letters to add, remove or replace between two names (Levenshtein 1965).
+/// Levenshtein distance (1965).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -26,8 +26,7 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// Lists the names most similar to an unknown name, for a message. Also compares the ends of names behind a dot: "top"
-/// finds "desk.top".
+/// Lists the names most similar to an unknown name. "top" also finds "desk.top".
 inline std::string text_of_nearest(const std::string& name, std::span<const std::string> names) {
     constexpr std::size_t most_told = 5, most_compared = 10'000;
     struct Candidate {

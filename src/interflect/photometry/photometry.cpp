@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-/// Returns the illuminance on the side of the zenith: the exact integral of luminance times cosine.
+/// Integrates luminance times cosine exactly on the side of the zenith.
 double horizontal_illuminance(const EnvironmentMap& map) {
     const Texture& image = *map.image;
     const auto height_squared = [&](std::uint32_t edge) {

@@ -19,22 +19,22 @@ using namespace detail;
 
 namespace {
 
-/// Cosine of the angle (0.8 degrees) up to which faces count as parallel.
+/// Cosine of 0.8 degrees.
 constexpr float same_plane_cosine = 0.9999f;
-/// Maximum distance between faces of one plane, relative to the extent of all faces.
+/// Distance between faces of one plane, relative to the extent of all faces.
 constexpr double same_plane_distance = 1e-4;
-/// Objects with more planes are curved; further planes are ignored.
+/// Objects with more planes are curved.
 constexpr std::size_t most_planes = 256;
-/// Planes count as equally large if their areas differ by less than this share.
+/// Relative difference of areas that count as equal.
 constexpr double equal_areas = 0.01;
-/// Cosine of the angle (10 degrees) within which a surface faces a direction.
+/// Cosine of 10 degrees.
 constexpr float facing_cosine = 0.98481f;
 
 bool is_part_of(const std::string& name, const std::string& object) {
     return name == object || (name.starts_with(object) && name[object.size()] == '.');
 }
 
-/// Returns the name of a patch's object; scenes made by programs may have no objects.
+/// Scenes made by programs may have no objects.
 std::string object_name(const Scene& scene, std::uint32_t patch) {
     const std::uint32_t object = scene.patches[patch].object;
     return object < scene.objects.size() ? scene.objects[object] : std::string();
@@ -42,7 +42,7 @@ std::string object_name(const Scene& scene, std::uint32_t patch) {
 
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; }
 
-/// Removes the suffixes of arrays, ".a2", or ".a2.0.7" for nested arrays: "floor.a0.a12" becomes "floor".
+/// Removes array suffixes ".a2", or ".a2.0.7" if nested: "floor.a0.a12" becomes "floor".
 std::string_view without_copies(std::string_view name) {
     for (std::string_view rest = name;;) {
         const std::size_t dot = rest.rfind('.');
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     return patches;
 }
 
-/// Groups faces by plane, the largest plane first.
+/// Sorts the planes by area, largest first.
 std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<std::uint32_t> patches, const std::string& name) {
     std::vector<PatchGeometry> geometry;
     geometry.reserve(patches.size());

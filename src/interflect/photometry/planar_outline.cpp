@@ -13,12 +13,12 @@ namespace {
 using V2d = Imath::V2d;
 using V3d = Imath::V3d;
 
-/// Distance within which points lie on a line, relative to the area's size. Larger than the rounding of vertices.
+/// Distance of points on a line, relative to the area's size; exceeds the rounding of vertices.
 constexpr double on_line = 1e-5;
 
 double tolerance_of(const Imath::Box2d& box) { return on_line * (box.max - box.min).length(); }
 
-/// Andrew's monotone chain; the result is counter-clockwise.
+/// Andrew's monotone chain; counter-clockwise.
 std::vector<V2d> convex_hull(std::vector<V2d> points) {
     std::sort(points.begin(), points.end(),
               [](const V2d& a, const V2d& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
@@ -48,8 +48,7 @@ Imath::Box2d turned_box(const std::vector<V2d>& points, double angle) {
     return box;
 }
 
-/// Returns the rotation of the frame to the smallest enclosing rectangle, which shares a direction with a side of the
-/// hull. In (-45, 45] degrees; 0 if that is as good.
+/// Returns the rotation to the smallest enclosing rectangle, parallel to a hull side. In (-45, 45] degrees; prefers 0.
 double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
     constexpr double quarter = std::numbers::pi / 2, better = 1 - 1e-4;
     const auto area = [&](double angle) {
@@ -118,7 +117,7 @@ std::vector<PlanarSegment> PlanarOutline::border() const {
         const double length = edge.length();
         if (!(length > tolerance)) continue;
         const V2d along = (edge.b - edge.a) / length;
-        std::vector<std::pair<double, double>> shared;  // with opposite faces, distance from edge.a [m]
+        std::vector<std::pair<double, double>> shared;  // by opposite faces, distances from edge.a [m]
         for (const PlanarSegment& other : edges) {
             const V2d c = other.a - edge.a, d = other.b - edge.a;
             if (std::abs(along.cross(c)) > tolerance || std::abs(along.cross(d)) > tolerance) continue;
