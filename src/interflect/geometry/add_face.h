@@ -7,12 +7,11 @@
 
 namespace interflect::detail {
 
-/// Material of the back of a face; may differ from the front's. none: one-sided.
 inline std::uint32_t back_material(const Scene& scene, const Patch& patch) {
     return patch.other_side == none ? none : scene.patches[patch.other_side].material;
 }
 
-/// Adds the front of a face and, if the back has a material, the back with reversed vertex order.
+/// Adds the front of a face and, with a `back_material`, the back in reversed vertex order.
 inline void add_face(Scene& scene, Patch patch, std::uint32_t back_material) {
     const auto index = static_cast<std::uint32_t>(scene.patches.size());
     patch.other_side = back_material == none ? none : index + 1;

@@ -9,7 +9,6 @@
 
 namespace interflect::detail {
 
-/// Enlarges the box in all directions.
 inline Imath::Box3f widened(Imath::Box3f box, float margin) {
     box.min -= V3f(margin);
     box.max += V3f(margin);
@@ -23,7 +22,7 @@ inline Imath::Box3f bounds_of(const Scene& scene, const Patch& patch) {
     return box;
 }
 
-/// Returns whether a box is within `distance` of a plane with a unit `normal`.
+/// Returns whether a box is within `distance` [m] of a plane with a unit `normal`.
 /// @param height  Signed distance of a point from the plane (V3d -> [m]).
 template <class Height>
 bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height& height, double distance) {

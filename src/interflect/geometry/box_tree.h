@@ -12,15 +12,15 @@
 namespace interflect::detail {
 
 struct Boxed {
-    Imath::Box3f box;  ///< In an arranged tree: bounds of the whole subtree.
+    Imath::Box3f box;  ///< After arrange_box_tree(): bounds of the whole subtree.
     std::uint32_t index = 0;
 };
 
-/// Arranges `elements` as an implicit bounding volume hierarchy. The middle element is the root, with its subtrees
-/// before and after it. O(n log n).
+/// Arranges `elements` in place as an implicit bounding volume hierarchy. The middle element is the root; its subtrees
+/// precede and follow it. O(n log n).
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
-    Imath::Box3f all, centres;  // of twice the centres
+    Imath::Box3f all, centres;  // centres are doubled
     for (const Boxed& e : elements) {
         all.extendBy(e.box);
         centres.extendBy(e.box.min + e.box.max);
@@ -43,8 +43,8 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
     elements[middle].box = all;
 }
 
-/// Calls visit(index) for each element of an arranged tree if `reaches` (box -> bool) accepts the boxes of its subtree
-/// and of all enclosing ones. The element itself may be outside, because its own box is not stored.
+/// Calls visit(index) for each element whose enclosing subtree boxes all satisfy reaches(box). Boxes of inner elements
+/// are not stored, so visited elements may lie outside.
 template <class Reaches, class Visit>
 void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
     if (tree.empty()) return;

@@ -17,7 +17,7 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// Sine of the angle (1 degree) below which two faces count as grazing: no shadow ends at their intersection.
+/// Minimum sine of the angle between intersecting faces (1 degree). Flatter intersections bound no shadow.
 constexpr double least_angle_sine = 0.0175;
 
 }  // namespace
@@ -126,7 +126,7 @@ void ContactFinder::add(const V3d& a, const V3d& b, int outline) {
 }
 
 void ContactFinder::add_outline(const Facet& other) {
-    if (rank_[other.face] > rank_[facet_.face]) return;  // this facet intercepts rays where both overlap
+    if (rank_[other.face] > rank_[facet_.face]) return;  // rays hit this facet where both overlap
     const bool opposite = facet_.normal.dot(other.normal) < 0;
     if (opposite && !is_two_sided(facet_) && !is_two_sided(other)) return;
     for (std::size_t i = 0; i < other.count; ++i)

@@ -14,17 +14,15 @@
 
 namespace interflect::detail {
 
-/// A segment on a facet. If it belongs to the outline of a coplanar face, `outline` is the side of that face.
+/// Segment in which another face meets a facet.
 struct FoundSegment {
     PlanarSegment segment;  ///< `a` is the lexicographically lower end.
-    int outline = 0;        ///< 1: left, -1: right; 0 if a face stands on the facet or passes through it.
+    int outline = 0;        ///< Side of a coplanar face bounded by the segment: 1 left, -1 right; 0: other contacts.
 };
 
-/// Finds the segments in which other facets meet one facet.
 class ContactFinder {
   public:
-    /// @param rank            rank_by_flat_surface() of the scene.
-    /// @param touch_distance  As in ContactOptions.
+    /// @param rank  rank_by_flat_surface() of the scene.
     ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance);
 
     const PlanarPolygon& polygon() const { return polygon_; }
@@ -34,13 +32,13 @@ class ContactFinder {
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
-    /// Segments to cut along: those in connected components with an extent of at least `least_extent`.
+    /// Returns the segments in connected components at least `least_extent` [m] wide.
     std::vector<PlanarSegment> segments(double least_extent);
 
   private:
-    /// Removes duplicates, and borders between coplanar faces that hide the facet on both sides.
+    /// Removes duplicates, and borders between coplanar faces that cover the facet on both sides.
     std::vector<PlanarSegment> distinct_segments();
-    /// Lowest segment index of each connected component. Segments with a common end are connected.
+    /// Returns the component of each segment, as its lowest index. Segments with a common end are connected.
     std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
@@ -52,10 +50,9 @@ class ContactFinder {
         return (s.a - t.a).length() <= facet_.detail() && (s.b - t.b).length() <= facet_.detail();
     }
 
-    /// @param outline  Side of a coplanar face, as in FoundSegment.
     void add(const Imath::V3d& a, const Imath::V3d& b, int outline);
     void add_outline(const Facet& other);
-    /// Adds the intersection of the other facet with this facet's plane.
+    /// Adds the intersection of `other` with this facet's plane.
     void add_section(const Facet& other, const std::array<double, 4>& height, double touching);
 
     const Scene& scene_;

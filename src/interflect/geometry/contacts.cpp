@@ -25,31 +25,30 @@ using namespace detail;
 
 namespace {
 
-/// Strips narrower than this fraction of a face's diameter are not divided across.
+/// Minimum width of strips that are divided across, relative to the face's diameter.
 constexpr double narrow = 2e-3;
 
 constexpr std::size_t facets_at_once = 256;
 
-/// Slivers of a flat surface are cut across into pieces no longer than this share of the width that the surface has
-/// along them. With 1/16 the error of blocks of pixels in `slivers` (experiments/run audit) falls from 8.8% to 1.3%.
+/// Maximum length of pieces of a sliver, relative to the width of its flat surface. With 1/16 the error of pixel blocks
+/// in `slivers` (experiments/run audit) falls from 8.8% to 1.3%.
 constexpr double longest_sliver_share = 1.0 / 16;
 
-/// The pieces of a facet; none where it stays whole.
 struct CutFacet {
     std::vector<PlanarPolygon> patches;
     std::vector<PlanarSegment> contacts;
     bool reached_limit = false;
 };
 
-/// Pieces of a sliver that is one of many in a flat surface are no longer than this [m]: quartering keeps the shape of
-/// elements, so they would be long for ever. A strip that is a surface by itself stays whole.
+/// Returns the maximum length of slivers [m]. Quartering preserves aspect ratios, so long patches yield long elements.
+/// A strip without coplanar neighbours stays whole.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
     const bool has_neighbours = surface_area > 4 * facet.area();
     return has_neighbours ? longest_sliver_share * width : std::numeric_limits<double>::infinity();
 }
 
-/// @param surface_area  Of the flat surface that the facet is part of [m^2].
+/// @param surface_area  Area of the facet's flat surface [m^2].
 CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_area, const ContactOptions& options) {
     CutFacet result;
     std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.least_extent));
@@ -66,7 +65,6 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_are
     return result;
 }
 
-/// Area of the flat surface that each facet is part of [m^2].
 std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<Facet>& facets) {
     const std::vector<std::uint32_t> surfaces = flat_surfaces(scene);
     std::vector<double> area(scene.patches.size(), 0.0), result;
@@ -100,10 +98,8 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     return cut;
 }
 
-/// Writes whole and cut faces to `result`.
 class PieceWriter {
   public:
-    /// @param surfaces  Number of each patch's flat surface, or none.
     PieceWriter(const Scene& scene, std::span<const std::uint32_t> surfaces, Scene& result)
         : scene_(scene), surfaces_(surfaces), result_(result), weld_(result) {}
 
@@ -142,13 +138,12 @@ class PieceWriter {
     VertexWeld weld_;
 };
 
-/// Facets of one face, and its number of pieces.
 struct FacetRange {
     std::size_t first, last;
-    std::uint64_t patches = 0;  ///< 0: not cut.
+    std::uint64_t patches = 0;  ///< On both sides; 0: not cut.
 };
 
-/// Decides which faces are cut within the total limit of patches. Warns about limits.
+/// Selects the faces to cut within the limit of patches. Warns about limits.
 std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
                                const ContactOptions& options, Warnings& warnings) {
     std::vector<FacetRange> faces;
@@ -181,7 +176,7 @@ std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& fac
     return faces;
 }
 
-/// Surface number of each patch whose flat surface has a cut face or already had a number; otherwise none.
+/// Returns surface numbers only for patches whose flat surface has a cut face or a number already.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);

@@ -16,16 +16,15 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// Smaller fractions of the patch count as rounding error.
+/// Fraction of the patch's area below which areas are rounding error.
 constexpr double negligible_share = 1e-12;
-/// Maximum number of polygons to subtract one by one; for more, the patch is halved first.
+/// Number of polygons above which the patch is halved first.
 constexpr std::size_t cut_at_once = 4;
-/// Limit of halvings: the others overlap in nearly one place and are then subtracted one by one.
+/// Polygons that still overlap are subtracted one by one.
 constexpr int most_halvings = 24;
 
 double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }
 
-/// Part of a polygon to the left, or right, of the line from a to b.
 PlanarPolygon half_of(const PlanarPolygon& polygon, const V2d& a, const V2d& b, bool left) {
     const V2d along = left ? b - a : a - b;
     PlanarPolygon result;
@@ -45,7 +44,7 @@ PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
     return polygon;
 }
 
-/// @param negligible  [m^2]
+/// Returns [m^2]; areas up to `negligible` [m^2] count as 0.
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
                     int halvings) {
     const double area = area_of(polygon);
@@ -73,7 +72,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     }
     const PlanarPolygon& first = *others.back();
     others.pop_back();
-    PlanarPolygon rest = polygon;  // part inside all edges of `first` processed so far
+    PlanarPolygon rest = polygon;  // part inside all processed edges of `first`
     for (std::size_t i = 0; i < first.size() && rest.size() > 2; ++i) {
         const V2d &a = first[i].position, &b = first[(i + 1) % first.size()].position;
         outside += area_outside(half_of(rest, a, b, false), others, negligible, halvings);
@@ -82,7 +81,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     return outside;
 }
 
-/// Coordinates in the plane of a patch: s along its first edge, t perpendicular to it.
+/// s along the first edge, t perpendicular.
 class PatchPlane {
   public:
     PatchPlane(const Scene& scene, const Patch& patch) : scene_(scene), origin_(vertex(patch, 0)) {

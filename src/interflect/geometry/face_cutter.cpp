@@ -13,7 +13,6 @@ namespace {
 
 using Imath::V2d;
 
-/// Segments of a piece considered for the next cut.
 constexpr std::size_t candidates_per_cut = 24;
 
 /// height() is the signed distance, positive on the left.
@@ -25,7 +24,6 @@ struct Line {
     double along(const V2d& x) const { return direction.dot(x - origin); }
 };
 
-/// -1 right, 0 on the line within the tolerance, 1 left.
 int side_of(double height, double tolerance) { return (height > tolerance) - (height < -tolerance); }
 
 struct Piece {
@@ -33,12 +31,11 @@ struct Piece {
     std::vector<PlanarSegment> segments;
 };
 
-/// Makes the choice among equal candidates independent of their order in memory.
+/// Makes choices independent of memory order.
 auto geometric_order(const PlanarSegment& s) {
     return std::make_tuple(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), s.a.x + s.b.x, s.a.y + s.b.y);
 }
 
-/// The longest segments, in an order that depends on geometry alone.
 std::vector<PlanarSegment> candidates(const std::vector<PlanarSegment>& segments) {
     std::vector<PlanarSegment> longest = segments;
     const std::size_t count = std::min(candidates_per_cut, segments.size());
@@ -64,8 +61,7 @@ double chord_length(const PlanarPolygon& polygon, const Line& line) {
     return std::max(0.0, to - from);
 }
 
-/// Cost of a cut: number of divided segments, which then need a cut on each side; length of the cut without contact;
-/// and, with a smaller weight, imbalance of the halves.
+/// Penalises divided segments, free length (without contact) and imbalance of the halves.
 double cost_of(const Piece& piece, const Line& line, double tolerance) {
     constexpr double of_division = 2, of_free_length = 1, of_imbalance = 0.5;
     std::size_t divided = 0;
@@ -94,7 +90,7 @@ Line best_cut(const Piece& piece, double tolerance) {
     return Line(choice[best]);
 }
 
-/// Parts of a polygon on both sides of a line, with the edge between them. Corners within the tolerance belong to both.
+/// Corners on the line belong to both halves.
 struct Halves {
     PlanarPolygon left, right;
     PlanarSegment chord;
@@ -126,7 +122,6 @@ Halves halves_of(const PlanarPolygon& polygon, const Line& line, double toleranc
     return halves;
 }
 
-/// Projects `s`, which lies along `edge`, onto it.
 PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     const Line line(edge);
     const auto moved = [&](const V2d& x) {
@@ -135,7 +130,7 @@ PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     return {moved(s.a), moved(s.b)};
 }
 
-/// Distributes a piece's segments over its halves. Segments on the line become contacts.
+/// Segments on the line become contacts.
 void distribute(const std::vector<PlanarSegment>& segments, const Line& line, const PlanarSegment& chord,
                 double tolerance, Piece& left, Piece& right, std::vector<PlanarSegment>& contacts) {
     const auto add_to = [&](Piece& piece, PlanarSegment s) {
@@ -161,7 +156,6 @@ double compactness(const PlanarPolygon& polygon) {
     return doubled_area(polygon) / (border * border);
 }
 
-/// Corners first ... last, cyclically.
 PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size_t last) {
     PlanarPolygon part;
     for (std::size_t i = first;; i = (i + 1) % polygon.size()) {
@@ -170,7 +164,6 @@ PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size
     }
 }
 
-/// Divides a quadrilateral across if it is too long.
 void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
     constexpr double most_parts = 16;
     const auto edge = [&](std::size_t i) {
@@ -190,8 +183,7 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
                            between(3, 2, i / parts)});
 }
 
-/// Cuts a long polygon across, perpendicular to its longest edge, into parts of equal length.
-/// @return  The polygon alone if it is short or no sliver.
+/// Cuts a long sliver across into parts of equal length.
 std::vector<PlanarPolygon> slices_of(const PlanarPolygon& polygon, double longest) {
     constexpr double most_parts = 64, sliver_aspect = 16;
     PlanarSegment edge{polygon[0].position, polygon[0].position};
@@ -260,7 +252,7 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
         }
         const Line line = best_cut(piece, tolerance);
         Halves halves = halves_of(piece.polygon, line, tolerance);
-        if (!halves.proper) {  // the line runs along the border; its segments are finished
+        if (!halves.proper) {  // the line runs along the border: its segments are finished
             std::erase_if(piece.segments, [&](const PlanarSegment& s) {
                 return side_of(line.height(s.a), tolerance) == 0 && side_of(line.height(s.b), tolerance) == 0;
             });

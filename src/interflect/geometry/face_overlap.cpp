@@ -15,13 +15,12 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Minimum cosine between the normals of coplanar faces. Excludes upright faces lower than the tolerance. Generous,
-/// because the normals of small faces are noisy.
+/// Minimum cosine between coplanar faces. Rejects low upright faces; tolerates the noisy normals of small faces.
 constexpr double least_facing = 0.7;
 
 constexpr std::size_t search_grain = 1024;
 
-/// A face of three or four corners; clipping adds up to four.
+/// Clipping adds at most four corners to a face.
 struct ClippedFace {
     std::array<V3d, 8> corners;
     std::size_t count = 0;
@@ -61,7 +60,7 @@ ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
     return result;
 }
 
-/// The larger face of possible pairs: its plane, and half-spaces that bound the prism over its polygon.
+/// The larger face of a pair: its plane and the half-spaces that bound its prism.
 class LargerFace {
   public:
     LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
@@ -117,7 +116,6 @@ class LargerFace {
     std::array<HalfSpace, 4> inside_;
 };
 
-/// Face boxes are enlarged by the face's tolerance.
 std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
                                  std::span<const float> tolerance) {
     std::vector<Boxed> tree;

@@ -13,10 +13,10 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum detail relative to a face's diameter: 40 um of 10 m.
+/// Minimum detail relative to a face's diameter: 40 um at 10 m.
 constexpr double least_detail = 4e-6;
 
-/// Four roundings of a coordinate in single precision, relative to it.
+/// Four float roundings, relative to the largest coordinate.
 constexpr double relative_rounding = 0x1p-22;
 
 }  // namespace

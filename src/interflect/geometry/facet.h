@@ -12,9 +12,9 @@
 
 namespace interflect::detail {
 
-/// A planar convex polygon of three or four corners: a face, or half of a warped quadrilateral.
+/// Planar convex polygon: a face, or half of a warped quadrilateral.
 struct Facet {
-    std::uint32_t face = none;  ///< Its patch; the front of a two-sided face.
+    std::uint32_t face = none;  ///< Front patch.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::size_t count = 0;
     std::array<Imath::V3d, 4> corners;  ///< [m]
@@ -27,9 +27,9 @@ struct Facet {
 
     double area() const { return area_; }  ///< [m^2]
 
-    /// Signed [m].
+    /// Signed distance from the plane [m].
     double height(const Imath::V3d& x) const { return normal.dot(x - corners[0]); }
-    /// Shorter lengths are ignored [m].
+    /// Length below which features are ignored [m].
     double detail() const;
 
     Imath::Box3f box(float margin) const;  ///< Enlarged by `margin` [m].
@@ -38,10 +38,9 @@ struct Facet {
     double area_ = 0;
 };
 
-/// The facets of all faces, in order of the faces.
 std::vector<Facet> facets_of(const Scene& scene);
 
-/// A right-handed frame in a facet's plane, along its longest edge.
+/// Right-handed frame in a facet's plane, with x along its longest edge.
 class PlaneFrame {
   public:
     explicit PlaneFrame(const Facet& facet);

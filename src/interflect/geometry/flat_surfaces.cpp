@@ -16,20 +16,20 @@ namespace interflect::detail {
 
 namespace {
 
-/// Maximum angle (0.8 degrees) between coplanar neighbours, as cosine: above the rounding of small patches' normals,
-/// below modelled creases.
+/// Minimum cosine between coplanar neighbours (0.8 degrees): tolerates rounded normals of small patches, keeps modelled
+/// creases.
 constexpr float same_plane_cosine = 0.9999f;
 
 constexpr std::size_t patches_at_once = 4096;
 
-/// Number of preceding faces at an edge to compare with; bounds the cost for any file.
+/// Bounds the comparisons at an edge.
 constexpr std::size_t most_faces_at_edge = 8;
 
-/// Relative difference of equal areas: the same surface divided or rounded differently.
+/// Relative difference of areas that count as equal despite division and rounding.
 constexpr double equal_areas = 1e-4;
 
 struct Edge {
-    std::uint64_t vertices;  // the lower index in the upper half
+    std::uint64_t vertices;  // lower index in the upper half
     std::uint32_t patch;
 };
 
@@ -39,7 +39,7 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
 
 bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
 
-/// Common vertex index per position, ignoring other coordinates.
+/// Maps each vertex to one index per position.
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
     std::iota(joined.begin(), joined.end(), 0u);
@@ -50,7 +50,6 @@ std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     return joined;
 }
 
-/// Edges of all faces, by vertices, then by patch.
 std::vector<Edge> sorted_edges(const Scene& scene) {
     const std::vector<std::uint32_t> joined = joined_vertices(scene);
     std::vector<Edge> edges;
@@ -67,7 +66,7 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Position of each surface in the order of areas, and the area itself, are indexed by representative.
+/// Returns the position of each surface by area. Indexed by representative, like `area`.
 std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
                                              const std::vector<double>& area) {
     std::vector<std::uint32_t> order;
@@ -127,7 +126,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
-    std::vector<double> area(count, 0.0);  // indexed by the surface's representative
+    std::vector<double> area(count, 0.0);  // per representative
     for (std::uint32_t i = 0; i < count; ++i)
         if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
 

@@ -7,15 +7,14 @@
 
 namespace interflect::detail {
 
-/// Flat surface of each patch, identified by the surface's lowest patch, whose side is the front. Patches belong
-/// together if they share material, object and whole edges in (nearly) one plane, or have the same Patch::surface. This
-/// undoes triangulation by readers and division by meshers. O(n log n).
+/// Returns the flat surface of each patch, identified by its lowest patch. Patches of a surface share material, object
+/// and whole edges in nearly one plane, or have the same Patch::surface. Reverses triangulation and meshing. O(n log
+/// n).
 std::vector<std::uint32_t> flat_surfaces(const Scene& scene);
 
-/// Ranks patches by their flat surface.
-/// @return  A unique rank per patch. Order: area of the surface; at (nearly) equal areas, emitters first, then the
-///          lowest patch. Within a surface: patch index. The sides of a two-sided face have adjacent ranks, front
-///          first; its area counts once. O(n log n).
+/// Returns a unique rank per patch: by area of the flat surface, at nearly equal areas emitters first, then by lowest
+/// patch; within a surface by index. The sides of a face have adjacent ranks, front first, and count as one area. O(n
+/// log n).
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -7,10 +7,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Relative rounding of the twist of a parallelogram.
+/// Relative twist below which a quadrilateral counts as a parallelogram.
 constexpr float parallelogram_tolerance = 1e-5f;
 
-/// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a and a + b are >= 0.
+/// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a, a + b >= 0.
 float warp_linear(float a, float b, float uniform) {
     // Solves a x + b x^2 / 2 = uniform (a + b / 2) without cancellation for small b.
     const float target = uniform * (a + 0.5f * b);
@@ -58,13 +58,14 @@ float PatchGeometry::jacobian(Parameters p) const { return jacobian_[0] + p.u * 
 Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner, float size) const {
     Parameters local{a, b};
     if (triangle_) {
-        // Area-preserving and continuous: fold along the diagonal (Heitz 2019, 'A Low-Distortion Map').
+        // Continuous, area-preserving map (Heitz 2019, 'A Low-Distortion Map').
         if (b > a)
             local = {0.5f * a, b - 0.5f * a};
         else
             local = {a - 0.5f * b, 0.5f * b};
     } else if (!parallelogram_) {
-        // Samples the marginal density of u (the Jacobian at the middle of v), then v given u. Both are linear.
+        // Samples u from its marginal density (the Jacobian at the middle of v), then v given u. Both densities are
+        // linear.
         const auto density = [&](float s, float t) {
             return std::max(0.0f, jacobian({corner.u + size * s, corner.v + size * t}));
         };
@@ -78,8 +79,8 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
     const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
     if (!parallelogram_) {
-        // d = u edge_u + v edge_v + u v twist in the plane: a quadratic equation for v. The root within a convex
-        // quadrilateral stays finite for a vanishing twist.
+        // Solves d = u edge_u + v edge_v + u v twist, quadratic in v. The root inside stays finite for a vanishing
+        // twist.
         using Imath::V3d;
         const V3d n(normal_), h(d), e(shape_.edge_u), f(shape_.edge_v), g(shape_.twist);
         const auto cross = [&](const V3d& a, const V3d& b) { return n.dot(a.cross(b)); };

@@ -8,13 +8,12 @@
 
 namespace interflect::detail {
 
-/// Parameters of a point of a patch. Triangle v0 v1 v2: x = v0 + u (v1 - v0) + v (v2 - v0), u, v >= 0, u + v <= 1.
-/// Quadrilateral v0 v1 v2 v3: bilinear; (0,0) (1,0) (1,1) (0,1) are its vertices in order.
+/// Surface parameters. Triangle: x = v0 + u (v1 - v0) + v (v2 - v0), u, v >= 0, u + v <= 1. Quadrilateral: bilinear,
+/// with vertices at (0,0) (1,0) (1,1) (0,1).
 struct Parameters {
     float u = 0, v = 0;
 };
 
-/// Geometry of one patch, precomputed for sampling, areas of cells and parameters of points.
 class PatchGeometry {
   public:
     /// x = origin + u edge_u + v edge_v + u v twist.
@@ -35,15 +34,15 @@ class PatchGeometry {
     const Shape& shape() const { return shape_; }
     V3f point(Parameters p) const { return shape_.point(p); }
 
-    /// Maps a uniform point (a, b) of the unit square to parameters of points uniform over the patch's area, or over
-    /// its part corner + size (s, t), with (s, t) in the patch's parameter domain.
+    /// Maps uniform (a, b) in the unit square to points uniform over the patch's area, or over its part corner + size
+    /// (s, t) with (s, t) in the parameter domain.
     Parameters uniform_parameters(float a, float b, Parameters corner = {}, float size = 1) const;
 
-    /// Parameters of a point on (or close to) the patch: the inverse of point(), clamped to the patch.
+    /// Inverts point() for x on or near the patch. Clamps to the patch.
     Parameters parameters_of(const V3f& x) const;
 
-    /// |dx/du x dx/dv| at p [m^2]. Constant, 2 area(), on a triangle; linear in u and v on a planar quadrilateral. The
-    /// area of a cell is this value at its centre times the cell's size.
+    /// Returns |dx/du x dx/dv| [m^2]: 2 area() on a triangle; linear in u and v on a planar quadrilateral. A cell's
+    /// area is its size in parameter space times the value at its centre.
     float jacobian(Parameters p) const;
 
   private:

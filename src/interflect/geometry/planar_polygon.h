@@ -11,8 +11,8 @@
 namespace interflect::detail {
 
 struct PlanarCorner {
-    Imath::V2d position;          ///< In the frame of the plane [m].
-    std::uint32_t vertex = none;  ///< Scene vertex; none for a new vertex.
+    Imath::V2d position;          ///< In the plane's frame [m].
+    std::uint32_t vertex = none;  ///< In the scene; none if new.
 };
 
 /// Convex, counter-clockwise.

@@ -21,13 +21,11 @@ namespace {
 using Imath::V3d;
 using Loop = std::vector<std::uint32_t>;
 
-/// Roundings of the largest coordinate below which a height is noise: one per vertex of a triangle and one for the
-/// differences.
+/// Float roundings of the largest coordinate below which a height is noise: three vertices and their differences.
 constexpr double noise_in_roundings = 4;
 
 V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
 
-/// Merges successive vertices at one position, cyclically.
 Loop without_repeats(const Scene& scene, const Loop& loop) {
     Loop kept;
     for (const std::uint32_t v : loop)
@@ -36,7 +34,7 @@ Loop without_repeats(const Scene& scene, const Loop& loop) {
     return kept;
 }
 
-/// Twice the vector area of a loop (Newell's formula), relative to the first vertex to avoid cancellation.
+/// Newell's formula, relative to the first vertex against cancellation.
 V3d doubled_area(const Scene& scene, const Loop& loop) {
     const V3d origin = position(scene, loop[0]);
     V3d sum(0);
@@ -45,13 +43,12 @@ V3d doubled_area(const Scene& scene, const Loop& loop) {
     return sum;
 }
 
-/// Size, normal and rounding of an outline.
 struct OutlinePlane {
-    V3d normal{0};        ///< Unit length; zero if the outline has no area.
+    V3d normal{0};        ///< Unit length; zero without area.
     double size = 0;      ///< Diagonal of the bounding box [m].
     double rounding = 0;  ///< Smaller heights are noise [m].
     bool degenerate = true;
-    bool self_crossing = false;  ///< Degenerate only because areas of opposite orientation cancel.
+    bool self_crossing = false;  ///< Degenerate only because opposite areas cancel.
 
     OutlinePlane(const Scene& scene, const Loop& outline) {
         if (outline.size() < 3) return;
@@ -71,7 +68,7 @@ struct OutlinePlane {
     }
 
   private:
-    /// Maximum distance of the outline from a line through two distant vertices.
+    /// Returns the outline's maximum distance from the chord through its first vertex and the farthest one.
     static double width(const Scene& scene, const Loop& outline) {
         const V3d start = position(scene, outline[0]);
         V3d chord(0);
@@ -95,7 +92,6 @@ bool is_convex_planar_quadrilateral(const Scene& scene, const Loop& loop, const 
     return true;
 }
 
-/// Adds one patch, and its other side if requested.
 class PatchAdder {
   public:
     PatchAdder(Scene& scene, std::uint32_t material, std::uint32_t object, bool two_sided)
@@ -107,7 +103,7 @@ class PatchAdder {
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = none) {
         Patch front = front_;
         front.vertices = {a, b, c, d};
-        // In single precision, as in all later computations.
+        // Single precision, as in all later computations.
         if (!(patch_area(scene_, front) >= smallest_face_area)) return;
         add_face(scene_, front, two_sided_ ? front.material : none);
         added_ = true;
@@ -121,17 +117,16 @@ class PatchAdder {
     bool two_sided_, added_ = false;
 };
 
-/// GLU tessellator with the odd winding rule.
 class Triangulation {
   public:
     Triangulation(Scene& scene, const OutlinePlane& frame, std::uint32_t origin)
         : scene_(scene), frame_(frame), origin_(position(scene, origin)) {}
 
-    /// Corners, three per triangle; empty if the tessellator failed.
+    /// Returns three corners per triangle; empty if the tessellator failed.
     std::vector<std::uint32_t> operator()(std::span<const Loop> loops);
 
   private:
-    // Tessellator coordinates: relative to the first vertex, of size 1.
+    // Tessellator coordinates: unit size, relative to the first vertex.
     V3d local(const V3d& x) const { return (x - origin_) / frame_.size; }
     V3d global(const V3d& x) const { return origin_ + x * frame_.size; }
 
@@ -152,12 +147,12 @@ class Triangulation {
     Scene& scene_;
     const OutlinePlane& frame_;
     V3d origin_;
-    std::deque<std::uint32_t> handles_;  // targets of the tessellator's vertex pointers; a deque keeps addresses valid
+    std::deque<std::uint32_t> handles_;  // targets of GLU's vertex pointers; a deque keeps addresses valid
     std::vector<std::uint32_t> corners_;
     bool failed_ = false;
 };
 
-/// Vertex at a crossing: an existing neighbour at that position, else a new vertex.
+/// Reuses a neighbour at the crossing's position.
 std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours, const GLfloat* weights) {
     std::vector<std::uint32_t> vertices;
     std::vector<float> weights_of_vertices;
@@ -180,7 +175,7 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
     gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
     gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
     gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
-    // This callback makes GLU emit separate triangles instead of strips and fans.
+    // With this callback GLU emits separate triangles instead of strips and fans.
     gluTessCallback(t, GLU_TESS_EDGE_FLAG_DATA, callback(&ignore_edge_flag));
 
     gluTessBeginPolygon(t, this);

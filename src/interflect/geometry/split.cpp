@@ -17,13 +17,13 @@ namespace interflect::detail {
 
 namespace {
 
-/// Pieces along the first and the last edge of a patch; equal for a triangle.
+/// Along the first and the last edge; equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
 
 std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
-    constexpr float most = 1e9f;  // far beyond any limit; the division may overflow to infinity
+    constexpr float most = 1e9f;  // above any limit, also for an infinite quotient
     return static_cast<std::uint64_t>(std::clamp(std::ceil((b - a).length() / largest_edge), 1.0f, most));
 }
 
@@ -38,7 +38,7 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
 
-/// @param vertex  Vertex at grid position (i, j): i along the first edge, j along the last.
+/// @param vertex  Returns the vertex at (i, j): i along the first edge, j along the last.
 template <class Vertex, class AddPiece>
 void split_quadrilateral(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
     for (std::uint64_t j = 0; j < n.v; ++j)

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Two unit vectors that form a right-handed frame s, t, n with the unit vector n (Duff et al. 2017).
+/// Unit vectors s, t that form a right-handed frame with the unit vector n (Duff et al. 2017).
 struct TangentFrame {
     V3f s, t;
     explicit TangentFrame(const V3f& n) {

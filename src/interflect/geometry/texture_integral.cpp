@@ -10,15 +10,14 @@ namespace {
 
 constexpr std::int64_t texels_per_sum = 8;
 
-/// Maximum number of lines of texel centres that a border may cross: 0.1 s.
+/// Maximum number of texel lines crossed by a border; takes 0.1 s.
 constexpr double most_crossings = 1 << 20;
 
-/// Minimum height of a triangle in texels, which barely changes the mean. Avoids a division by a zero area.
+/// Minimum height of a triangle in texels. Avoids division by a zero area; barely changes the mean.
 constexpr double least_height = 1e-3;
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
 
-/// Remainder in [0, n).
 std::int64_t wrapped(std::int64_t i, std::int64_t n) {
     const std::int64_t remainder = i % n;
     return remainder < 0 ? remainder + n : remainder;
@@ -26,7 +25,7 @@ std::int64_t wrapped(std::int64_t i, std::int64_t n) {
 
 double doubled_area(const std::array<Imath::V2d, 3>& x) { return (x[1] - x[0]).cross(x[2] - x[0]); }
 
-/// Moves the corner opposite to the longest edge away from it if it is too close.
+/// Raises the corner opposite the longest edge to the minimum height.
 void widen(std::array<Imath::V2d, 3>& x) {
     std::size_t longest = 0;
     const auto edge = [&](std::size_t i) { return x[(i + 1) % 3] - x[i]; };
@@ -56,13 +55,13 @@ TextureIntegral::TextureIntegral(const Texture& texture)
     }
 }
 
-// Below, x counts columns to the right and y rows downwards. Texel centres are at integer coordinates.
+// Below, x counts columns to the right and y rows downwards; texel centres are at integers.
 
 inline std::size_t TextureIntegral::wrapped_row(std::int64_t row) const {
     return static_cast<std::size_t>(wrapped(row, texture_.height));
 }
 
-/// Integral of the interpolated row from texel 0 to another texel.
+/// Integrates the interpolated row from texel 0 to `column`.
 RgbD TextureIntegral::row_integral(std::int64_t column, std::size_t row) const {
     const std::int64_t width = texture_.width, within = wrapped(column, width);
     const RgbD* sums = &sums_[row * sums_per_row_];
@@ -84,12 +83,12 @@ RgbD TextureIntegral::value_at(const V2d& x) const {
     return in_row(row) * (1 - t) + in_row(row + 1) * t;
 }
 
-/// Integral of F dy along a part of an edge that crosses no line of texel centres.
+/// Integrates F dy within a cell of texel centres.
 /// @param origin  Column at which F is 0.
 RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int64_t origin) const {
     const V2d middle = (a + b) * 0.5;
     const std::int64_t column = floor_of(middle.x), row = floor_of(middle.y);
-    std::array<RgbD, 2> before, first, rise;  // of the rows above and below
+    std::array<RgbD, 2> before, first, rise;  // per row, above and below
     const std::int64_t left = wrapped(column, texture_.width), right = wrapped(column + 1, texture_.width);
     for (std::size_t k = 0; k < 2; ++k) {
         const std::size_t y = wrapped_row(row + static_cast<std::int64_t>(k));
@@ -105,12 +104,11 @@ RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int6
     return (antiderivative(a) + antiderivative(middle) * 4 + antiderivative(b)) * ((b.y - a.y) / 6);
 }
 
-/// Integral of F dy along an edge.
 RgbD TextureIntegral::integral_along(const V2d& a, const V2d& b, std::int64_t origin) const {
     RgbD sum(0, 0, 0);
     const V2d d = b - a;
     if (d.y == 0) return sum;
-    // Next line of texel centres on each axis, and its position along the edge.
+    // Next line of texel centres per axis, and its position along the edge.
     std::array<double, 2> line{}, at{};
     const auto position = [&](int axis) { return d[axis] == 0 ? 2 : (line[axis] - a[axis]) / d[axis]; };
     for (int axis = 0; axis < 2; ++axis) {
@@ -130,7 +128,6 @@ RgbD TextureIntegral::integral_along(const V2d& a, const V2d& b, std::int64_t or
     return sum + integral_within_cell(from, b, origin);
 }
 
-/// Mean over a triangle that spans several cells.
 RgbD TextureIntegral::mean_of_wide(std::array<V2d, 3> x) const {
     double crossings = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -153,7 +150,7 @@ Rgb TextureIntegral::mean(const std::array<V2f, 3>& corners) const {
     bool in_one_cell = true;
     for (int axis = 0; axis < 2; ++axis)
         for (std::size_t i = 1; i < 3; ++i) in_one_cell &= floor_of(x[i][axis]) == floor_of(x[0][axis]);
-    // Within a cell the texture is a polynomial of degree 2; the midpoints of the edges give its mean exactly.
+    // Within a cell the texture is quadratic: the edge midpoints give the exact mean.
     const RgbD mean =
         in_one_cell
             ? RgbD((value_at((x[0] + x[1]) / 2) + value_at((x[1] + x[2]) / 2) + value_at((x[2] + x[0]) / 2)) / 3)

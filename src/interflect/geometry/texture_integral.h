@@ -11,16 +11,16 @@
 
 namespace interflect::detail {
 
-/// Exact means of a texture over triangles, with filtering and repetition as in texel_at(). By Green's theorem the
-/// integral of f over a triangle is that of F dy along its border, with dF/dx = f. Between lines of texel centres F is
-/// a cubic, which Simpson's rule integrates exactly. Memory: 3 bytes a texel.
+/// Exact means of a texture over triangles, filtered and repeated as in texel_at(). Green's theorem reduces the
+/// integral of f over a triangle to F dy along its border, dF/dx = f. F is cubic between texel lines, so Simpson's rule
+/// is exact. Memory: 3 bytes per texel.
 class TextureIntegral {
   public:
     /// @param texture  Without faults; must outlive this object.
     explicit TextureIntegral(const Texture& texture);
 
-    /// Mean over a triangle in texture coordinates, or over a line if it has no area. Within the range of the texels.
-    /// O(texels along the border); above a million of them, the mean of the whole texture.
+    /// Returns the mean over a triangle in texture coordinates, or over a line if it has no area. Clamped to the
+    /// largest texel. Cost: O(texels along the border); above a million, returns the mean of the whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:
@@ -35,7 +35,7 @@ class TextureIntegral {
 
     const Texture& texture_;
     std::size_t sums_per_row_;
-    std::vector<RgbD> sums_;  // per row: sum of the texels before every eighth one, then of the whole row
+    std::vector<RgbD> sums_;  // per row: sums before every eighth texel, then of the whole row
     Rgb largest_;
     RgbD mean_{0, 0, 0};
 };

@@ -15,13 +15,13 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum sine of the turn of the outline at each corner.
+/// Minimum sine of the turn at each corner.
 constexpr double least_turn = 0.1;
-/// Maximum deviation of texture coordinates from the linear map.
+/// Maximum deviation of texture coordinates from a linear map.
 constexpr double coordinate_tolerance = 1e-4;
 
 struct Edge {
-    std::uint64_t vertices = 0;  // the lower index in the upper half
+    std::uint64_t vertices = 0;  // lower index in the upper half
     std::uint32_t triangle = 0;
     std::uint32_t corner = 0;
 
@@ -58,7 +58,7 @@ class PairFinder {
         return length >= squared_length(triangle, k + 1) && length >= squared_length(triangle, k + 2);
     }
 
-    /// Pairs consecutive triangles. Exporters write halves in sequence, so most pairs need no search.
+    /// Exporters write both halves in sequence, so most pairs need no search.
     void pair_neighbours_in_order() {
         for (std::uint32_t t = 0; t + 1 < faces_.size(); ++t)
             for (std::uint32_t i = 0; i < 3 && is_single(t); ++i)
@@ -84,7 +84,6 @@ class PairFinder {
                 pair(first->triangle, first->corner, other->triangle, other->corner, longest_only);
     }
 
-    /// Merges two triangles along these edges if the result is valid.
     void pair(std::uint32_t t, std::uint32_t i, std::uint32_t u, std::uint32_t j, bool longest_only) {
         if (!is_single(t) || !is_single(u)) return;
         if (corner(t, i) != corner(u, j + 1) || corner(t, i + 1) != corner(u, j)) return;
@@ -95,7 +94,7 @@ class PairFinder {
         faces_[std::max(t, u)] = {none, none, none, none};
     }
 
-    /// @param face  [0] and [2] are the ends of the shared edge.
+    /// @param face  The shared edge joins [0] and [2].
     bool is_planar_and_convex(const FaceVertices& face) const {
         const V3d a = position(face[0]), b = position(face[1]), c = position(face[2]), d = position(face[3]);
         const V3d normal = (c - a).cross(d - a).normalized();
@@ -121,7 +120,7 @@ class PairFinder {
 
     const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
-    std::vector<FaceVertices> faces_;  // first vertex none: the face was merged into another
+    std::vector<FaceVertices> faces_;  // first vertex invalid: merged into another
 };
 
 }  // namespace

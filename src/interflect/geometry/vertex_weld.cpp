@@ -26,7 +26,7 @@ std::uint64_t hash(const V3f& x, const VertexCoordinates& coordinates) {
 
 }  // namespace
 
-/// Slot of this vertex, or the empty slot at which to insert it.
+/// Returns the vertex's slot, or the empty slot for its insertion.
 std::uint32_t& VertexWeld::slot_of(const V3f& position, const VertexCoordinates& coordinates) {
     const auto is_other = [&](std::uint32_t v) {
         return scene_.vertices[v] != position || coordinates_of(scene_, v) != coordinates;

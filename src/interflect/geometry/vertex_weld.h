@@ -8,14 +8,14 @@
 
 namespace interflect::detail {
 
-/// Merges vertices with equal position and attributes in single precision (-0 equals 0). A hash table of vertex indices
-/// with linear probing; at most 16 bytes a vertex.
+/// Merges vertices with equal position and attributes (-0 equals 0). Hash table with linear probing, at most 16 bytes
+/// per vertex.
 class VertexWeld {
   public:
-    /// @param scene  New vertices are appended; vertices added by others are not found.
+    /// @param scene  Receives new vertices. Vertices added elsewhere are not found.
     explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// Index of the vertex, added by add_vertex() if new. All numbers must be finite.
+    /// Returns the vertex's index; adds it if new. All numbers must be finite.
     std::uint32_t vertex(const V3f& position, const VertexCoordinates& coordinates = {});
 
   private:
@@ -23,7 +23,7 @@ class VertexWeld {
     void grow();
 
     Scene& scene_;
-    std::vector<std::uint32_t> slots_;  // a power of two, never more than half full
+    std::vector<std::uint32_t> slots_;  // size: a power of two; at most half full
     std::size_t used_ = 0;
 };
 

@@ -8,12 +8,12 @@
 
 namespace interflect::detail {
 
-/// Grid of equal azimuths and equal angles from the zenith, row by row from the zenith.
+/// Grid of equal azimuth and zenith angle steps, row by row from the zenith.
 struct SkyGrid {
     std::size_t columns, rows;
 
     std::size_t size() const { return columns * rows; }
-    /// Returns the cosine of the zenith angle at the upper edge of a row.
+    /// Returns the cosine of the zenith angle at a row's upper edge.
     double edge_cosine(std::size_t row) const;
     double solid_angle(std::size_t row) const;  ///< Per cell in the row [sr].
     SkyPlace middle(std::size_t column, std::size_t row) const;
@@ -21,15 +21,14 @@ struct SkyGrid {
     std::size_t column_of(float s) const;
 };
 
-/// Samples places by the weights of a grid's cells, uniformly in solid angle within a cell: a piecewise constant
-/// distribution. Immutable; 4 bytes per cell.
+/// Samples cells by weight, uniformly in solid angle within a cell. Immutable; 4 bytes per cell.
 class DirectionTable {
   public:
     /// @param weights  Per cell, >= 0.
     DirectionTable(const SkyGrid& grid, std::span<const float> weights);
 
-    double sum() const { return sum_; }  ///< Sum of the weights; sampling requires > 0.
-    /// For u and v uniform in (0, 1): u chooses the column, v the row.
+    double sum() const { return sum_; }  ///< Sampling requires > 0.
+    /// @param u, v  In (0, 1); u selects the column, v the row.
     SkyPlace sample(float u, float v) const;
     /// Per solid angle [1/sr].
     float density(const SkyPlace& place) const;
@@ -37,8 +36,8 @@ class DirectionTable {
   private:
     SkyGrid grid_;
     double sum_ = 0;
-    std::vector<double> rows_;    // cumulative share of each row, from 0 to 1
-    std::vector<float> columns_;  // cumulative share of each cell in its row
+    std::vector<double> rows_;    // cumulative, from 0 to 1
+    std::vector<float> columns_;  // cumulative within each row
 };
 
 }  // namespace interflect::detail

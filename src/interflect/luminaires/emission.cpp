@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Returns the box around all patches, slightly enlarged: rays that start on it are outside the scene.
+/// Enlarged: rays that start on it are outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;
@@ -29,14 +29,14 @@ Imath::Box3f box_around(const Scene& scene) {
     return box;
 }
 
-/// Samples the cosine between a ray of a beam and its axis, for v in (0, 1]. The inner part is uniform in solid angle;
-/// beyond it the intensity is proportional to (c - outer)^2.
+/// Samples the cosine between a ray and its beam's axis, v in (0, 1]. Intensity is constant within `inner`, then
+/// proportional to (c - outer)^2.
 float sample_cosine(float v, float inner, float outer, float inner_share) {
     if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// Returns the direction at an angle to an axis, rotated about it by `turn` of a full turn.
+/// Rotates about the axis by `turn` full turns.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
@@ -60,7 +60,7 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
     return sides;
 }
 
-/// Minimum of the channels. A map is divided into this grey part and the excess of each channel.
+/// Splits a map into this grey part and the excess of each channel.
 float least_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
 constexpr std::array<SkyComponent, 4> map_components = {
     {{Rgb(1, 1, 1), least_channel},
@@ -68,7 +68,7 @@ constexpr std::array<SkyComponent, 4> map_components = {
      {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - least_channel(c); }},
      {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - least_channel(c); }}}};
 
-/// Returns the distribution of a sky on a side of the box: amount of a component times cosine at the centre of cells.
+/// Returns the sampling table of a box side: amount of the component times cosine.
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {
     std::vector<float> of_horizon(grid.columns);  // cosines at the horizon
@@ -87,9 +87,9 @@ DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<c
     return {grid, weights};
 }
 
-/// Interval of a ray's line within a box: distances along the line, negative before the ray's origin.
+/// Interval of a ray's line within a box [m]; negative before the ray's origin.
 struct Crossing {
-    float begin, end;  // begin > end: the line misses the box
+    float begin, end;  // begin > end: missed
 };
 Crossing crossing(const Imath::Box3f& box, const Ray& ray) {
     Crossing within{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
@@ -150,8 +150,7 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Emits from the rectangle that a box covers along the light, enlarged for the oblique rays of a disc to reach all of
-/// the box.
+/// Emits from the box's projection along the light, enlarged for the tilted rays of a disc.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -173,8 +172,8 @@ void Emission::add(const DirectionalLight& light) {
     }
 }
 
-/// Radiance is the same in all directions inside a convex surface with uniform diffuse emission. Here this is the six
-/// sides of a box, which no ray can hit.
+/// Uniform diffuse emission by a convex surface, here a box, has equal radiance in all directions inside.
+/// box.
 void Emission::add(const UniformSky& sky) {
     for (std::size_t b = 0; b < boxes_.size(); ++b)
         for (const BoxSide& side : sides_of(boxes_[b].min, boxes_[b].size())) {
@@ -197,8 +196,7 @@ void Emission::add(const EnvironmentMap& map) {
     add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
 }
 
-/// Emits like a uniform sky, but with directions in proportion to radiance times cosine. Sides of different boxes that
-/// face the same way share their directions.
+/// Samples directions by radiance times cosine. Parallel sides of different boxes share their tables.
 void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                        std::span<const SkyComponent> components) {
     const std::vector<Rgb> integrals = sky->cell_integrals(grid);
@@ -224,12 +222,11 @@ void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyG
 
 void Emission::add_window(Window window, const Rgb& exitance, std::size_t box) {
     const float part_area = window.edge_u.length() * window.edge_v.length() / float{parts_per_emitter};
-    const std::size_t outer = emitters_.size() - box * (window.is_sky() ? 6 : 1);  // the same side of the scene's box
+    const std::size_t outer = emitters_.size() - box * (window.is_sky() ? 6 : 1);  // same side of the scene's box
     window.part_area = box == 0 ? part_area : std::get<Window>(emitters_[outer].shape).part_area;
     emitters_.push_back({window, exitance, RgbD(exitance) * double{part_area}, box});
 }
 
-/// All rays of a web's sampler carry the same power.
 void Emission::add(const MeasuredLight& light) {
     std::shared_ptr<const WebSampler>& sampler = samplers_[light.web.get()];
     if (!sampler) sampler = std::make_shared<WebSampler>(*light.web);
@@ -251,7 +248,7 @@ Ray Emission::Window::ray(float u, float v, float c, float d) const {
     return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
 }
 
-/// Cells on a side's plane extend behind it: directions sampled there are mirrored.
+/// Cells may extend behind the side's plane: mirrors directions sampled there.
 Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
     V3f direction = -sky->frame().direction(places->sample(c, d));
     const float cosine = direction.dot(normal);
@@ -290,8 +287,8 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// Moves the origin of a ray to the scene's box if the ray belongs to `box`: its line crosses this box, but no later
-/// one. Otherwise returns a ray that misses the scene.
+/// Moves a ray's origin to the scene's box if its line crosses `box` but no later one. Otherwise returns a ray that
+/// misses the scene.
 Ray Emission::of_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
@@ -357,7 +354,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Window& window = std::get<Window>(emitter.shape);
     if (window.is_sky()) return of_side(window.direction, window.part_area, emitter.rating);
-    // Far enough for direction and distance to be the same for the whole scene.
+    // Far enough for equal direction and distance over the whole scene.
     const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
 }

@@ -32,7 +32,7 @@ Illumination light_at(const SpotLight& light, const V3f& x, float, float) {
     return i;
 }
 
-/// Samples the solid angle of the disc, 2 pi (1 - cos r), uniformly. Its radiance is E / (pi sin^2 r).
+/// Samples the disc's solid angle, 2 pi (1 - cos r), uniformly. Its radiance is E / (pi sin^2 r).
 Illumination light_at(const DirectionalLight& light, const V3f&, float u, float v) {
     const V3f axis = -light.direction.normalized();
     constexpr float everywhere = std::numeric_limits<float>::infinity();
@@ -49,11 +49,10 @@ Illumination light_at(const UniformSky&, const V3f&, float, float) { return {}; 
 Illumination light_at(const SkyDome&, const V3f&, float, float) { return {}; }
 Illumination light_at(const EnvironmentMap&, const V3f&, float, float) { return {}; }
 
-/// Samples a point y of the opening as if all of it were seen from its centre: with a density |n d0| / A(d0) over the
-/// surface, where A is its projected area. Its radiance is I(d) / A(d); the irradiance is I(d) / r^2 times
-/// (n d / A(d)) / (n d0 / A(d0)).
+/// Samples a point of the opening as seen from its centre, with density |n d0| / A(d0); A is the projected area. From
+/// the radiance I(d) / A(d), the irradiance is I(d) / r^2 (n d / A(d)) / (n d0 / A(d0)).
 Illumination light_at(const MeasuredLight& light, const V3f& x, float u, float v) {
-    constexpr float surface_tolerance = 0x1p-14f;  // relative to the distance: the opening may lie in a surface
+    constexpr float surface_tolerance = 0x1p-14f;  // relative to distance: the opening may lie in a surface
     const LuminaireFrame frame(light);
     const LuminousOpening& opening = light.web->opening;
     const V3f from_middle = frame.to_luminaire(x - light.position);

@@ -21,24 +21,21 @@ V3f along(int axis, float length) {
     return v;
 }
 
-/// Returns the projected areas of the three faces of a box that are visible along -d.
 V3f box_faces(const V3f& size, const V3f& d) {
     return {std::abs(d.x) * size.y * size.z, std::abs(d.y) * size.z * size.x, std::abs(d.z) * size.x * size.y};
 }
 
-/// Projected areas of the end and the side of an elliptic cylinder.
 struct CylinderAreas {
     float end, side;
 };
 
-/// The projection of the side has the height of the cylinder and the width of its ellipse along d.
+/// The side's projection: height of the cylinder times width of its ellipse seen along d.
 CylinderAreas cylinder_areas(const LuminousOpening& opening, const V3f& d) {
     const int k = opening.axis, i = (k + 1) % 3, j = (k + 2) % 3;
     const V3f& size = opening.size;
     return {std::abs(d[k]) * quarter_pi * size[i] * size[j], size[k] * std::hypot(d[i] * size[j], d[j] * size[i])};
 }
 
-/// Samples the unit disk uniformly.
 Imath::V2f disk_point(float u, float v) {
     const float radius = std::sqrt(u), turn = 8 * quarter_pi * v;
     return {radius * std::cos(turn), radius * std::sin(turn)};
@@ -56,7 +53,7 @@ OpeningPoint sample_box(const V3f& size, const V3f& d, float u, float v) {
             along(k, sign)};
 }
 
-/// An affine map to a cylinder of radius 1 preserves uniformity in a projection.
+/// An affine map to radius 1 preserves uniformity in projection.
 OpeningPoint sample_cylinder(const LuminousOpening& opening, const V3f& d, float u, float v) {
     const int k = opening.axis, i = (k + 1) % 3, j = (k + 2) % 3;
     const V3f radii = opening.size / 2;

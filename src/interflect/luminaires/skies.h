@@ -7,34 +7,33 @@
 
 namespace interflect::detail {
 
-/// Unoccluded radiance of skies and suns, and sampling of bright directions. Immutable, shared by all threads.
+/// Unoccluded radiance of skies and suns. Samples bright directions. Immutable, thread-safe.
 class Skies {
   public:
     explicit Skies(const Scene& scene);
 
-    /// Returns the radiance of the skies without suns [cd/m^2 or W/(m^2 sr)]. @param direction  Unit length.
+    /// Returns the radiance without suns [cd/m^2 or W/(m^2 sr)]; unit direction.
     Rgb radiance(const V3f& direction) const;
     /// Includes the discs of suns.
     Rgb seen(const V3f& direction) const;
 
-    /// Whether any sky is not uniform and worth sampling.
     bool can_sample() const { return !sampled_.empty(); }
     struct Sample {
         V3f direction{0, 0, 1};
         float density = 0;  ///< Per solid angle, over all sampled skies [1/sr].
     };
-    /// Samples a direction by the radiance of the skies that are not uniform. @param sky  Chooses one; all in (0, 1).
+    /// Samples by the radiance of non-uniform skies.
+    /// @param sky  Selects the sky; all arguments in (0, 1).
     Sample sample(double sky, float u, float v) const;
     float density(const V3f& direction) const;
-    /// Radiance of the skies that are not uniform.
     Rgb sampled_radiance(const V3f& direction) const;
-    Rgb uniform_radiance() const { return uniform_; }  ///< Sum of the uniform skies.
+    Rgb uniform_radiance() const { return uniform_; }
 
   private:
     struct Sampled {
         SkyRadiance radiance;
         DirectionTable table;
-        double share;  // cumulative share of the samples
+        double share;  // cumulative
     };
     struct Disc {
         V3f towards;

@@ -10,19 +10,18 @@ namespace interflect::detail {
 
 namespace {
 
-/// Cell of one grid axis that overlaps an interval of 0 to 1, and the overlap.
+/// Overlap of a cell with a texel in [0, 1].
 struct Overlap {
     std::size_t cell;
     double from, to;
 };
 
-/// The cells that texel i of `texels` overlaps.
 std::vector<Overlap> overlaps(std::size_t i, std::size_t texels, std::size_t cells) {
     std::vector<Overlap> found;
     const auto count = static_cast<double>(cells);
     const double low = static_cast<double>(i) / static_cast<double>(texels),
                  high = static_cast<double>(i + 1) / static_cast<double>(texels);
-    // Integer arithmetic avoids rounding errors in the range of cells.
+    // Integers avoid rounding errors.
     const std::size_t first = i * cells / texels, last = ((i + 1) * cells - 1) / texels;
     for (std::size_t cell = first; cell <= last; ++cell)
         found.push_back({cell, std::max(low, static_cast<double>(cell) / count),
@@ -79,7 +78,6 @@ std::vector<Rgb> SkyRadiance::cell_integrals(const SkyGrid& grid) const {
     return integrals;
 }
 
-/// Distributes the integral of each texel to the cells that it overlaps.
 std::vector<Rgb> SkyRadiance::texel_integrals(const SkyGrid& grid) const {
     std::vector<Rgb> integrals(grid.size(), Rgb(0));
     std::vector<std::vector<Overlap>> across(image_->width);

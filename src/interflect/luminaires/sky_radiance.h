@@ -9,20 +9,21 @@
 
 namespace interflect::detail {
 
-/// Radiance of a sky dome or an environment map in every direction. Immutable, shared by all threads.
+/// Radiance of a sky dome or environment map. Immutable, thread-safe.
 class SkyRadiance {
   public:
-    /// The light must not have a luminaire_fault().
+    /// @param dome, map  Without luminaire_fault().
     explicit SkyRadiance(const SkyDome& dome);
     explicit SkyRadiance(const EnvironmentMap& map);
 
-    /// @param direction  Towards the sky, unit length. @return  [cd/m^2 or W/(m^2 sr)]
+    /// @param direction  Towards the sky, unit length.
+    /// @return           [cd/m^2 or W/(m^2 sr)]
     Rgb towards(const V3f& direction) const;
     const SkyFrame& frame() const { return frame_; }
 
-    /// Integrates radiance over each cell's solid angle: exactly for a map, from four points per cell for a dome.
+    /// Integrates over each cell: exactly for a map, by four points for a dome.
     std::vector<Rgb> cell_integrals(const SkyGrid& grid) const;
-    /// Returns a suitable grid: the map's texels, or cells of 1.4 degrees.
+    /// Returns the map's texel grid, or cells of 1.4 degrees.
     SkyGrid grid() const;
 
   private:
@@ -32,7 +33,7 @@ class SkyRadiance {
     SkyFrame frame_;
     SkyModel model_;
     V3f sun_{0, 0, 1};
-    Rgb factor_;  // from relative luminance or texels to radiance
+    Rgb factor_;  // from relative luminance or texel to radiance
     Rgb ground_{0, 0, 0};
     std::shared_ptr<const Texture> image_;  // null: a dome
 };

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns where in [0, 1] the integral of a linear function from `a` to `b` reaches `share` of its total.
+/// Returns x in [0, 1]: the integral of a linear function from a to b reaches `share` of its total.
 double invert_linear(double a, double b, double share) {
     const double whole = (a + b) / 2;
     if (!(whole > 0)) return share;
@@ -17,8 +17,7 @@ double invert_linear(double a, double b, double share) {
     return std::clamp(2 * whole * share / (a + root), 0.0, 1.0);
 }
 
-/// Returns where between t0 and t1 [rad] the integral of sin t times the linear function from `a` to `b` reaches
-/// `target`.
+/// Returns t in [t0, t1] [rad]: the integral of sin t times a linear function from a to b reaches `target`.
 double invert_band(double t0, double t1, double a, double b, double target) {
     constexpr int most_steps = 24;
     constexpr double precision = 1e-9;  // [radians]
@@ -65,7 +64,7 @@ WebSampler::WebSampler(const PhotometricWeb& web)
             azimuth_flux_.push_back(0);
             continue;
         }
-        const double mean = (cumulative_[i * height - 1] + sum) / 2;  // of the two columns
+        const double mean = (cumulative_[i * height - 1] + sum) / 2;
         azimuth_flux_.push_back(azimuth_flux_.back() + mean * (azimuth_[i] - azimuth_[i - 1]));
     }
 }
@@ -86,7 +85,7 @@ double WebSampler::polar_at(const Azimuth& azimuth, float v) const {
         return left + (right - left) * azimuth.share;
     };
     const double target = v * mixed(cumulative_, height - 1);
-    std::size_t low = 0, high = height - 1;  // the band between them contains the target
+    std::size_t low = 0, high = height - 1;
     while (high - low > 1) {
         const std::size_t middle = (low + high) / 2;
         (mixed(cumulative_, middle) > target ? high : low) = middle;

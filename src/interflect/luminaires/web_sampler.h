@@ -6,14 +6,14 @@
 
 namespace interflect::detail {
 
-/// Samples directions by the intensity of a photometric web, exactly as interpolated. Immutable, shared by all threads.
+/// Samples directions exactly by a photometric web's interpolated intensity. Immutable, thread-safe.
 class WebSampler {
   public:
-    /// @param web  Must not have a web_fault().
+    /// @param web  Without web_fault().
     explicit WebSampler(const PhotometricWeb& web);
 
     double flux() const { return azimuth_flux_.back(); }  ///< [lm or W]
-    /// Returns a unit direction in the luminaire's frame for u (azimuth) and v (polar angle) uniform in (0, 1). Equal
+    /// Returns a unit direction in the luminaire's frame for u (azimuth), v (polar angle) uniform in (0, 1). Equal
     /// areas of (u, v) have equal flux.
     V3f direction(float u, float v) const;
 
@@ -28,9 +28,9 @@ class WebSampler {
     PhotometricWeb::Pole pole_;
     std::vector<double> polar_, azimuth_;  // [radians]
     std::vector<float> intensities_;
-    /// Cumulative flux per radian of azimuth, for each azimuth up to each polar angle.
+    /// Per azimuth: flux per radian, cumulative over polar angles.
     std::vector<double> cumulative_;
-    std::vector<double> azimuth_flux_;  // cumulative, up to each azimuth
+    std::vector<double> azimuth_flux_;  // cumulative
 };
 
 }  // namespace interflect::detail

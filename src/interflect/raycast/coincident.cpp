@@ -28,7 +28,7 @@ std::vector<V3f> corners(const Scene& scene, const Patch& patch) {
     return result;
 }
 
-/// Returns a key that is equal for faces with the same corners in any order.
+/// Independent of the order of corners.
 std::uint64_t corners_key(const Scene& scene, const Patch& patch) {
     std::uint64_t key = 0;
     for (const V3f& corner : corners(scene, patch)) {
@@ -44,7 +44,7 @@ bool have_same_corners(const Scene& scene, const Patch& p, const Patch& q) {
     return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-/// Whether `p` answers every ray that `q` would. Requires that they have the same corners.
+/// Returns whether `p` answers every ray that `q` would; both must have the same corners.
 bool answers_for(const Scene& scene, const Patch& p, const Patch& q) {
     if (p.other_side != none) return true;
     return q.other_side == none && PatchGeometry(scene, p).normal().dot(PatchGeometry(scene, q).normal()) > 0;
@@ -88,8 +88,8 @@ CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tole
     measure_uncovered(scene, tolerance);
 }
 
-/// Visits the faces of each key by rank and hides faces for which an earlier one answers. At most three faces per set
-/// of corners remain: one for each side and one for both.
+/// Visits faces with equal corners by rank. Hides those for which an earlier face answers; at most three remain, one
+/// per side and one for both.
 void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
     struct KeyedFace {
         std::uint64_t key;
@@ -138,7 +138,7 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
     }
     if (pairs.empty()) return;
     std::sort(reaches_.begin(), reaches_.end(), [](const Reach& a, const Reach& b) {
-        return std::tie(a.face, b.tolerance) < std::tie(b.face, a.tolerance);  // largest tolerance of a face first
+        return std::tie(a.face, b.tolerance) < std::tie(b.face, a.tolerance);  // largest tolerance first
     });
     const auto same_face = [](const Reach& a, const Reach& b) { return a.face == b.face; };
     reaches_.erase(std::unique(reaches_.begin(), reaches_.end(), same_face), reaches_.end());
@@ -167,7 +167,7 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
         arrange_box_tree(std::span(overlaps_).subspan(first_[i], first_[i + 1] - first_[i]));
 }
 
-/// A side of a face is covered where a face of higher priority stops the rays towards that side.
+/// A side is covered where a face of higher priority intercepts its rays.
 void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const float> tolerance) {
     struct CoveredSide {
         std::uint32_t patch;
@@ -222,7 +222,7 @@ const CoincidentFaces::PriorityFace* CoincidentFaces::find_priority_face(std::ui
 std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction,
                                                float x_error) const {
     std::uint32_t answer = none;
-    // Coincidence is not transitive, since the tolerance is finite: follow the chain of priority faces.
+    // Coincidence within a tolerance is not transitive: follow the chain of priority faces.
     while (overlapped_[face]) {
         const PriorityFace* priority_face = find_priority_face(face, x, direction, x_error);
         if (!priority_face) break;

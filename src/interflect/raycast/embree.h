@@ -21,7 +21,6 @@
 
 namespace interflect::detail {
 
-/// Converts a ray to an Embree query from its origin to infinity.
 inline RTCRayHit embree_query(const Ray& ray) {
     RTCRayHit query;
     query.ray = {ray.origin.x,
@@ -41,7 +40,7 @@ inline RTCRayHit embree_query(const Ray& ray) {
 }
 
 #if RTC_VERSION_MAJOR >= 4
-/// Embree 4 needs no context here and has no streams: rays are traced one by one.
+/// Embree 4 needs no context and has no streams.
 class EmbreeContext {
   public:
     void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
@@ -75,7 +74,7 @@ class EmbreeContext {
 };
 #endif
 
-/// Faces of one Embree geometry, by primitive number. A face is identified by its front patch; the back follows it.
+/// Faces of one Embree geometry, by primitive number. The back of a face follows its front.
 struct Faces {
     std::vector<std::uint32_t> fronts;
     bool triangles = false, two_sided = false;

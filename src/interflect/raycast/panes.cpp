@@ -31,8 +31,8 @@ Ray Panes::behind(const Ray& ray, const Hit& hit) const {
 void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const {
     behind.clear();
     if (!any_) return;
-    std::vector<HitBehind> passing;  // rays that continue, with the transmittance so far
-    std::vector<Ray> rest;           // their remaining rays
+    std::vector<HitBehind> passing;  // with the transmittance so far
+    std::vector<Ray> rest;
     const auto pass = [&](std::uint32_t ray, const Rgb& so_far, const Hit& hit) {
         const Rgb through = so_far * transmittance(rays[ray], hit);
         if (!(largest_channel(through) > 0)) return;

@@ -8,10 +8,9 @@
 
 namespace interflect::detail {
 
-/// Embree's interfaces for tracing rays.
 enum class RayInterface { single, packet8, packet16, stream };
 
-/// Rays in Embree's own layout, traced without conversion: the upper bound for the solver's ray rate.
+/// Rays in Embree's layout, traced without conversion: upper bound of the solver's ray rate.
 class PreparedRays {
   public:
     PreparedRays(std::span<const Ray> rays, RayInterface interface);
@@ -19,11 +18,10 @@ class PreparedRays {
     PreparedRays(const PreparedRays&) = delete;
     PreparedRays& operator=(const PreparedRays&) = delete;
 
-    /// Rays are traced in groups of 1024 (the last may be shorter).
+    /// Groups have 1024 rays; the last may have fewer.
     std::size_t group_count() const;
-    /// Traces one group on the calling thread. Call once per group, because Embree overwrites the rays.
+    /// Once per group, because Embree overwrites the rays.
     void trace_group(const RayCaster& ray_caster, std::size_t group);
-    /// Number of rays with a hit so far.
     std::size_t hit_count() const;
 
   private:

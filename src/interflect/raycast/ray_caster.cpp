@@ -23,19 +23,18 @@ using namespace detail;
 
 namespace {
 
-/// Distance within which faces coincide, relative to the largest coordinate. Embree distinguishes larger distances.
+/// Distance within which faces coincide, relative to the largest coordinate. Embree resolves larger distances.
 constexpr auto relative_tolerance = static_cast<float>(relative_planarity);
 
-/// Offset of a ray from its patch, relative to the tolerance for coincident faces.
+/// Ray offset relative to the tolerance for coincident faces.
 constexpr float offset_over_tolerance = 4;
 
-/// Maximum distance of a hit from its face, relative to the sum of its largest coordinate and distance (16 roundings).
+/// Maximum distance of a hit from its face, relative to its largest coordinate plus the ray's length (16 roundings).
 constexpr float relative_hit_error = 0x1p-20f;
 
 float largest_coordinate(const V3f& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Computes the tolerance of each patch from its corners [m]. It is > 0 even if corners are subnormal or 0, and at
-/// least the warp of a quadrilateral. Only callers of the library make warped patches.
+/// Returns the tolerance of each patch [m]: > 0, and at least the warp of a quadrilateral.
 std::vector<float> tolerances(const Scene& scene) {
     constexpr std::size_t at_once = 4096;
     std::vector<float> tolerance(scene.patches.size());
@@ -69,7 +68,7 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
     return true;
 }
 
-/// Embree filter that rejects hits of one-sided faces from behind. Embree's Ng follows the vertex order.
+/// Embree filter that rejects hits of one-sided faces from behind. Ng follows the vertex order.
 void reject_backs(const RTCFilterFunctionNArguments* a) {
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == 0) continue;
@@ -117,8 +116,8 @@ void RayCaster::Embree::add_faces(const Scene& source, Faces faces) {
 }
 
 void RayCaster::Embree::commit() {
-    // Robust: no ray slips through a shared edge. Not high quality: that build depends on the threads, which could
-    // change the winner of two hits at equal distance.
+    // Robust mode closes gaps at shared edges. High quality builds depend on threads, which could change the order of
+    // equally distant hits.
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcCommitScene(scene);

@@ -15,9 +15,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Approximate number of rays traced together: enough to hide the cost of a batch, few enough for the cache.
+/// Approximate. Amortises the cost of a batch, fits the cache.
 constexpr std::size_t rays_per_batch = 4096;
-/// Batches between two progress reports: enough to keep many threads busy.
+/// Keeps many threads busy.
 constexpr std::size_t batches_per_report = 256;
 
 void require_valid(const CameraSampling& sampling) {

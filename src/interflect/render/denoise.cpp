@@ -16,19 +16,19 @@ using namespace detail;
 namespace {
 
 constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2;  // [pixels]
-/// Squared differences are divided by this share of the noise variance: k^2 of Rousselle et al. 2012.
+/// k^2 of Rousselle et al. 2012: share of the noise variance that divides squared differences.
 constexpr float noise_share = 0.45f * 0.45f;
-constexpr float least_albedo = 0.01f;  // lower bound where light is divided by the albedo
+constexpr float least_albedo = 0.01f;  // lower bound of divisors
 constexpr float normal_scale = 0.1f;   // of squared differences: about 18 degrees
-constexpr float plane_scale = 1.5f;    // distance from the tangent plane over the spacing of the pixels
+constexpr float plane_scale = 1.5f;    // distance from the tangent plane over the pixel spacing
 
-/// Approximates exp(-d) without a library call.
+/// Approximates exp(-d).
 float fall(float d) {
     const float t = 1 / (1 + d * 0.125f), t2 = t * t, t4 = t2 * t2;
     return t4 * t4;
 }
 
-/// One kind of light from half of the samples, as irradiance / pi: channels, their mean and its variance.
+/// Direct or indirect light from half of the samples, as irradiance / pi.
 struct Field {
     std::array<std::vector<float>, 3> value;
     std::vector<float> grey, variance;
@@ -38,7 +38,7 @@ std::size_t pixel_at(int x, int y, int width) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-/// Averages over squares. The variance of a few batches is too noisy to use pixel by pixel.
+/// The variance of a few batches is too noisy per pixel.
 std::vector<float> box_mean(const std::vector<float>& values, int width, int height, int radius) {
     std::vector<float> means(values.size());
     parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
@@ -82,7 +82,7 @@ Fields make_fields(const SampledLight& light, const Image& albedo) {
             make_field(light.indirect, light.indirect_variance, albedo)};
 }
 
-/// Filter for a range of rows.
+/// Filters a range of rows.
 class Band {
   public:
     Band(const PictureLayers& layers, const std::array<Fields, 2>& halves, int first_row, int end_row)
@@ -113,7 +113,7 @@ class Band {
             for (int x = 0; x < width_; ++x) {
                 const std::size_t i = at(x, y), k = i - at(0, first_);
                 picture.pixels[i] = layers_.emitted.pixels[i];
-                if (!(layers_.depth[i] > 0)) continue;  // no surface
+                if (!(layers_.depth[i] > 0)) continue;
                 Rgb irradiance(0);
                 for (const auto& of_half : sums_)
                     for (const Sums& s : of_half) irradiance += Rgb(s[0][k], s[1][k], s[2][k]) / (2 * s[3][k]);
@@ -125,11 +125,11 @@ class Band {
     using Sums = std::array<std::vector<float>, 4>;  // three channels and the weights
 
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
-    /// Returns the range of columns whose neighbour lies in the picture.
+    /// Columns with a neighbour in the picture.
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
 
-    /// Computes shape_: the weight of each pixel's neighbour by normals and tangent planes.
+    /// Computes shape_: weights by normals and tangent planes.
     void compare_shapes(int dx, int dy) {
         std::fill(shape_.begin(), shape_.end(), 0.0f);
         const float steps = std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy)));
@@ -150,8 +150,7 @@ class Band {
         }
     }
 
-    /// Computes difference_: squared differences to neighbours beyond the noise, relative to it. Row 0 is first_ -
-    /// patch_radius.
+    /// Computes difference_: squared differences beyond the noise, relative to it. Row 0 is first_ - patch_radius.
     void compare_light(const Field& field, int dx, int dy) {
         constexpr float tiny = 1e-20f;
         std::fill(difference_.begin(), difference_.end(), 0.0f);

@@ -19,21 +19,19 @@ using Corners = std::array<std::uint32_t, 4>;
 
 std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// Corners of the children by place in the parent: 0 to 3 its corners, 4 to 7 the midpoints of the edges that start
-/// there, 8 its centre. Children and corners are ordered as in Cell.
+/// Children's corners as places in the parent: 0 to 3 its corners, 4 to 7 the midpoints of the edges from there, 8 its
+/// centre.
 using Places = std::array<std::array<std::uint32_t, 4>, 4>;
 constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
-constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};  // place 3 is none
+constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};  // place 3 is unused
 
-/// Hash table with linear probing; here several times as fast as std::unordered_map.
+/// Linear probing; here several times as fast as std::unordered_map.
 class KeyTable {
   public:
-    /// @param most  Maximum number of entries, at most two thirds of the table.
     explicit KeyTable(std::size_t most) : entries_(std::bit_ceil(most + most / 2 + 1)) {}
 
-    /// Returns none if the key is missing.
     std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].number; }
-    /// Returns the number of the key. Inserts `number` if the key is missing.
+    /// Inserts `number` if the key is missing.
     std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t number) {
         TableEntry& entry = entries_[slot(key)];
         if (entry.number == none) entry = {key, number};
@@ -43,7 +41,7 @@ class KeyTable {
   private:
     struct TableEntry {
         std::uint64_t key = 0;
-        std::uint32_t number = none;  // none: free
+        std::uint32_t number = none;
     };
 
     std::size_t slot(std::uint64_t key) const {
@@ -56,8 +54,7 @@ class KeyTable {
     std::vector<TableEntry> entries_;
 };
 
-/// Assigns vertices to elements, parents before children. Patches use the corners of smooth surfaces. Elements share
-/// the midpoint of a common edge.
+/// Assigns vertices to elements, parents first. Elements share midpoints of common edges.
 class VertexBuilder {
   public:
     VertexBuilder(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options)
@@ -74,7 +71,6 @@ class VertexBuilder {
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(edges_of_.size()); }
 
-    /// Finds the vertices on seams, then the hanging vertices inside patches and on whole edges.
     void find_hanging_vertices(std::vector<ElementVertices::Hanging>& hanging,
                                std::vector<ElementVertices::Coupling>& couplings) const {
         find_vertices_on_seams(hanging, couplings);
@@ -92,15 +88,15 @@ class VertexBuilder {
 
   private:
     using Ends = std::array<std::uint32_t, 2>;
-    static constexpr Ends no_edge{none, none};  // for corners of patches and centres
+    static constexpr Ends no_edge{none, none};  // for patch corners and centres
 
     Ends ends_of_edge(std::uint32_t e, std::uint32_t c) const {
         const Corners& corners = corners_[e];
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
-    /// Returns the same key for all elements at edge c: its two ends, or twice its group for a whole edge of patches,
-    /// since two creases can have the same ends.
+    /// Key of edge c, equal for all its elements. Whole patch edges use their group, because two creases can have the
+    /// same ends.
     std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
@@ -134,22 +130,22 @@ class VertexBuilder {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
-    /// Whether v halves one half of an edge with a hanging midpoint. Requires marks for earlier vertices.
+    /// Returns whether v halves one half of an edge with a hanging midpoint. Earlier vertices must be marked.
     bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
         const auto [end, later_end] = edges_of_[v];
         return later_end != none && hangs[later_end] &&
                (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
     }
 
-    /// Edge of a leaf along an edge of its patch.
+    /// Edge of a leaf on an edge of its patch.
     struct LeafEdge {
         std::array<std::uint32_t, 2> vertices;
-        std::array<float, 2> at;  // parameters along the patch's edge, ascending
+        std::array<float, 2> at;  // parameters along the patch edge, ascending
 
         float size() const { return at[1] - at[0]; }
     };
 
-    /// Collects the leaf edges on an edge of a patch within [from, to] of its length; `e` covers [low, high].
+    /// Collects leaf edges in [from, to] of a patch's edge; `e` covers [low, high].
     void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;
@@ -158,7 +154,7 @@ class VertexBuilder {
             found.push_back({{corners_[e][c], corners_[e][next]}, {low, high}});
             return;
         }
-        // Children are oriented like their parent: its edge c consists of the edges c of two children.
+        // Edge c consists of the edges c of two children.
         constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
         const auto child = [&](std::uint32_t corner) {
             return forest_.first_child(e) + (corners == 3 ? corner : child_at_corner[corner]);
@@ -190,7 +186,7 @@ class VertexBuilder {
         return sides;
     }
 
-    /// Vertex on one side of a seam and the leaf edge on the other side that contains it.
+    /// Vertex on one side of a seam, and the leaf edge on the other side that contains it.
     struct SeamVertex {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
@@ -198,7 +194,7 @@ class VertexBuilder {
         float edge_length;  // [m]
     };
 
-    /// Finds vertices of side k inside leaf edges of the other side; ends of the seam have half the angle.
+    /// Finds vertices of side k. The angle is pi, or pi / 2 at the seam's ends.
     static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
                                   std::vector<SeamVertex>& found) {
         constexpr float margin = 1e-5f;  // relative to the patch's edge
@@ -220,7 +216,7 @@ class VertexBuilder {
         if (!sides[k].leaves.empty()) add(sides[k].leaves.back().vertices[1], sides[k].leaves.back().at[1]);
     }
 
-    /// A vertex hangs on an edge longer than its own edges. Otherwise it is coupled to the edge.
+    /// A vertex hangs on an edge longer than its own edges; otherwise it is coupled to the edge.
     void find_vertices_on_seams(std::vector<ElementVertices::Hanging>& hanging,
                                 std::vector<ElementVertices::Coupling>& couplings) const {
         std::vector<SeamVertex> found;
@@ -236,7 +232,7 @@ class VertexBuilder {
                     }
             }
         }
-        // Longest edges first: an end of an edge can only hang on a longer edge.
+        // Ends of an edge hang only on longer edges.
         std::stable_sort(found.begin(), found.end(),
                          [](const SeamVertex& a, const SeamVertex& b) { return a.edge_length > b.edge_length; });
         constexpr float clearly_longer = 1.01f;
@@ -252,18 +248,18 @@ class VertexBuilder {
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;  // per element
     std::vector<Ends> edges_of_;    // ends of the edge that each vertex halves
-    KeyTable middles_;              // midpoints of split edges, by edge_key
+    KeyTable middles_;              // by edge_key
 };
 
 float angle_between(const V3f& a, const V3f& b) { return std::atan2(a.cross(b).length(), a.dot(b)); }
 
-/// Returns the angles of an element at its corners [rad].
+/// Returns [rad].
 std::array<float, 4> corner_angles(const PatchGeometry& patch, const Cell& cell) {
     if (patch.is_triangle()) {  // the element is similar to its patch
         const V3f a = patch.point({0, 0}), b = patch.point({1, 0}), c = patch.point({0, 1});
         return {angle_between(b - a, c - a), angle_between(c - b, a - b), angle_between(a - c, b - c), 0};
     }
-    // Lines of constant u or v are straight: the whole line has the direction at the corner.
+    // Lines of constant u or v are straight.
     const auto angle = [&](float s, float t) {
         const Parameters p = cell.at(s, t);
         return angle_between(patch.point({1, p.v}) - patch.point({0, p.v}),

@@ -13,20 +13,19 @@
 
 namespace interflect::detail {
 
-/// Vertices of a forest's elements. Elements that meet at a point of one smooth surface share a vertex, regardless of
-/// patch and level. Creases, material borders and the two sides of a face have separate vertices. The midpoint of an
-/// edge has a larger number than its ends. Independent of the number of threads. Memory: 16 bytes per element and per
-/// hanging vertex, 20 per coupling. Time is about linear.
+/// Vertices of elements, shared by the elements at a point of one smooth surface. Creases, material borders and sides
+/// of a face separate vertices. An edge's midpoint has a larger number than its ends. Independent of the number of
+/// threads. Memory: 16 bytes per element and hanging vertex, 20 per coupling.
 class ElementVertices {
   public:
-    /// T-vertex: a corner of smaller elements inside an edge of a larger leaf. Its value is interpolated linearly.
+    /// T-vertex inside an edge of a larger leaf; interpolated linearly.
     struct Hanging {
         std::uint32_t vertex;
-        std::array<std::uint32_t, 2> ends;  // of the leaf's edge, or of a part of it
+        std::array<std::uint32_t, 2> ends;  // of the leaf's edge or a part of it
         float fraction = 0.5f;              // position between ends[0] and ends[1]
     };
-    /// Vertex on a seam (SmoothSurfaces::Seam) inside an opposite leaf's edge that is not longer than its own edges.
-    /// The leaf contributes to it by its angle.
+    /// Vertex on a seam (SmoothSurfaces::Seam), inside an opposite leaf edge no longer than its own. The leaf
+    /// contributes by its angle.
     struct Coupling {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
@@ -38,12 +37,12 @@ class ElementVertices {
     ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options = {});
 
     std::uint32_t count() const { return count_; }
-    /// Returns the corners of element e, leaf or not, in its patch's vertex order: (0,0) (1,0) (1,1) (0,1) of a
-    /// quadrilateral's Cell; (0,0) (1,0) (0,1) and `none` for a triangle.
+    /// Returns the corners in the patch's vertex order: (0,0) (1,0) (1,1) (0,1) of a Cell; on triangles three,
+    /// (0,0) (1,0) (0,1).
     const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
-    /// Ordered: hanging ends of an edge precede the vertex inside it.
+    /// Hanging ends of an edge precede the vertex inside it.
     const std::vector<Hanging>& hanging() const { return hanging_; }
-    /// In any order. Each uses the values at its ends before couplings are applied.
+    /// In any order; each uses values before couplings.
     const std::vector<Coupling>& couplings() const { return couplings_; }
     const SmoothNormals& normals() const { return normals_; }
 
@@ -55,11 +54,9 @@ class ElementVertices {
     std::uint32_t count_ = 0;
 };
 
-/// Converts irradiance of leaves to irradiance of vertices. On curved surfaces it first varies within patches as their
-/// normals do (SmoothNormals). A vertex has the mean over the leaves at it, weighted by angle. Angles do not depend on
-/// the tessellation of a face (Thuermer and Wuethrich 1998). Hanging vertices are interpolated between the ends of
-/// their edge, on which both sides then agree. Across a seam, leaves of similar size differ by the error of linear
-/// interpolation, proportional to the square of their size.
+/// Converts irradiance of leaves to irradiance of vertices, after SmoothNormals. A vertex averages its leaves by angle,
+/// independent of tessellation (Thuermer and Wuethrich 1998). Hanging vertices are interpolated. Across a seam, leaves
+/// of similar size differ by O(size^2).
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> irradiance);
 

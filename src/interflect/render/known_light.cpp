@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Noise can make irradiance negative. Such elements are never sampled.
+/// Negative irradiance (noise) is never sampled.
 std::vector<float> received_power(const ElementForest& forest, std::span<const Rgb> irradiance) {
     std::vector<float> power(forest.size(), 0.0f);
     for (std::uint32_t e = 0; e < forest.size(); ++e)

@@ -12,16 +12,14 @@
 
 namespace interflect::detail {
 
-/// Light of a solution for final gathering, sampled like emitters: LightTree chooses a patch by reflected power, then
-/// an element below it is chosen by received power. Immutable, shared by all threads. Memory: 4 bytes per element, 132
-/// per patch.
+/// Light of a solution for final gathering. Samples a patch by reflected power, then an element by received power.
+/// Immutable, thread-safe. Memory: 4 bytes per element, 132 per patch.
 class KnownLight {
   public:
-    /// @param irradiance  Per element; only leaves are used. All arguments must outlive this object.
+    /// @param irradiance  Per element; only leaves are used. Arguments must outlive this object.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
 
-    /// Point of a patch and the leaf that contains it.
     struct Place {
         std::uint32_t patch = none, leaf = none;
         Parameters parameters;
@@ -29,19 +27,20 @@ class KnownLight {
     Place place(std::uint32_t patch, const V3f& x) const;
     int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
-    /// Returns the reflected radiance rho H / pi at `place`.
+    /// Returns the reflected radiance rho H / pi.
     Rgb radiance(const Place& place) const;
 
-    /// Whether the leaf's solid angle A / d^2 is at most 0.25 sr, small enough to gather its single value.
+    /// Returns whether the leaf's solid angle A / d^2 is at most 0.25 sr.
     bool is_far(const Place& place, float distance2) const {
         constexpr float largest_angle = 0.25f;
         return forest_.area(place.leaf) <= largest_angle * distance2;
     }
 
-    /// Samples a point that may illuminate x on a surface with normal n; without such a point, patch is `none`.
-    /// @param uniform  In (0, 1). @param u, v  In [0, 1).
+    /// Samples a point that may illuminate x on a surface with normal n. Patch is none without such a point.
+    /// @param uniform  In (0, 1).
+    /// @param u, v     In [0, 1).
     Place sample(const V3f& x, const V3f& n, double uniform, float u, float v) const;
-    /// Returns the density of sample() per area at `place` [1/m^2].
+    /// Returns the density of sample() [1/m^2].
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
   private:
@@ -49,7 +48,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> received_;  // power per element, sum over channels [lm or W]
+    std::vector<float> received_;  // sum of channels [lm or W]
     LightTree tree_;
 };
 

@@ -20,10 +20,9 @@ V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a
 V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
-/// Returns the extent of a box from its centre in a direction.
 float support(const V3f& half, const V3f& direction) { return half.dot(absolute(direction)); }
 
-/// Angle in [0, pi], by cosine and sine.
+/// Angle in [0, pi].
 struct Angle {
     float cosine, sine;
     static Angle of_cosine(float c) { return {c, std::sqrt(std::max(0.0f, 1 - c * c))}; }
@@ -44,21 +43,21 @@ void LightTree::Box::extend(const Box& other) {
 
 LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
     constexpr float pi = std::numbers::pi_v<float>;
-    constexpr float parallel = 1e-4f;  // [rad]; axes at a smaller angle define no plane
+    constexpr float parallel = 1e-4f;  // [rad]; closer axes define no plane
     const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); };
     const float of_a = angle(a.cosine), of_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
     if (std::min(between + of_b, pi) <= of_a + parallel) return {a.axis, std::cos(std::min(pi, of_a + parallel))};
     if (std::min(between + of_a, pi) <= of_b + parallel) return {b.axis, std::cos(std::min(pi, of_b + parallel))};
     const float joint = 0.5f * (of_a + between + of_b);
     if (joint >= pi || between > pi - parallel) return {a.axis, -1};
-    const float turn = joint - of_a;  // rotation of the axis from a towards b
+    const float turn = joint - of_a;  // from a towards b
     const V3f axis = (std::sin(between - turn) * a.axis + std::sin(turn) * b.axis).normalized();
     return {axis, std::cos(joint)};
 }
 
 namespace {
 
-/// Exitance for sampling patches, sum over channels [lm/m^2 or W/m^2].
+/// Exitance for sampling patches, sum of channels [lm/m^2 or W/m^2].
 class SampledExitance {
   public:
     explicit SampledExitance(const Scene& scene) : scene_(scene), largest_(largest_texels(scene)) {
@@ -116,11 +115,10 @@ LightTree::LightTree(std::vector<Light> lights, std::size_t index_count) : leaf_
     build(0, lights);
 }
 
-/// Bins along one axis and the first bin of the upper half.
 struct LightTree::Split {
     int axis = 0;
     float low = 0, scale = 0;
-    std::size_t first_above = 0;  // 0: no split, since the centres coincide
+    std::size_t first_above = 0;  // 0: all centres coincide
     float cost = std::numeric_limits<float>::infinity();
 
     std::size_t bin_of(const V3f& centre) const {
@@ -128,7 +126,6 @@ struct LightTree::Split {
     }
 };
 
-/// Lights of one half or of one bin.
 struct LightTree::Bin {
     float power = 0;
     Box box;
@@ -143,8 +140,8 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// Approximates the surface area orientation heuristic: power x area x solid angle, large where importance() is a
-    /// loose bound. The solid angle is pi for parallel normals and 4 pi for normals in all directions.
+    /// Surface area orientation heuristic, approximate: power x area x solid angle, from pi (parallel normals) to 4 pi
+    /// (all directions).
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
@@ -159,7 +156,7 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
         Split split{axis, centres.low[axis], static_cast<float>(bin_count) / extent};
         std::array<Bin, bin_count> bins;
         for (const Light& l : lights) {
-            const float evenness = std::max(0.0f, l.cone.cosine);  // 0: the cone covers a hemisphere or more
+            const float evenness = std::max(0.0f, l.cone.cosine);  // 0: at least a hemisphere
             bins[split.bin_of(l.centre())].add({l.power, l.box, l.cone.axis * (l.power * evenness)});
         }
         std::array<float, bin_count> cost{};  // of a split before each bin
@@ -179,7 +176,6 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
     return best;
 }
 
-/// Splits the lights at the minimum summed cost of both halves.
 void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     Box box = lights.front().box;
     Box centres{lights.front().centre(), lights.front().centre()};
@@ -206,7 +202,7 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     const Split split = best_split(lights, centres);
     const auto middle = std::stable_partition(
         lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
-    // Both halves have members unless all centres coincide, because the outermost bins are occupied.
+    // Both halves are non-empty unless all centres coincide, because the outermost bins are occupied.
     std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
     if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
 
@@ -219,9 +215,8 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
 }
 
-// The cosines use the nearest point of the box. A wide node that contains x, such as half the lamps of a storey, then
-// outweighs its neighbour: lamps that face down at height h and distance d contribute h^2 / d^4, but the centre's
-// distance is only a mean.
+// Cosines use the box's nearest point, which favours wide nodes around x. Lamps facing down at height h and distance d
+// contribute h^2 / d^4; the centre's distance is only a mean.
 float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const V3f to_centre = node.centre - x;
     const V3f& axis = node.cone.axis;
@@ -234,7 +229,7 @@ float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const float receiving = std::min(1.0f, height * inverse);
     float emitting = std::min(1.0f, ahead * inverse);
     if (node.cone.cosine < 1) {
-        // If x is behind the whole box, the farthest patch has the smallest angle.
+        // Behind the whole box, the farthest patch has the smallest angle.
         if (ahead < 0) emitting = ahead / (std::sqrt(centre2) + std::sqrt(node.radius2));
         emitting = less(Angle::of_cosine(emitting), {node.cone.cosine, node.cone_sine}).cosine;
     }

@@ -14,10 +14,10 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Candidates per point. Four instead of two reduce the noise by 2 to 5% but take 20 to 60% longer.
+/// Candidates per point. Four reduce noise by 2 to 5% but take 20 to 60% longer.
 constexpr int candidate_count = 2;
 
-/// Returns the bounds for a LightTree. Outside the cone the intensity must decrease at least like the cosine.
+/// Outside the cone, intensity must fall at least like the cosine.
 LightTree::Light bounded(const V3f& centre, const V3f& half, const Rgb& peak, const LightTree::Cone& cone) {
     return {0, pi * channel_sum(peak), {centre - half, centre + half}, cone};
 }
@@ -31,7 +31,7 @@ std::optional<LightTree::Light> bounds(const SpotLight& light) {
     return bounded(light.position, V3f(0), light.intensity, {light.direction.normalized(), std::cos(angle)});
 }
 
-/// Returns the largest angle to the nadir in the cell of the table that starts at these two angles [rad].
+/// Returns the largest nadir angle in a table cell [rad].
 float farthest_from_nadir(const PhotometricWeb& web, std::size_t azimuth, std::size_t polar) {
     if (web.pole == PhotometricWeb::Pole::nadir) return static_cast<float>(radians(web.polar[polar + 1]));
     float farthest = 0;
@@ -43,7 +43,7 @@ float farthest_from_nadir(const PhotometricWeb& web, std::size_t azimuth, std::s
     return farthest;
 }
 
-/// Returns the smallest cone around the nadir that is valid for every cell of the table.
+/// Smallest cone around the nadir that is valid for every table cell.
 std::optional<LightTree::Light> bounds(const MeasuredLight& light) {
     const PhotometricWeb& web = *light.web;
     const float peak = web.peak();
@@ -86,7 +86,7 @@ LuminaireChoice::LuminaireChoice(const Scene& scene)
 Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const LightSample& sample) const {
     Illumination chosen;
     double all = 0, uniform = sample.light;
-    // Each candidate replaces the chosen one with probability `share`; the rescaled number is uniform again.
+    // Replaces the light with probability `share`; the rescaled number is uniform again.
     const auto consider = [&](std::uint32_t luminaire, float chance) {
         Illumination light = illumination(scene_.luminaires[luminaire], x, sample.u, sample.v);
         light.irradiance *= std::max(0.0f, n.dot(light.towards)) / chance;

@@ -10,21 +10,21 @@
 
 namespace interflect::detail {
 
-/// Samples a luminaire by its unoccluded irradiance at a point. A LightTree proposes candidates; their exact irradiance
-/// decides (resampled importance sampling, Talbot et al. 2005). Parallel light is always a candidate. The cost is
-/// logarithmic in the number of other luminaires. Immutable, shared by all threads.
+/// Samples a luminaire by unoccluded irradiance: a LightTree proposes candidates, their exact irradiance decides
+/// (resampled importance sampling, Talbot et al. 2005). Directional light is always a candidate. Immutable,
+/// thread-safe. Cost: logarithmic in the number of other luminaires.
 class LuminaireChoice {
   public:
     /// @param scene  Must outlive this object.
     explicit LuminaireChoice(const Scene& scene);
 
-    /// Returns the light of one luminaire at the point x of a surface with normal n. The surface's irradiance is
-    /// divided by the probability of the choice; its mean is the unoccluded irradiance by all luminaires.
+    /// Returns one luminaire's light at x on a surface with normal n, divided by its probability. On average, the
+    /// surface receives the unoccluded irradiance of all luminaires.
     Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:
     const Scene& scene_;
-    std::vector<std::uint32_t> parallel_;  // indices of the directional lights
+    std::vector<std::uint32_t> parallel_;
     LightTree tree_;
 };
 

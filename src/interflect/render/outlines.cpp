@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Rays of one sample: the first, one a line width to the right, and one a line width below.
+/// At the sample, one line width right, and one below.
 constexpr std::size_t rays_per_sample = 3;
 
 float outlined_share(const PixelSamples& samples, const ElementForest& forest) {

@@ -25,11 +25,10 @@ namespace {
 
 /// Minimum batches per pixel: 7 degrees of freedom for its standard error.
 constexpr int least_batches = 8;
-/// Maximum samples per batch: larger batches stratify little better, more batches estimate the error better.
+/// Larger batches stratify little better; more batches improve the error estimate.
 constexpr int largest_batch = 64;
-/// Approximate paths per wavefront: enough to hide the cost of a call, few enough for the cache.
+/// Approximate. Amortises the cost of a call, fits the cache.
 constexpr std::size_t paths_per_tile = 2048;
-/// Approximate paths between two progress reports.
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
 
 std::vector<PatchGeometry> geometry_of(const Scene& scene) {
@@ -39,7 +38,6 @@ std::vector<PatchGeometry> geometry_of(const Scene& scene) {
     return geometry;
 }
 
-/// Picture in progress: statistics and missing batches of its pixels.
 class PathPicture {
   public:
     PathPicture(const PathScene& scene, const PathOptions& options, const Monitor& monitor)
@@ -84,7 +82,6 @@ class PathPicture {
     }
 
   private:
-    /// @param parts  Returns the statistics of a pixel's direct and indirect light.
     SampledLight light_of(const auto& parts) const {
         SampledLight light{Image(options_.width, options_.height), Image(options_.width, options_.height),
                            std::vector<float>(pixels_.size()), std::vector<float>(pixels_.size())};
@@ -124,8 +121,8 @@ class PathPicture {
 
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
 
-    /// Computes the batches per pixel for the next round, at most twice the present number.
-    /// @return Whether a pixel needs more batches.
+    /// At most doubles each pixel's batches.
+    /// @return  Whether a pixel needs more.
     bool want_more(std::vector<std::uint32_t>& wanted, std::uint32_t most) {
         const std::vector<double> needed = needed_batches(pixels_, options_);
         bool more = false;
@@ -140,7 +137,7 @@ class PathPicture {
         return more;
     }
 
-    /// Traces the missing batches: one for every pixel that lacks any, then a second one, and so on.
+    /// At most one batch per pixel at a time.
     void trace_round(const std::vector<std::uint32_t>& wanted) {
         const std::size_t per_chunk = paths_per_chunk / s_.batch_size;
         std::vector<std::uint32_t> present(pixels_.size());
@@ -178,7 +175,7 @@ class PathPicture {
         report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
     }
 
-    /// Updates the error after one new path per pixel on average, because that visits all pixels.
+    /// Updates the error, which visits all pixels, after about one new path per pixel.
     void report(double fraction) {
         if (!monitor_.on_progress) return;
         const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Number of path vertices with Sobol' points; later vertices do not benefit and use pseudo-random numbers.
+/// Later vertices do not benefit from Sobol' points.
 constexpr std::uint32_t stratified_vertices = 4;
 
 }  // namespace
@@ -36,7 +36,7 @@ LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uin
     if (vertex > stratified_vertices)
         return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]), unit_float(words[3])};
     const auto point = shuffled_point(key, index);
-    // Points are centres of 2^23 cells, too coarse for millions of lamps: jitter within the cell.
+    // Points have 23 bits, too few for millions of lamps: jitter.
     const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
     return {point[0] + within_cell * 0x1p-23, point[1], point[2], point[3]};
 }

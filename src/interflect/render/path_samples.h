@@ -7,48 +7,48 @@
 
 namespace interflect::detail {
 
-/// Samples a direction with density cosine / pi around n by Malley's method; a, b uniform in (0, 1).
+/// Samples directions around n with density cosine / pi (Malley's method); a, b uniform in (0, 1).
 V3f cosine_direction(const V3f& n, float a, float b);
 
-/// Random numbers that continue a path at one vertex.
+/// Random numbers that continue a path.
 struct VertexSample {
     float direction_u, direction_v;
     float roulette;
 };
 
-/// Random numbers of the shadow rays to an emitting patch and to a luminaire.
+/// Random numbers of shadow rays to an emitting patch and a luminaire.
 struct LightSample {
-    double light;      // chooses the emitting patch
-    float u, v;        // choose the point on it
-    float candidates;  // chooses candidate luminaires; `light` chooses among them
+    double light;      // selects the emitting patch
+    float u, v;        // select the point
+    float candidates;  // selects candidate luminaires, among which `light` selects
 };
 
-/// Random numbers that sample bright places in final gathering.
+/// Random numbers that sample a KnownLight::Place.
 struct PlaceSample {
     double patch;
-    float u, v;  // choose the point on it
+    float u, v;  // select the point
 };
 
-/// Random numbers that sample the skies at a vertex.
 struct SkySample {
     double sky;
-    float u, v;  // choose the direction
+    float u, v;  // select the direction
 };
 
-/// Returns Sobol' points at the first vertices of a path, pseudo-random numbers at later ones.
-/// @param vertex  1 is the first vertex that the camera sees.
+/// Returns Sobol' points at a path's first vertices, then pseudo-random numbers.
+/// @param vertex  1 is the first vertex after the camera.
 /// @param index   Path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-/// @param index  Shadow ray among those of the batch at this vertex; also in the functions below.
+/// @param index  Shadow ray in its batch at this vertex, also below.
 LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 
-/// Returns the density per solid angle of sampling this point of an emitting patch [1/sr].
-/// @param probability  Probability of the patch. @param distance2  Squared distance to the point [m^2].
+/// Returns the density per solid angle of a point on an emitting patch [1/sr].
+/// @param probability  Of the patch.
+/// @param distance2    Squared distance to the point [m^2].
 float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2);
 
-/// Balance heuristic: the weight of a sample of density p if another technique has density q.
+/// Balance heuristic: weight of density p against density q.
 inline float balance(float p, float q) { return p / (p + q); }
 
 }  // namespace interflect::detail

@@ -16,15 +16,13 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Throughput below which Russian roulette ends paths. Lower: less variance, longer paths; 0.25 to 1 are equally
-/// efficient.
+/// Throughput below which Russian roulette starts. Lower: less variance, longer paths; 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Shadow rays where direct light is gathered. Squared error times time relative to one ray, at 16 samples, filtered:
-/// 0.63, 0.76, 0.51 in the maze, office-graz and office2. With two rays: 0.75, 0.82, 0.66.
+/// Shadow rays for direct light in final gathering. Squared error times time relative to one ray (16 samples, filtered)
+/// in maze, office-graz, office2: 0.63, 0.76, 0.51; with two rays 0.75, 0.82, 0.66.
 constexpr std::uint32_t gathered_shadow_rays = 4;
 
-/// Returns the origin of a ray that leaves the patch hit at x: on its surface, raised by the ray caster's offset.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
     return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
@@ -288,12 +286,12 @@ void PathWavefront::connect_to_light(const V3f& x, const Path& path, const Light
     const float distance2 = to_light.length2();
     if (!(distance2 > 0)) return;
     const V3f direction = to_light / std::sqrt(distance2);
-    const float of_direction = path.normal.dot(direction) / pi;  // density, equal to cosine / pi
+    const float of_direction = path.normal.dot(direction) / pi;  // density, cosine / pi
     const float of_light =
         static_cast<float>(shadow_rays_at(vertex_)) * light_density(lamp, choice.probability, direction, distance2);
     if (!(of_direction > 0 && of_light > 0)) return;
     const float weight = s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
-    // Integrand over the hemisphere: (rho / pi) (M / pi) cosine.
+    // Integrand: (rho / pi) (M / pi) cosine.
     const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.index], on_lamp) / pi;
     shadow_rays_.push_back({x, direction});
     connections_.push_back(

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Variance is averaged over the pixels within this distance in columns and rows.
+/// Averages variance within this distance on both axes [pixels].
 constexpr int neighbourhood_radius = 3;
 
 double mean_reflected(const std::vector<PixelStatistics>& pixels) {
@@ -18,12 +18,10 @@ double mean_reflected(const std::vector<PixelStatistics>& pixels) {
     return sum / static_cast<double>(pixels.size());
 }
 
-/// Returns the denominator of a pixel's relative error.
 double error_scale(const PixelStatistics& p, double picture_mean) {
     return std::max(mean_channel(p.mean), picture_mean);
 }
 
-/// Averages within `neighbourhood_radius` along one axis of a picture.
 std::vector<double> mean_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
                                std::size_t length, std::size_t step) {
     std::vector<double> means(values.size());

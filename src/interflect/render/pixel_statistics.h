@@ -12,10 +12,10 @@ namespace interflect::detail {
 
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 
-/// Running mean and variance of a part of a pixel's light over its batches (Welford 1962).
+/// Statistics of a part of a pixel's light over batches (Welford 1962).
 struct PartStatistics {
     RgbD mean{0, 0, 0};
-    double squares = 0;  // sum of squared deviations of the mean of the channels
+    double squares = 0;  // squared deviations of mean_channel()
     std::uint32_t batches = 0;
 
     void add(const RgbD& value) {
@@ -23,14 +23,12 @@ struct PartStatistics {
         mean += difference / static_cast<double>(++batches);
         squares += mean_channel(difference) * mean_channel(value - mean);
     }
-    /// Squared standard error of the mean of the channels.
     double squared_error() const { return batches > 1 ? squares / (batches - 1.0) / batches : 0; }
 };
 
-/// Running mean and variance of a pixel's light and of its parts.
 struct PixelStatistics {
     RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared deviations from the mean
-    RgbD emitted{0, 0, 0};                 // mean, as are the members of `first`
+    RgbD emitted{0, 0, 0};                 // mean, as in `first`
     PartStatistics direct, indirect;
     std::array<PartStatistics, 2> direct_halves, indirect_halves;  // even batches, odd batches
     FirstHit first;
@@ -60,11 +58,11 @@ struct PixelStatistics {
     RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
 };
 
-/// Root mean square over the pixels of standard error / mean. A pixel's mean counts as at least the picture's mean
-/// reflected light. Infinite if a pixel has fewer than two batches.
+/// RMS over pixels of standard error / mean, with means of at least the picture's mean reflected light. Infinite for
+/// fewer than two batches.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
-/// Returns the total batches that each pixel needs for options.until, from the variance around it.
+/// Total batches per pixel for options.until, from the variance of its neighbourhood.
 std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
 }  // namespace interflect::detail

@@ -29,13 +29,13 @@ using namespace detail;
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-/// Probe rays between two progress reports: a fraction of a second.
+/// A fraction of a second.
 constexpr std::size_t rays_per_report = std::size_t{1} << 20;
-/// Factors of the convolution with the cosine for each harmonic (Ramamoorthi and Hanrahan 2001, Eq. 8).
+/// Cosine convolution per harmonic (Ramamoorthi and Hanrahan 2001, Eq. 8).
 constexpr std::array<float, 9> cosine_factors{pi,     2 * pi / 3, 2 * pi / 3, 2 * pi / 3, pi / 4,
                                               pi / 4, pi / 4,     pi / 4,     pi / 4};
 
-/// Returns the bounds relative to the scene's origin [m].
+/// Relative to the scene's origin [m].
 Imath::Box3d bounds_of(const Scene& scene) {
     Imath::Box3d bounds;
     for (const Patch& patch : scene.patches)
@@ -43,13 +43,13 @@ Imath::Box3d bounds_of(const Scene& scene) {
     return bounds;
 }
 
-/// Adds light from one direction. @param irradiance  On a surface that faces it.
+/// @param irradiance  On a surface that faces `towards`.
 void add(IrradianceProbe& probe, const V3f& towards, const Rgb& irradiance) {
     const std::array<float, 9> basis = spherical_harmonics(towards);
     for (std::size_t k = 0; k < 9; ++k) probe.coefficients[k] += irradiance * (cosine_factors[k] * basis[k]);
 }
 
-/// Returns a uniformly distributed rotation (Shoemake 1992).
+/// Uniform (Shoemake 1992).
 Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     const auto words = random_words(seed, index);
     const float a = unit_float(words[0]), b = 2 * pi * unit_float(words[1]), c = 2 * pi * unit_float(words[2]);
@@ -58,7 +58,6 @@ Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     return rotation.toMatrix33();
 }
 
-/// Light of a solution at points in space. Immutable, shared by all threads.
 class LightAround {
   public:
     LightAround(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const ProbeOptions& options)
@@ -73,7 +72,6 @@ class LightAround {
           seed_(options.seed),
           far_(static_cast<float>(bounds_of(scene).size().length())) {}
 
-    /// Number of rays per probe.
     std::size_t rays() const { return nodes_.size(); }
 
     IrradianceProbe probe(const V3f& x, std::uint64_t index) const {
@@ -101,7 +99,6 @@ class LightAround {
             add(probe, rays[b.ray].direction, nodes_[b.ray].weight * b.transmittance * radiance(rays[b.ray], b.hit));
     }
 
-    /// Returns the radiance from the surface that a ray hits, or from the skies.
     Rgb radiance(const Ray& ray, const Hit& hit) const {
         if (hit.patch == none) return skies_.radiance(ray.direction);
         const Patch& patch = scene_.patches[hit.patch];
@@ -112,7 +109,7 @@ class LightAround {
     }
 
     void add_luminaire(const Luminaire& luminaire, const V3f& x, IrradianceProbe& probe) const {
-        constexpr int across = 4;  // points per axis of an opening or disc
+        constexpr int across = 4;  // points per axis
         for (int i = 0; i < across * across; ++i) {
             const int row = i / across, column = i % across;
             const float u = (static_cast<float>(column) + 0.5f) / across, v = (static_cast<float>(row) + 0.5f) / across;
@@ -123,7 +120,7 @@ class LightAround {
         }
     }
 
-    /// Returns the transmittance of the panes up to a distance; 0 if another surface is in between.
+    /// Transmittance of panes up to a distance; 0 if occluded.
     Rgb transmittance(Ray ray, float distance) const {
         Rgb through(1);
         for (int panes = 0; panes < Panes::most_in_a_row; ++panes) {
@@ -138,7 +135,7 @@ class LightAround {
         return Rgb(0);
     }
 
-    /// Returns the share of rays that pass a one-sided face from behind, which stops the reversed ray.
+    /// Share of rays that cross a one-sided face from behind, by reversed rays.
     float share_of_backs(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
         std::vector<Ray> back;
         std::vector<float> lengths;
@@ -164,7 +161,7 @@ class LightAround {
     const Skies skies_;
     const std::vector<SphereNode> nodes_;
     const std::uint64_t seed_;
-    const float far_;  // length of rays that leave the scene [m]
+    const float far_;  // replaces infinite distances [m]
 };
 
 ProbeGrid empty_grid(const Scene& scene, const ProbeOptions& options) {

@@ -11,10 +11,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Sum of a quantity over the rays of one pixel.
 struct Seen {
     double sum = 0;
-    int rays = 0;  // number of hits
+    int rays = 0;  // hits
 
     float mean() const { return rays > 0 ? static_cast<float>(sum / rays) : 0; }
 };

@@ -19,7 +19,6 @@ using namespace detail;
 
 namespace {
 
-/// Radiance or irradiance at points of the scene's surfaces.
 class Shader {
   public:
     Shader(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance,
@@ -32,7 +31,7 @@ class Shader {
     Shader(const Shader&) = delete;  // smooth_ refers to vertices_
     Shader& operator=(const Shader&) = delete;
 
-    /// Returns H or L = B / pi with B = M + rho H at the hit; M and rho include textures.
+    /// H, or L = (M + rho H) / pi with textures.
     Rgb value_at(const Ray& ray, const Hit& hit) const {
         if (shows_irradiance_) return irradiance_at(ray, hit);
         const Patch& patch = scene_.patches[hit.patch];
@@ -88,7 +87,7 @@ Rendering detail::render(const Scene& scene, const ElementForest& forest, const 
         for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
         thread_local std::vector<Panes::HitBehind> behind;
         behind.clear();
-        if (!options.irradiance) panes.trace(samples.rays, samples.hits, behind);  // the pane has its own irradiance
+        if (!options.irradiance) panes.trace(samples.rays, samples.hits, behind);  // panes have their own irradiance
         for (const auto& [ray, transmittance, hit] : behind) sum += value(samples.rays[ray], hit) * RgbD(transmittance);
         result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
         if (escaped > 0) escaped_rays += escaped;

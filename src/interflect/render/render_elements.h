@@ -7,10 +7,8 @@
 
 namespace interflect::detail {
 
-// render() and gather() for any irradiance of the elements.
-// @param forest      Of the same scene, as is `ray_caster`.
-// @param irradiance  H of every element, in the unit of the materials' exitance; only leaves are used.
-// @throws InputError also for inconsistent sizes.
+// render() and gather() for any irradiance of elements; InputError also for inconsistent sizes.
+// @param irradiance  H per element, in the unit of exitance; only leaves are used.
 
 Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
                  std::span<const Rgb> irradiance, const RenderOptions& options = {}, const Monitor& monitor = {});

@@ -10,16 +10,16 @@
 
 namespace interflect::detail {
 
-/// Quantity of elements, such as irradiance, as a continuous function on each smooth surface: linear on triangles,
-/// bilinear on quadrilaterals, without cracks between levels. An undivided patch without smooth neighbours is constant.
+/// Element values, continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals, without cracks
+/// between levels. Constant on an undivided patch without smooth neighbours.
 class SmoothField {
   public:
-    /// @param forest    Must not change during use, like `vertices`, which must belong to it.
-    /// @param values    Per element, in any unit; only leaves are used. Scalars are passed as grey.
-    /// @throws InputError if the sizes disagree.
+    /// @param forest, vertices  Must not change during use.
+    /// @param values            Per element; only leaves are used.
+    /// @throws InputError if sizes disagree.
     SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
 
-    /// Returns the value at a point of a patch. Thread-safe.
+    /// Thread-safe.
     Rgb at(std::uint32_t patch, Parameters p) const;
 
   private:

@@ -9,18 +9,17 @@ namespace interflect::detail {
 
 namespace {
 
-/// A patch is curved if the normal at a corner differs from its own by more than 0.5 degrees, above the rounding of
-/// normals in readers (0.2 degrees).
+/// Minimum cosine at corners of a flat patch: 0.5 degrees, above the rounding in readers (0.2 degrees).
 constexpr float cosine_of_flat = 0.99996f;
-/// Ridge of the fits, relative to the variation of the normal over the patch: bounds G where neighbours are nearly
-/// coplanar and steps are noise or shadows. On a regular mesh, G is 2% too small.
+/// Ridge of the fits, relative to the normal's variation. Bounds G where neighbours are nearly coplanar. Reduces G by
+/// 2% on a regular mesh.
 constexpr double relative_ridge = 0.02;
 
-/// Mean irradiance of the leaves along an edge of an element, which starts at corner c in the order of the vertices.
+/// Mean irradiance of the leaves on the edge from corner c.
 Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, std::uint32_t e, std::uint32_t c,
                     bool is_triangle) {
     if (forest.is_leaf(e)) return irradiance[e];
-    // Children have the orientation of their parent: its edge c consists of the edges c of the children at both ends.
+    // Edge c consists of the edges c of two children.
     constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
     const std::uint32_t next = (c + 1) % (is_triangle ? 3 : 4);
     const auto half = [&](std::uint32_t corner) {

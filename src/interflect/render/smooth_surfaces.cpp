@@ -24,11 +24,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Edges with more patches count as creases: they do not occur on smooth surfaces, and all pairs would be compared.
+/// Edges with more patches count as creases, which bounds the pairs.
 constexpr std::size_t most_patches_at_an_edge = 64;
 
-/// Vertices within this share of the largest coordinate of core_bounds() are merged: eight float steps, more than the
-/// rounding error of a point computed from either end of an edge.
+/// Weld tolerance relative to the largest coordinate of core_bounds(): eight float steps, above the rounding of a point
+/// on an edge.
 constexpr float weld_share = 0x1p-20f;
 
 float weld_tolerance(const Scene& scene) {
@@ -39,7 +39,7 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Hash grid of vertices. Its cells are four times as wide as the tolerance: most searches visit one cell.
+/// Hash grid. Cells are four tolerances wide, so most searches visit one cell.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -47,7 +47,7 @@ class VertexGrid {
         first_.reserve(positions_.size());
     }
 
-    /// Returns an earlier vertex at the position of `i`; otherwise inserts and returns `i`.
+    /// Returns an earlier vertex at this position, or inserts `i`.
     std::uint32_t weld(std::uint32_t i) {
         const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
@@ -67,7 +67,7 @@ class VertexGrid {
 
     GridCell cell_of(const V3f& p) const {
         const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
-        constexpr double last = 0x1p62;  // limit for points far from the scene
+        constexpr double last = 0x1p62;  // for points far from the scene
         const auto index = [&](float v) {
             return static_cast<std::int64_t>(std::clamp(std::floor(v / size), -last, last));
         };
@@ -87,7 +87,6 @@ class VertexGrid {
     float tolerance_;                                              // [m]
 };
 
-/// Maps each vertex to the first one at its position.
 std::vector<std::uint32_t> weld(const Scene& scene) {
     VertexGrid grid(scene);
     std::vector<std::uint32_t> welded(scene.vertices.size());
@@ -95,9 +94,8 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
     return welded;
 }
 
-/// Edge of one patch, from corner `start` to corner `end` in the patch's vertex order.
 struct PatchEdge {
-    std::uint32_t low, high;   // welded vertices, low < high; equal for all patches at the edge
+    std::uint32_t low, high;   // welded, low < high; equal for all patches at the edge
     std::uint32_t start, end;  // 4 patch + corner; start also numbers the edge
     bool upwards;              // the patch runs from low to high
 
@@ -125,17 +123,16 @@ std::vector<PatchEdge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Decides whether patches continue each other.
 class CreaseTest {
   public:
     CreaseTest(const Scene& scene, float crease_angle)
         : scene_(scene), normals_(patch_normals(scene)), least_cosine_(cosine_of(crease_angle)) {}
 
-    /// By material and the angle between the patches.
+    /// By material and the patches' angle.
     bool is_smooth(std::uint32_t p, std::uint32_t q) const {
         return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= least_cosine_;
     }
-    /// The same at a common edge. Normals of the scene decide if both patches have them at both ends.
+    /// At a common edge; Scene::normals decide if present at all corners.
     bool is_smooth(const PatchEdge& a, const PatchEdge& b) const {
         const Comparison start = compare_normals(a.start, b.end), end = compare_normals(a.end, b.start);
         if (start == Comparison::unknown || end == Comparison::unknown) return is_smooth(a.patch(), b.patch());
@@ -150,7 +147,7 @@ class CreaseTest {
     bool has_one_material(std::uint32_t p, std::uint32_t q) const {
         return scene_.patches[p].material == scene_.patches[q].material;
     }
-    /// The normal at a corner, towards its patch's lit side; zero if there is none.
+    /// Towards the lit side; zero if missing.
     V3f normal_at(std::uint32_t corner) const {
         if (scene_.normals.empty()) return V3f(0);
         const V3f n = scene_.normals[scene_.patches[corner / 4].vertices[corner % 4]];
@@ -167,7 +164,7 @@ class CreaseTest {
     const float least_cosine_;
     // Readers round normals by 0.2 degrees.
     const float cosine_of_equal_ = cosine_of(1);
-    // Some programs average normals across the corners of rooms and boxes. Light is not smooth there.
+    // Some programs average normals across room corners, where light is not smooth.
     const float least_cosine_of_smooth_ = cosine_of(60);
 };
 
@@ -182,12 +179,12 @@ SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     return groups;
 }
 
-/// Part of a line between two distances along it [m].
+/// Distances along a line [m].
 struct LineInterval {
     double from, to;
 };
 
-/// Returns the parts of `whole` outside `covered`, in ascending order, each longer than `least`.
+/// Parts of `whole` outside `covered`, ascending, each longer than `least`.
 std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineInterval> covered, double least) {
     std::sort(covered.begin(), covered.end(),
               [](const LineInterval& a, const LineInterval& b) { return a.from < b.from; });
@@ -212,11 +209,10 @@ class StraightEdge {
         const Imath::V3d d = Imath::V3d(x) - origin_;
         return (d - direction_ * direction_.dot(d)).length();
     }
-    /// Whether a and b lie on the edge's line, within the tolerance.
     bool is_collinear(const V3f& a, const V3f& b, double tolerance) const {
         return distance(a) <= tolerance && distance(b) <= tolerance;
     }
-    /// Returns the part between a and b, which lie on the edge's line.
+    /// a and b must be collinear with the edge.
     LineInterval part_between(const V3f& a, const V3f& b) const {
         const auto [low, high] = std::minmax({along(a), along(b)});
         return {std::max(0.0, low), std::min(length_, high)};
@@ -233,7 +229,6 @@ Imath::Box3f box_around(const V3f& a, const V3f& b, float margin) {
     return widened(box, margin);
 }
 
-/// Box tree of segments: contacts or edges.
 class SegmentTree {
   public:
     SegmentTree(std::size_t count, const auto& ends_of) {
@@ -261,7 +256,7 @@ class ContactTree {
           tree_(scene.contacts.size(),
                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
-    /// Returns the parts of the segment with a contact, each longer than the tolerance.
+    /// Parts with a contact, each longer than the tolerance.
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
@@ -280,10 +275,10 @@ class ContactTree {
     SegmentTree tree_;
 };
 
-/// Seams shorter than this share of an edge are ignored, such as gaps between the end of a wall and the next wall.
+/// Ignores gaps between consecutive walls; relative to an edge.
 constexpr double least_seam_share = 1e-3;
 
-/// Finds continuations across parts of edges. Each pair has at least one patch of a cut surface.
+/// Finds continuations across parts of edges, if one patch is part of a cut surface.
 class SeamFinder {
   public:
     /// @param edges  Edges across which no whole patch continues.
@@ -294,7 +289,7 @@ class SeamFinder {
           tolerance_(weld_tolerance(scene)),
           tree_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
 
-    /// @param smooth  Whether two patches at a common edge continue each other.
+    /// @param smooth  Whether two patches continue each other.
     std::vector<SmoothSurfaces::Seam> seams(const auto& smooth) const {
         std::vector<SmoothSurfaces::Seam> found;
         for (std::uint32_t i = 0; i < edges_.size(); ++i) {
@@ -325,7 +320,7 @@ class SeamFinder {
                                             : !other.is_collinear(start(a), end(a), tolerance_))
             return;
         const double b_start = line.along(start(b)), b_end = line.along(end(b));
-        if (b_end >= b_start) return;  // the patches have opposite orientations
+        if (b_end >= b_start) return;  // opposite orientations
         const LineInterval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
         const double least = std::max(2.0 * tolerance_, least_seam_share * std::min(line.length(), other.length()));
         if (shared.to - shared.from <= least) return;
@@ -335,7 +330,7 @@ class SeamFinder {
             found.push_back({{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});
         }
     }
-    /// Returns exactly 0 or 1 near the ends.
+    /// Exactly 0 or 1 near the ends.
     float snapped(double parameter, double length) const {
         const double margin = tolerance_ / length;
         return static_cast<float>(parameter <= margin ? 0 : parameter >= 1 - margin ? 1 : parameter);

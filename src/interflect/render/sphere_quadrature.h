@@ -11,8 +11,8 @@ struct SphereNode {
     float weight;  ///< [sr]
 };
 
-/// Returns 2 rows^2 directions and weights to integrate over the sphere: Gauss-Legendre in the polar cosine, equal
-/// azimuths. Exact for spherical harmonics below degree 2 rows.
+/// 2 rows^2 nodes: Gauss-Legendre in the polar cosine, equal azimuths. Exact for spherical harmonics below degree 2
+/// rows.
 std::vector<SphereNode> sphere_quadrature(int rows);
 
 }  // namespace interflect::detail
