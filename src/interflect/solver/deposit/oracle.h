@@ -10,20 +10,19 @@
 
 namespace interflect::detail {
 
-/// One end of an interaction, as seen by the oracle.
+/// Element or luminaire part in the oracle.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
-    V3f normal{0, 0, 0};  ///< Unit length.
-    float area = 0;       ///< [m^2]
-    /// Minimum cosine, 1 for a source that shines equally in all directions.
+    V3f normal{0, 0, 0};
+    float area = 0;  ///< [m^2]
+    /// Lower bound of the cosine; 1 for an isotropic source.
     float least_cosine = 0;
 };
 
-/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j), of a disk of the
-/// shooter's area, times the cosines at both ends of the line between the centres. Cosines are at least 2 f, because
-/// parts of close elements face each other more directly.
+/// Estimates an upper bound of the form factor from receiver to shooter: A_j / (pi d^2 + A_j) =: f of a disk, times the
+/// cosines at both ends. These are at least 2 f: parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
-    // By value and without branches, to vectorise.
+    // By value and branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
     const auto larger = [](float x, float y) { return x < y ? y : x; };
     const V3f d = receiver.centre - shooter.centre;
@@ -37,17 +36,16 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Refinement test for the two elements of a ray. The result depends on the state before the step, never on other rays.
+/// Refinement test for a pair of elements. Depends on the state before the step, not on other rays.
 struct Oracle {
-    bool refines = false;  ///< False: the leaves that the ray connects exchange light.
+    bool refines = false;  ///< False: pairs descend to leaves.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
     float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
-    /// Maximum size of the forest. Excess elements are dropped at the end of a step, in an order independent of
-    /// threads.
+    /// Excess elements are dropped at the end of a step, in an order independent of threads.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
-    /// psi of every element before the step; empty unless by_importance.
+    /// psi before the step; empty unless by_importance.
     std::vector<float> importance;
 
     /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.

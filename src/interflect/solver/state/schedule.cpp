@@ -11,7 +11,7 @@ namespace {
 
 /// Rays of an iteration relative to the rays averaged before.
 constexpr double growth = 0.5;
-/// Maximum rays of an iteration: one or two seconds, so a run can stop soon.
+/// One or two seconds, so a run can stop soon.
 constexpr std::int64_t largest_iteration = 1 << 24;
 /// Rays of the first iteration: some per patch, but a small share of the budget.
 constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, budget_over_first_rays = 8;
@@ -36,9 +36,9 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     averaged_rays_ = power_rays;
 }
 
-/// Returns the rays that fit into the remaining time at the current speed; 0 if too few to be useful.
+/// Rays that fit into the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
-    constexpr double share_of_time = 0.85;    // of the remaining time; iterations vary in speed
+    constexpr double share_of_time = 0.85;    // of the remaining time; speed varies
     constexpr double least_share = 1.0 / 32;  // of the rays averaged before
     const double time_left = options_.limits.time - seconds, took = seconds - planned_at_;
     const std::int64_t traced = rays_ - planned_after_;
@@ -65,10 +65,10 @@ IterationPlan Schedule::next(double seconds) {
         rays =
             std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)),
                        smallest_, largest_iteration);
-    // A short iteration precedes a long one, which is lost if interrupted.
+    // A short iteration comes before a long one, which an interruption would lose.
     const bool counts_iterations = options_.experimental.iterations > 0 || options_.experimental.warm_up > 0;
     if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;
-    // Absorb a remainder of less than half an iteration.
+    // Absorbs a remainder of less than half an iteration.
     if (left < rays + rays / 2) rays = left;
     if (std::isfinite(options_.limits.time)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};
